@@ -141,7 +141,13 @@ def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covere
 
 
 @pytest.mark.parametrize(
-    "keywords", [{"cavitation": "exit"}, {"fluid": sb.fluids.Barus(1.0)}, {"fluid": sb.fluids.Carreau(0.02, 0.5)}]
+    "keywords",
+    [
+        {"cavitation": "reform", "cavity_pressure": -0.01},
+        {"fluid": sb.fluids.Barus(1.0)},
+        {"fluid": sb.fluids.Carreau(0.02, 0.5)},
+    ],
+    ids=("cavity", "stiffening", "thinning"),
 )
 def test_derivatives_with_respect_to_the_groups_are_those_of_neighbouring_states(keywords):
     groups = sb.Groups(1e-4, 0.1, 1e-4)

@@ -147,6 +147,16 @@ def test_panels_reach_to_where_a_thinning_fluid_has_its_plateau():
     assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=1e-6)
 
 
+def test_without_asperities_both_definitions_of_friction_agree_however_thin_the_film():
+    """The moment of the pressure, 1e-10 of the load, was taken of the pressure: wrong by 1e-2, stated to 0.8, not solved."""
+    groups = sb.Groups(1.1226716212236156e-12, 3.2109537738723484e-06, 0.0)
+    fluid = sb.fluids.Carreau(3.212653759939735e-06, 0.5847391534438928)
+    state = sb.solve(groups, fluid=fluid, cavitation="exit", slide_to_roll=0.0)
+    assert state.viscous_published == pytest.approx(state.viscous_balanced, rel=1e-9)
+    assert state.viscous_published == pytest.approx(3.731914e-13, rel=1e-6)
+    assert state.mesh.size < 1000
+
+
 def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
     """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the rate is zero."""
     groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), fluid=sb.fluids.Carreau(0.02, 0.5))

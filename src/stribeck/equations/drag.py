@@ -10,6 +10,13 @@ With :math:`C = 2 \bar F_N^{1/2} \lambda / (3\pi)` and the tractions :math:`T` o
 on the substrate, on the cylinder, and on the cylinder with the fluid pressure projected on its slope.  In the cavity the
 liquid is sheared without a pressure gradient.  For the film of the article the first and the last have closed forms in
 :mod:`stribeck.equations.observables`.
+
+In a thin film the last moment is a small difference of large pressures.  An elastic body takes no force along x from them, so
+that by the identities A and B of theory.md, section 6, and by parts
+
+.. math:: \int x \, p_f \, dx = -\lambda \int h \, G \, dx - \int x \, p_c \, dx
+
+The two sides err as fluid and asperities press, and count by the share of the other.
 """
 
 from __future__ import annotations
@@ -20,9 +27,10 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
-from stribeck.equations.line import Equations
+from stribeck.equations.line import LOAD, Equations, gradient_in_film, slopes_in_film
 from stribeck.fluids.fluid import Slopes
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.solids.solid import lengths_of
 
 __all__ = ["drag_gradients", "friction_scale", "viscous_friction"]
 
@@ -70,13 +78,15 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     weights = mesh.weights.copy()
     weights[last] = 0.0
     one_sided, upstream = nodal.integral.one_sided, slice(0, len(xi) // 2)
-    lower, upper = np.zeros((2, *y.shape[:-1]))
+    lower, upper, pull = np.zeros((3, *y.shape[:-1]))
     for gap, pressure, own, (wet, torn) in (
         (nodal.gap, known, weights, _parts(nodal.integral)),
         (h, p, beyond, (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)),
     ):
-        walls = film.tractions(gap[..., wet], None if pressure is None else pressure[..., wet], h_star)
+        column = (gap[..., wet], None if pressure is None else pressure[..., wet], h_star)
+        walls, g = film.tractions(*column), film.gradient(*column)
         lower, upper = lower + walls[0] @ own[wet], upper + walls[1] @ own[wet]
+        pull = pull + (gap[..., wet] * g) @ own[wet]
         if torn is not None:
             liquid = (
                 film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], h_star) @ own[torn]
@@ -84,18 +94,23 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
             lower, upper = lower + liquid, upper + liquid
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
     wet = upstream if one_sided else slice(None)
-    g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)
     leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * beyond[wet]
-    stretch, inner = np.ones(1) if d is None else d, slice(0, -mesh.order)
-    moment = nodal.pressure[..., inner] @ (mesh.weights * mesh.nodes)[inner]
-    moment = moment + np.ravel(equations.speed * stretch) * (g @ leverage)
-    if op.has_exit:
-        whole = (nodal.pressure @ nodal.weights)[..., None]
-        moment = (stretch * (stretch * moment[..., None] + y[..., at.exit] * whole))[..., 0]
-        lower, upper = lower * stretch[..., 0], upper * stretch[..., 0]
-    found = np.stack([upper - 6 / np.ravel(equations.speed) * moment, lower, upper])
-    found *= np.ravel(friction_scale(load, equations.speed))
+    stretch, arm = (1.0 if d is None else d[..., 0]), weights * mesh.nodes
+    x_c, speed = (y[..., at.exit.start] if op.has_exit else 0.0), np.squeeze(equations.speed)
+    contact, whole = equations.law.pressure(nodal.gap), nodal.pressure @ nodal.weights
+    moment = stretch * (stretch * (nodal.pressure @ arm + speed * stretch * (g @ leverage)) + x_c * whole)
+    balance = -stretch * (speed * pull + stretch * (contact @ arm) + x_c * (contact @ weights))
+    moment = moment + _share_balanced(equations, stretch * whole) * (balance - moment)
+    lower, upper = lower * stretch, upper * stretch
+    found = np.stack([upper - 6 / speed * moment, lower, upper])
+    found *= np.squeeze(friction_scale(load, equations.speed))
     return found
+
+
+def _share_balanced(equations: Equations, fluid_load: Array) -> Array:
+    """Return the share with which the balance of forces gives the moment of the pressure: none on bodies that remember."""
+    remembers = bool(lengths_of(equations.operators.model.solid).memories)
+    return np.zeros_like(fluid_load) if remembers else np.clip(fluid_load / LOAD, 0.0, 1.0)
 
 
 def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | None]:
@@ -143,6 +158,11 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
             row[..., at.pressure] *= of_sum * own
     of_moment, x_c = -6 * scale / equations.speed, y[..., at.exit] if op.has_exit else 0.0
     published[...] = upper
+    fluid = equations.fluid_pressure(y)
+    whole = (fluid @ op.weights)[..., None]
+    share = _share_balanced(equations, stretch * whole)
+    _of_balance(equations, y, slopes, share * of_moment, published)
+    of_moment = (1 - share) * of_moment
     if slopes is None:
         published[..., at.pressure] += of_moment * stretch * (stretch * op.moment + x_c * op.weights)
     else:
@@ -152,16 +172,39 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
         published[..., at.gap] += through * slopes.by_gap
         published[..., at.flux_gap] += (through * slopes.by_flux).sum(axis=-1, keepdims=True)
     if op.has_exit:
-        fluid = equations.fluid_pressure(y)
-        whole = (fluid @ op.weights)[..., None]
         published[..., at.exit] += of_moment * stretch * whole
-        if d is not None:
-            nodal = Nodal(op.integral, np.atleast_2d(h), np.atleast_2d(fluid), op.weights)
-            values = viscous_friction(equations, np.atleast_2d(y), load, nodal).reshape(3, *y.shape[:-1], 1)
-            published[..., at.dilation] = values[2] / d + of_moment * (2 * d * (fluid @ op.moment)[..., None] + x_c * whole)
-            lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
-            if p is None:
-                by_fluid = stretch * (stretch * op.moment + x_c * op.weights)
-                g_part = (fluid - op.cavity_pressure) / d
-                published[..., at.dilation] += of_moment * (g_part * by_fluid).sum(axis=-1, keepdims=True)
+    if d is not None:
+        values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))[..., None]
+        lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
+        published[..., at.dilation] += upper[..., at.dilation] + of_moment * (
+            2 * d * (fluid @ op.moment)[..., None] + x_c * whole
+        )
+        if p is None:
+            by_fluid = stretch * (stretch * op.moment + x_c * op.weights)
+            g_part = (fluid - op.cavity_pressure) / d
+            published[..., at.dilation] += of_moment * (g_part * by_fluid).sum(axis=-1, keepdims=True)
     return found
+
+
+def _of_balance(equations: Equations, y: Array, slopes: Slopes | None, factor: Array, row: Array) -> None:
+    """Add to ``row`` the derivatives of the moment of the fluid pressure by the balance of forces, times ``factor``."""
+    op, at, film, law, d = equations.operators, equations.layout, equations.film, equations.law, equations.dilation(y)
+    h, h_star = y[..., at.gap], y[..., at.flux_gap]
+    p = y[..., at.pressure] if film.uses_pressure else None
+    if slopes is None:
+        slopes = slopes_in_film(film, op.integral, h, p, h_star)
+    g, contact = gradient_in_film(film, op.integral, h, p, h_star), law.pressure(h)
+    stretch = np.ones(1) if d is None else d
+    wet = op.integral.weights + op.integral.weights_beyond if op.has_reformation else op.integral.weights
+    through = -factor * stretch * equations.speed * wet
+    pressed = -factor * stretch * equations.positions(y) * op.mesh.weights
+    row[..., at.gap] += through * (g + h * slopes.by_gap) + pressed * law.slope(h, contact)
+    row[..., at.flux_gap] += (through * h * slopes.by_flux).sum(axis=-1, keepdims=True)
+    if slopes.by_pressure is not None:
+        row[..., at.pressure] += through * h * slopes.by_pressure
+    if op.has_exit:
+        row[..., at.exit] -= factor * stretch * (contact @ op.mesh.weights)[..., None]
+    if d is not None:
+        arm = op.mesh.weights * op.mesh.nodes
+        balance = ((through * h * g + pressed * contact) / d).sum(axis=-1, keepdims=True)
+        row[..., at.dilation] += balance - factor * d * (contact @ arm)[..., None]

@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.line import LOAD, Equations
 from stribeck.equations.observables import ROW, friction_integrals, friction_scale, gradients, observables
@@ -84,7 +86,7 @@ def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, A
 def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
     """Return the same for a film other than the article's.
 
-    The direct effect of the speed or the model, at fixed unknowns, is a difference; the rest comes through the unknowns.
+    The direct effect of a group or the model, at fixed unknowns, is a difference; the rest comes through the unknowns.
     """
     equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)
@@ -94,20 +96,25 @@ def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Arra
     for column, name in enumerate(GROUPS):
         if float(getattr(state.groups, name)) > 0:
             found[:, column] = through @ (units * inverse(equations.parameter_derivative(y, name)))
-    speed = float(state.groups.speed)
-    slower, faster = (replace(equations, speed=speed * math.exp(step)) for step in (-STEP, STEP))
-    found[:, 0] += _difference(slower, faster, y, load, names) / (2 * STEP)
-    h, d = y[equations.layout.gap], equations.dilation(y)
-    pressure, weights = equations.law.pressure(h), state.mesh.weights * (1.0 if d is None else float(d[0])) / LOAD
-    found[0, 1] += weights @ equations.law.load_derivative(h, pressure)
-    found[0, 2] += weights @ equations.law.roughness_derivative(h, pressure) if state.groups.roughness else 0.0
-    here = observables(equations, y, load)
-    found[1:, 1] += [0.5 * getattr(here, name) for name in FRICTIONS]  # friction_scale
+    for column, name in enumerate(GROUPS):
+        found[:, column] += _direct(state, name, names)
     for column, (below, above, width) in enumerate(changes, len(GROUPS)):
         first, second = (replace(equations, operators=Operators(state.mesh, model)) for model in (below, above))
         dy = units * inverse((second.residual(y) - first.residual(y)) / width)
         found[:, column] = through @ dy + _difference(first, second, y, load, names) / width
     return dict(zip(names, found, strict=True))
+
+
+def _direct(state: State, name: str, names: Sequence[str]) -> Array:
+    """Return the derivatives of observables with respect to the logarithm of a group, at fixed unknowns."""
+    value, found = float(getattr(state.groups, name)), []
+    for step in (-STEP, STEP):
+        changed: dict[str, Any] = {name: value * math.exp(step)}
+        groups = replace(state.groups, **changed)
+        equations = replace(state.equations, speed=float(groups.speed), law=contact_law(groups))
+        seen = observables(equations, state.y, float(groups.load))
+        found.append(np.array([getattr(seen, each) for each in names]))
+    return np.asarray((found[1] - found[0]) / (2 * STEP))
 
 
 def _difference(below: Equations, above: Equations, y: Array, load: float, names: Sequence[str]) -> Array:
