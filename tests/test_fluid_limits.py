@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.contacts.groups import contact_law
+from stribeck.contacts.with_parts import with_parts
+from stribeck.equations.state import mesh_for
+from stribeck.solver.solve import solved_point
 
 GROUPS = sb.Groups(1e-3, 0.1, 1e-4)
 TIGHT = 1e-8
@@ -130,3 +134,14 @@ def test_films_of_power_laws_grow_with_the_speed_as_the_inlet_says(exponent):
         films.append(sb.solve(groups, fluid=fluid, cavitation="exit", rtol=1e-5).central_gap)
     lam = np.log10(10 * 10 ** (exponent - 1))  # of the speed at the viscosity of the film
     assert np.log10(films[1] / films[0]) / lam == pytest.approx(3 / (2 + 3 * exponent), rel=0.02)
+
+
+@pytest.mark.parametrize("cavitation", ["none", "exit"])
+def test_panels_end_where_a_wall_of_a_fluid_without_a_plateau_is_not_sheared(cavitation):
+    groups = with_parts(GROUPS, fluid=sb.fluids.PowerLaw(0.01, 0.7), cavitation=cavitation)
+    state = solved_point(groups, 1e-6).state
+    mesh = mesh_for(state, groups, contact_law(groups), 12, 2e-4)
+    edges = mesh.edges[np.abs(mesh.edges) < 4]
+    _, upper = state.equations.film.tractions(np.exp(state.fields(edges)[0]), None, np.array(state.flux_gap))
+    at_rest = edges[np.abs(upper) < 1e-5 * np.abs(upper).max()]
+    assert np.sign(at_rest).tolist() == ([-1, 1] if cavitation == "none" else [-1])

@@ -255,6 +255,21 @@ def test_panels_of_a_field_known_on_other_panels_are_not_shortened_where_those_e
     assert adapt(known, 1.0, 16.0, 10, 1e-7, coarse).panels <= 1.2 * exact.panels
 
 
+def test_kinks_that_are_edges_take_fewer_panels_and_are_resolved():
+    at = np.array([-0.6, 0.3])
+
+    def kinked(x, *_):
+        return np.exp(-x * x)[None] * (1 + sum(np.abs(x - place) for place in at))
+
+    mesh, hidden = adapt(kinked, 1.0, 16.0, 10, 1e-6, places=at), adapt(kinked, 1.0, 16.0, 10, 1e-6)
+    assert np.isin([*at, 0.0], mesh.edges).all()
+    assert mesh.panels < 0.8 * hidden.panels
+    x = np.linspace(-3, 3, 2001)
+    error, of_hidden = (np.abs(m.interpolate(kinked(m.nodes)[0], x) - kinked(x)[0]).max() for m in (mesh, hidden))
+    assert error < 1e-5
+    assert error < 0.1 * of_hidden
+
+
 def test_the_panel_through_infinity_begins_where_the_tail_is_resolved():
     mesh = adapt(lambda x, *_: (1e4 / (1e4 + x * x))[None], 1.0, 4.0, 10, 1e-8)
     assert 16.0 <= mesh.edges[-1] <= 1024.0

@@ -24,7 +24,7 @@ from stribeck.equations.line import Equations, Operators, slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh, adapt, graded, reference, ungraded
+from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, reference, ungraded
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
@@ -78,6 +78,9 @@ NODAL_NOISE = 2.0**-48
 
 WIDEST_FAR = 0.5
 """Half-width over the distance of panels on which a broken power is resolved."""
+
+KINK_SEARCHES, KINK_PLACES = 2, 17
+"""How often a kink is looked for between so many places of its bracket; then the line through two of them tells."""
 
 COARSE = 1e-3
 """Tolerance from which a mesh serves to find a state, not to read off drag."""
@@ -289,6 +292,27 @@ def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
 
 
+def kinks_of(guess: Guess, film: Film, x: Array) -> Array:
+    """Return where a wall is not sheared, between the places ``x`` of a guess: a fluid without a plateau has kinks there."""
+
+    def walls(x: Array) -> Array:
+        found = guess.fields(x)
+        pressure = found[1] if film.uses_pressure else None
+        return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
+
+    stress = walls(x)
+    wall, at = np.nonzero(np.signbit(stress[:, 1:]) != np.signbit(stress[:, :-1]))
+    each = np.arange(len(wall))
+    low, high = x[at], x[at + 1]
+    for _ in range(KINK_SEARCHES):
+        within = np.linspace(low, high, KINK_PLACES)
+        stress = walls(within.ravel()).reshape(2, *within.shape)[wall, :, each].T
+        at = np.argmax(np.signbit(stress[1:]) != np.signbit(stress[:-1]), axis=0)
+        low, high = within[at, each], within[at + 1, each]
+    before, after = stress[at, each], stress[at + 1, each]
+    return np.asarray(low + (high - low) * before / (before - after))
+
+
 def mesh_for(
     guess: Guess,
     groups: Groups,
@@ -434,15 +458,21 @@ def mesh_for(
         reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
+    places = [x for x in (0.0, restart) if ends and x < math.inf]
+    start = guess.mesh if anew and isinstance(guess, State) else None
+    if ends:
+        reach = 2 * max(reach, places[-1])
+    if ends and start is not None:
+        start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
+    kinks = NOWHERE
+    if broken and tolerance < COARSE:
+        about = Mesh(base_edges(scale, reach), order) if start is None else start
+        x = np.sort(about.nodes[: -about.order])
+        x = x[(x < 0) | (x > restart)] if ends else x
+        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks)
     if not ends:
-        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None, anew)
-    places = [0.0] if restart == math.inf else [0.0, restart]
-    if restart < math.inf:
-        reach = max(reach, restart)
-    start = None
-    if isinstance(guess, State):
-        start = replace(guess.mesh, edges=ungraded(guess.mesh.edges, [x * to_guess for x in places]) / to_guess)
-    mesh = adapt(fields, scale, 2 * reach, order, tolerance, start, anew)
+        return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
     return replace(graded(mesh, places, levels), restart=restart)
 

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -29,6 +30,11 @@ TAIL_HALVINGS = 12
 
 MARGIN, SHORTEST_PART = 1.05, 0.25
 """Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes."""
+
+CLOSEST = 2.0**-40
+"""Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding."""
+
+NOWHERE = np.empty(0)
 
 
 class MeshTooLargeError(Exception):
@@ -287,6 +293,7 @@ def adapt(
     tolerance: float,
     start: Mesh | None = None,
     anew: bool = True,
+    places: Array = NOWHERE,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields.
 
@@ -312,6 +319,8 @@ def adapt(
         Panels to begin with, instead of the coarsest.
     anew : bool
         Whether the panels are laid anew.
+    places : ndarray
+        Edges besides zero, where the fields have kinks: panels laid anew would hide these in longer ones.
 
     Returns
     -------
@@ -342,6 +351,7 @@ def adapt(
         reach = float(edges[-1])
         inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
+    edges = np.unique(np.append(edges, places[np.abs(places) < edges[-1]]))
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done, sizes = [], []
     count = 0
@@ -360,18 +370,21 @@ def adapt(
     panels, size = np.concatenate(done), np.concatenate(sizes)
     ascending = np.argsort(panels[:, 0])
     edges = np.append(panels[ascending, 0], panels[:, 1].max())
-    return Mesh(_evened(edges, size[ascending], order) if anew else edges, order, scale)
+    return Mesh(_evened(edges, size[ascending], order, places) if anew else edges, order, scale)
 
 
-def _evened(edges: Array, tails: Array, order: int) -> Array:
-    """Return edges of as few panels as have tails of about one; a tail goes with the power ``order - 1`` of the length."""
+def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
+    """Return edges of as few panels as have tails of about one; a tail goes with the power ``order - 1`` of the length.
+
+    Zero and ``places`` stay edges.
+    """
     counts = np.fmin(1.0, np.fmax(SHORTEST_PART, MARGIN * tails ** (1 / (order - 1))))
-    middle = int(np.searchsorted(edges, 0.0))
+    fixed = [0, *(np.flatnonzero(np.isin(edges[1:-1], np.append(places, 0.0))) + 1), len(edges) - 1]
     found = []
-    for part, own in ((edges[: middle + 1], counts[:middle]), (edges[middle:], counts[middle:])):
-        total = np.append(0.0, np.cumsum(own))
-        found.append(np.interp(np.linspace(0.0, total[-1], math.ceil(total[-1]) + 1), total, part))
-    return np.append(found[0][:-1], found[1])
+    for first, last in pairwise(fixed):
+        total = np.append(0.0, np.cumsum(counts[first:last]))
+        found.append(np.interp(np.linspace(0.0, total[-1], math.ceil(total[-1]) + 1), total, edges[first : last + 1])[:-1])
+    return np.append(np.concatenate(found), edges[-1])
 
 
 def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
@@ -381,7 +394,9 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
     added = [edges]
     for place in places:
         at = int(np.searchsorted(edges, place))
-        added += [place + (edges[at + side] - place) * halvings for side in (-1, 1)]
+        for side in (-1, 1):
+            steps = (edges[at + side] - place) * halvings
+            added.append(place + steps[np.abs(steps) > CLOSEST * abs(place)])
     return replace(mesh, edges=np.unique(np.concatenate(added)))
 
 
