@@ -157,6 +157,15 @@ def test_without_asperities_both_definitions_of_friction_agree_however_thin_the_
     assert state.mesh.size < 1000
 
 
+def test_the_drag_of_a_rolling_film_of_a_power_law_is_known_better_than_from_its_gap():
+    """The gap turns where the rate is zero, the pressure does not: drag was stated to 1e-6 on 1500 nodes, and not solved."""
+    fluid = sb.fluids.PowerLaw(0.001290628833096961, 0.8067371914530823)
+    state = sb.solve(
+        sb.Groups(1.3306260324744701e-08, 0.3491247287240683, 0.0), fluid=fluid, cavitation="exit", slide_to_roll=0.0
+    )
+    assert state.viscous_balanced == pytest.approx(3.8655423e-07, rel=1e-7)
+
+
 def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
     """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the rate is zero."""
     groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), fluid=sb.fluids.Carreau(0.02, 0.5))

@@ -22,13 +22,14 @@ The two sides err as fluid and asperities press, and count by the share of the o
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
 from stribeck.equations.line import LOAD, Equations, gradient_in_film, slopes_in_film
-from stribeck.fluids.fluid import Slopes
+from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.solid import lengths_of
 
@@ -38,13 +39,15 @@ __all__ = ["drag_gradients", "friction_scale", "viscous_friction"]
 class Nodal(NamedTuple):
     """A film on the nodes of a mesh, which may be finer than that of its equations: rows of states.
 
-    ``weights`` is the row that integrates nodal pressures to the load.
+    ``weights`` is the row that integrates nodal pressures to the load; ``settled`` takes nodal values of the film, and those
+    at the nodes of its equations, to what the former are taken for.
     """
 
     integral: RunningIntegral
     gap: Array
     pressure: Array
     weights: Array
+    settled: Callable[[Array, Array], Array] | None = None
 
 
 def friction_scale(load: Numbers, speed: Numbers) -> Array:
@@ -78,22 +81,15 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     weights = mesh.weights.copy()
     weights[last] = 0.0
     one_sided, upstream = nodal.integral.one_sided, slice(0, len(xi) // 2)
-    lower, upper, pull = np.zeros((3, *y.shape[:-1]))
-    for gap, pressure, own, (wet, torn) in (
-        (nodal.gap, known, weights, _parts(nodal.integral)),
-        (h, p, beyond, (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)),
-    ):
-        column = (gap[..., wet], None if pressure is None else pressure[..., wet], h_star)
-        walls, g = film.tractions(*column), film.gradient(*column)
-        lower, upper = lower + walls[0] @ own[wet], upper + walls[1] @ own[wet]
-        pull = pull + (gap[..., wet] * g) @ own[wet]
-        if torn is not None:
-            liquid = (
-                film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], h_star) @ own[torn]
-            )
-            lower, upper = lower + liquid, upper + liquid
+    walls = _walls(film, nodal.gap, known, h_star, _parts(nodal.integral))
+    if nodal.settled is not None:
+        own = y[..., at.pressure] if film.uses_pressure else None
+        walls = nodal.settled(walls, _walls(film, y[..., at.gap], own, h_star, _parts(op.integral)))
+    far_parts = (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)
+    lower, upper, pull = walls @ weights + _walls(film, h, p, h_star, far_parts) @ beyond
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
-    wet = upstream if one_sided else slice(None)
+    wet = far_parts[0]
+    g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)
     leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * beyond[wet]
     stretch, arm = (1.0 if d is None else d[..., 0]), weights * mesh.nodes
     x_c, speed = (y[..., at.exit.start] if op.has_exit else 0.0), np.squeeze(equations.speed)
@@ -104,6 +100,21 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     lower, upper = lower * stretch, upper * stretch
     found = np.stack([upper - 6 / speed * moment, lower, upper])
     found *= np.squeeze(friction_scale(load, equations.speed))
+    return found
+
+
+def _walls(
+    film: Film, gap: Array, pressure: Array | None, flux_gap: Numbers, parts: tuple[slice | Flags, slice | Flags | None]
+) -> Array:
+    """Return drag on substrate and cylinder and the pull h G, zero where the film is torn, shape (3, ..., nodes)."""
+    found = np.zeros((3, *gap.shape))
+    wet, torn = parts
+    column = (gap[..., wet], None if pressure is None else pressure[..., wet], flux_gap)
+    found[0][..., wet], found[1][..., wet] = film.tractions(*column)
+    found[2][..., wet] = gap[..., wet] * film.gradient(*column)
+    if torn is not None:
+        liquid = film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], flux_gap)
+        found[:2][..., torn] = liquid
     return found
 
 

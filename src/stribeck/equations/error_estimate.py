@@ -14,13 +14,14 @@ gradients of the observables turn all changes into errors.  The interpolation er
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from stribeck._types import Array, Indices
+from stribeck._types import Array, Flags, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
@@ -256,13 +257,15 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
     known = equations.fluid_pressure(y) if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
-    flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
-    flat &= not is_thinning(film)  # it turns sharply where the rate is zero
+    flat = np.asarray((np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2))
+    settled = _settled(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
 
     slopes = gradient_in_film(film, integral, gap, fluid, h_star)
     if flat.any():
         smooth = gradient_in_film(film, op.integral, h, known, h_star)
-        if not is_rough(film):
+        if settled is not None:
+            smooth = settled(slopes, smooth)
+        elif not is_rough(film):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
             conducted = states.slopes.by_flux
@@ -311,7 +314,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         friction = np.zeros((len(DRAG), len(y)))
         if equations.is_sliding:
             friction = np.abs(
-                viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights)) - observed[:, DRAG].T
+                viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, settled))
+                - observed[:, DRAG].T
             )
         return Perturbations(unknowns, friction)
     friction = np.zeros((2, len(y)))
@@ -320,6 +324,22 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         found = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
         friction = np.abs(scale * found - observed[:, FRICTION].T)
     return Perturbations(unknowns, friction)
+
+
+def _settled(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
+    """Return what holds values at finer nodes, on panels where the gap is ``flat``, within the error of the coarse ones.
+
+    Where the rate of a fluid that thins is zero, its gradient turns sharply with the gap, or the gap with the gradient: that
+    with the smaller error between its nodes tells the values there.
+    """
+
+    def settled(finer: Array, nodal: Array) -> Array:
+        held = coarse.to_order(nodal, order)
+        error = interpolation_error(nodal.reshape(*nodal.shape[:-1], coarse.panels, -1))
+        bound = np.repeat(np.where(flat, error, np.inf), order, axis=-1)
+        return np.asarray(held + np.clip(finer - held, -bound, bound))
+
+    return settled
 
 
 def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, size: float) -> None:
