@@ -11,6 +11,7 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
+from stribeck.equations.cavities.of_length import solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
 from stribeck.equations.sensitivity import log_derivatives
@@ -207,3 +208,15 @@ def test_neighbours_with_an_exit_share_meshes_where_the_contact_is_resolved():
     """The panel behind the exit was asked, where nothing is read off: six meshes where two serve."""
     states = marched(np.geomspace(1e-1, 3e-3, 16))
     assert len({id(point.state.mesh) for point in states}) <= 4
+
+
+@pytest.mark.parametrize("fluid", [None, sb.fluids.Barus(1.0)], ids=("plain", "stiffens"))
+def test_a_cavity_of_given_length_has_the_pressure_at_which_that_length_is_found(fluid):
+    parts = {} if fluid is None else {"fluid": fluid}
+    groups = with_parts(sb.Groups(1e-2, 0.1, 1e-3), cavitation="reform", cavity_pressure=-0.05, **parts)
+    state = solved_point(groups, 1e-9).state
+    other = replace(groups, model=replace(groups.model, cavity_pressure=-0.04))
+    found = solve_of_length(other, Operators(state.mesh, other.model), state, 1e-10, 8)
+    assert found.outcome.ok
+    assert found.groups.model.cavity_pressure == pytest.approx(-0.05, rel=1e-8)
+    assert found.root.contraction < 0.05

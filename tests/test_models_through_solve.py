@@ -89,6 +89,17 @@ def test_the_cavity_of_a_film_that_forms_anew_is_at_its_pressure():
     assert -0.05 < outside[1] < 0
 
 
+def test_a_cavity_is_found_by_its_length_where_its_inlet_is_thin():
+    """With the length among the unknowns the inlet moved by many of its own lengths: no state was found in 80 s."""
+    groups, parts = (
+        sb.Groups(3.38e-7, 1.62e-8, 5.7e-14),
+        {"fluid": sb.fluids.Barus(0.095), "solid": sb.solids.Layer(8.5, 0.485)},
+    )
+    solution = sb.solve(groups, cavitation="reform", cavity_pressure=-0.0142, slide_to_roll=0.0, **parts)
+    assert solution.mesh.size < 700
+    assert (solution.exit_position, solution.reformation_position) == pytest.approx((0.9949323601, 0.9969348894), abs=1e-8)
+
+
 @pytest.mark.quick
 def test_the_two_walls_balance_the_pull_of_the_pressure():
     groups = sb.Groups(1e-2, 0.1, 1e-3)

@@ -160,7 +160,11 @@ class Equations:
         fluid = np.asarray(
             self.speed * op.integral(gradient_in_film(film, op.integral, y[..., at.gap], None, y[..., at.flux_gap]))
         )
-        return fluid if d is None else d * fluid + op.cavity_pressure
+        return fluid if d is None else d * fluid + op.in_cavity * self.cavity_pressure(y)
+
+    def cavity_pressure(self, y: Array) -> Array:
+        """Return the pressure of the cavity [p_Hz], a column of stacked states."""
+        return np.full_like(y[..., self.layout.dilation], self.operators.model.cavity_pressure)
 
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
@@ -181,7 +185,7 @@ class Equations:
         if p_f is not None or d is not None or self.is_sliding:
             fluid = self.speed * op.integral(g)
             if d is not None:
-                fluid = d * fluid + op.cavity_pressure
+                fluid = d * fluid + op.in_cavity * self.cavity_pressure(y)
             if p_f is not None:
                 r[..., at.pressure] = p_f - fluid
             pressure = pressure + (fluid if p_f is None else p_f)
@@ -194,7 +198,7 @@ class Equations:
             r[..., at.gap] -= x_c * ((op.mesh.nodes if d is None else d * op.mesh.nodes) + 0.5 * x_c)
             r[..., at.exit] = self.flux_scale * (g @ op.at_exit)[..., None]
         if d is not None:
-            in_cavity = op.model.cavity_pressure / self.speed
+            in_cavity = self.cavity_pressure(y) / self.speed
             r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
             r[..., at.dilation] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
         if d is not None:
@@ -294,10 +298,10 @@ class Equations:
         if op.has_exit:
             matrix[:n, n + 2] = -v[2] * self.positions(y)
         if d is not None:
-            matrix[:, n + 3] = v[3] * self._by_dilation(y, d, by_p)
+            matrix[:, n + 3] = v[3] * self.by_dilation(y, d, by_p)
         return matrix
 
-    def _by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
+    def by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
         """Return the derivative of the residual with respect to the dilation, the fluid pressure eliminated."""
         op, at = self.operators, self.layout
         n = op.mesh.size

@@ -77,9 +77,14 @@ class Operators:
         return np.flatnonzero(self.integral.outside_gap), np.flatnonzero(~self.integral.outside_gap)
 
     @cached_property
+    def in_cavity(self) -> Array:
+        """One at the nodes of the cavity, zero at others."""
+        return np.where(self.integral.outside_gap, 0.0, 1.0)
+
+    @property
     def cavity_pressure(self) -> Array:
         """The pressure of the cavity at its nodes, zero at others."""
-        return np.where(self.integral.outside_gap, 0.0, self.model.cavity_pressure)
+        return self.in_cavity * self.model.cavity_pressure
 
     @cached_property
     def tail(self) -> HalfTail | None:

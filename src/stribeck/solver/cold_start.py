@@ -23,10 +23,12 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
+from stribeck.solver.cavities.opening import paths_to_cavity
 from stribeck.solver.models.towards import paths_to_model
 
 RIGID_SPEED = 30.0
@@ -190,7 +192,8 @@ def first_path(groups: Groups) -> Path[State]:
 def first_paths(groups: Groups) -> Iterator[Path[State]]:
     """Yield paths from cold to ``groups``: with the model of the article one, with others by several ways."""
     if groups.model != ARTICLE:
-        yield from paths_to_model(groups, path_of_article)
+        ways = paths_to_cavity if groups.model.cavitation is Cavitation.REFORM else paths_to_model
+        yield from ways(groups, path_of_article)
     else:
         yield path_of_article(groups)
 

@@ -9,8 +9,7 @@ the half-plane if need be, in one step if Newton's iteration converges, else dow
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
 
-Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  A shorter way works mostly: the
-full film of the fluid shows where it ruptures, see :func:`ruptured`.
+Films that begin anew behind a cavity come after these, see :mod:`stribeck.solver.cavities.opening`.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
-__all__ = ["paths_to_model", "ruptured"]
+__all__ = ["extended", "paths_to_model", "settled"]
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3
@@ -50,7 +49,7 @@ FINER = (12, 1e-5)
 MOST_STEPS = 100
 
 LOOKED_AT = 4001
-"""Points at which the end of the full film and its largest suction are searched."""
+"""Points at which the end of the full film is searched."""
 
 NEAREST_EXIT = 0.4
 """No film ends within this part of the half-width from the middle."""
@@ -65,20 +64,6 @@ HEIGHTS = (-400.0, 400.0)
 """Logarithms of its smallest and largest height."""
 
 BLENDING = Steps(1.0, 1.0, 1e-3)
-CAVITIES = 4001
-"""Lengths of cavities that are tried."""
-
-FIRST_SUCTIONS = (0.3, 0.03, 1e-3)
-"""First suction of the cavity, over the largest with which a film could begin anew: the first that succeeds is taken."""
-
-CAVITY_PARTS = (0.52, 0.75, 1.0, 2.0)
-"""Lengths of a cavity over that of the stretch on which the suction of the full film is too large: half of it for a short
-cavity, as the missing flow lowers the pressure behind it too."""
-
-BEFORE_LOWEST = 0.03
-"""Distance of the rupture from the place of the largest suction, over the length of the cavity."""
-
-DEEPENING = Steps(0.5, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
 
 FASTER = (1e2, 1e4)
@@ -265,14 +250,8 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     article : callable
         The path from cold to groups with the model of the article.
     """
-    model = groups.model
-    if model.cavitation is Cavitation.REFORM:
-        ending = replace(model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)
-        for path in paths_to_model(replace(groups, model=ending), article):
-            yield _reforming(groups, path) if path.outcome.ok else path
-        return
     yield _changed(groups, article, WAYS[:1])
-    if groups.speed > 0 and model.film != Newtonian():
+    if groups.speed > 0 and groups.model.film != Newtonian():
         yield from (slowed for factor in FASTER if (slowed := _slowed(groups, article, factor)) is not None)
     yield _changed(groups, article, WAYS[1:])
 
@@ -284,7 +263,7 @@ def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: fl
     except InputError:  # beyond the range of groups
         return None
     begun = _changed(above, article, WAYS[:1], WORK_FASTER)
-    first = _settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
+    first = settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
     path = None if first is None else _along(above, groups, first, *SLOWED, WORK_FASTER)
     return path if path is not None and path.outcome.ok else None
 
@@ -307,63 +286,12 @@ def _changed(
             return replace(path, outcome=Outcome.PATH_LOST)
         state = found
     if model.film == Newtonian() and model.solid == solid:
-        return _extended(path, state)
+        return extended(path, state)
     return _blended(groups, path, state, ways, work)
 
 
-def ruptured(groups: Groups, full: State) -> State | None:
-    """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None.
-
-    The cavity may be very short: the shorter it is, the nearer the full film, and the better the guess.
-    """
-    pressure = groups.model.cavity_pressure
-    x = np.sort(full.mesh.nodes)
-    nodal = full.fields(x)[1]
-    below = np.flatnonzero(nodal <= max(pressure, nodal.min()))
-    x = np.linspace(x[max(below[0] - 1, 0)], x[min(below[-1] + 1, len(x) - 1)], LOOKED_AT)
-    suction = full.fields(x)[1]
-    between = x[suction < pressure]
-    if not len(between):
-        return None
-    lowest, stretch = float(x[np.argmin(suction)]), float(between[-1] - between[0])
-    for part in CAVITY_PARTS:
-        length = part * stretch
-        found = _settled(groups, SeenFrom(full, lowest - BEFORE_LOWEST * length, length, pressure))
-        if found is not None:
-            return found
-    return None
-
-
-def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
-    """Return the path on which the pressure of the cavity falls from near zero to that of the groups.
-
-    A film that ends at ambient pressure shows where it would begin anew: where the suction of the film behind equals that
-    of the cavity.
-    """
-    state, wanted = ended.states[-1], -groups.model.cavity_pressure
-    distance = np.geomspace(1e-4, 1e4, CAVITIES) * math.sqrt(1.0 + float(state.gap.min()))
-    gap = np.exp(state.fields(distance)[0])
-    film, flux = state.equations.film, state.flux_gap
-    slopes = film.gradient(gap, np.zeros_like(gap) if film.uses_pressure else None, flux) * float(groups.speed)
-    cells = 0.5 * (slopes[1:] + slopes[:-1]) * np.diff(distance)
-    suction = np.append(np.cumsum(cells[::-1])[::-1], 0.0)
-
-    def correct(log_suction: float, history: Sequence[tuple[float, State]]) -> State | None:
-        pressure = -wanted if log_suction == math.log(wanted) else -math.exp(log_suction)
-        here = replace(groups, model=replace(groups.model, cavity_pressure=pressure))
-        guess = extrapolate(history, log_suction) if history else SeenFrom(state, state.exit, length, pressure)
-        return _settled(here, guess)
-
-    for part in FIRST_SUCTIONS:
-        start = min(wanted, part * float(suction.max()))
-        length = float(distance[np.flatnonzero(suction >= start)[-1]])
-        path = march(correct, math.log(start), math.log(wanted), DEEPENING)
-        if path.outcome.ok:
-            break
-    return path
-
-
-def _extended(path: Path[State], state: State) -> Path[State]:
+def extended(path: Path[State], state: State) -> Path[State]:
+    """Return a path with one more state at its end."""
     return replace(path, coordinates=(*path.coordinates, path.coordinates[-1]), states=(*path.states, state))
 
 
@@ -376,7 +304,7 @@ def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float =
     return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
 
 
-def _settled(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
+def settled(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state on a mesh made for it, or None."""
     state = _coarse(groups, guess, order, tolerance)
     if state is None or not state.outcome.ok:
@@ -389,13 +317,13 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
     """Return the state whose film ends, from that of the full film; along the path of loads if that is too far away."""
     rigid = RigidEnding.of(groups) if groups.speed > RIGID_SPEED else None
     for guess in (rigid, _seen_from_exit(full.states[-1])):
-        found = None if guess is None else _settled(groups, guess)
+        found = None if guess is None else settled(groups, guess)
         if found is not None:
             return found
     for start in range(len(full.states) - 2, -1, -1):
         begun = full.states[start]
         here = replace(begun.groups, model=groups.model)
-        first = _settled(here, _seen_from_exit(begun))
+        first = settled(here, _seen_from_exit(begun))
         if first is None:
             continue
         path = _along(here, groups, first)
@@ -463,8 +391,8 @@ def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way
 
         found = march(_within(correct, work), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
-            settled = _settled(found.states[-1].groups, found.states[-1])
-            return found if settled is None else _extended(found, settled)
+            again = settled(found.states[-1].groups, found.states[-1])
+            return found if again is None else extended(found, again)
     return found
 
 

@@ -1,0 +1,60 @@
+r"""A cavity of given length behind a film of the line, whose pressure is sought: the first states of films that begin anew.
+
+With the pressure given and the length sought, Newton's iteration moves the frame, and with it the inlet of the film by many of
+its own lengths.  With the length given the frame stays where it is, and the pressure enters by constant columns alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.groups import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.guess import Guess
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.state import State, unknowns_of
+from stribeck.numerics.newton import StepControl, root_find
+
+__all__ = ["solve_of_length"]
+
+
+@dataclass(frozen=True, eq=False)
+class OfLength(Equations):
+    """The problem of a cavity whose length is ``given`` in units of that on the mesh; its pressure takes that place."""
+
+    given: float = 1.0
+
+    def dilation(self, y: Array) -> Array:
+        """Return the given one, a column of stacked states."""
+        return np.full_like(y[..., self.layout.dilation], self.given)
+
+    def cavity_pressure(self, y: Array) -> Array:
+        """Return the pressure of the cavity, a column of stacked states."""
+        return np.asarray(y[..., self.layout.dilation])
+
+    def by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return the derivative of the residual with respect to that pressure."""
+        op, scaled = self.operators, self.operators.dilated(d, of_gradient=False)
+        ends = self.flux_scale / self.speed * np.array([-1.0, 0.0, 1.0])
+        return np.concatenate([-(scaled.deflection @ op.in_cavity), [scaled.weights @ op.in_cavity], ends])
+
+    def fluid_by_dilation(self, g: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return that of the fluid pressure."""
+        return self.operators.in_cavity
+
+
+def solve_of_length(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int) -> State:
+    """Return the state whose cavity has the length of the guess, of groups with the pressure that was found in it."""
+    given = guess.dilation * guess.restart / operators.mesh.restart
+    equations = OfLength(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2, given)
+    start, pressure = unknowns_of(equations, guess), equations.layout.dilation
+    start[pressure] = groups.model.cavity_pressure
+    root = root_find(equations, start, StepControl(tolerance, max_steps))
+    found = replace(groups.model, cavity_pressure=float(root.x[pressure][0]))
+    y = root.x.copy()
+    y[pressure] = given
+    own = Equations(Operators(operators.mesh, found), equations.speed, equations.law, equations.flux_scale)
+    return State(replace(groups, model=found), own, y, replace(root, x=y, inverse=None), 0.0)
