@@ -220,3 +220,13 @@ def test_a_cavity_of_given_length_has_the_pressure_at_which_that_length_is_found
     assert found.outcome.ok
     assert found.groups.model.cavity_pressure == pytest.approx(-0.05, rel=1e-8)
     assert found.root.contraction < 0.05
+
+
+def test_a_cavity_under_a_rigid_film_goes_with_the_square_root_of_the_speed():
+    """Both its ends over the root of the gap; lost as long as steps moved the exit by a third of the contact at most."""
+    found = []
+    for speed, pressure in ((1e5, -1e-3 * np.sqrt(10)), (1e6, -1e-3)):
+        state = sb.solve(sb.Groups(speed, 0.1, 0.0), cavitation="reform", cavity_pressure=pressure)
+        ends = np.array([state.exit_position, state.reformation_position])
+        found.append([*ends / np.sqrt(state.central_gap), state.flux_gap / state.central_gap])
+    assert found[0] == pytest.approx(found[1], rel=3e-4)

@@ -373,13 +373,15 @@ class Equations:
     def admissible(self, y: Array, dy: Array) -> float:
         """Return the longest fraction of a Newton step that keeps the gap positive and the contact pressure within bounds.
 
-        The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
+        The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.  The exit may move by
+        about a third of the width of contact or film.
         """
         at = self.layout
         flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_article else self._flux_unit(y)[0])
         part = 0.7 / max(0.7, abs(flux))
         if self.operators.has_exit:
-            part = min(part, 0.3 / max(0.3, abs(dy[at.exit.start])))
+            far = 0.3 * np.sqrt(1.0 + y[at.gap].min())
+            part = min(part, far / max(far, abs(dy[at.exit.start])))
         if self.operators.has_reformation:
             part = min(part, 0.3 / max(0.3, abs(dy[at.dilation.start] / y[at.dilation.start])))
         return longest_step(self.law, y[at.gap], dy[at.gap], float(part))
