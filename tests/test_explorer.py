@@ -559,7 +559,7 @@ def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
     measured = read_measured("two.csv", text.encode(), START.contact)
     ends = charts.axis_of(answer, measured)
     assert ends[0] <= low / 5 and ends[1] >= 3 * high and charts.axis_of(answer, []) == (low, high)
-    wider = Answerer(answer)(START, speeds_of(measured))
+    wider = Answerer(answer)(START, speeds_of(measured, START))
     assert wider.solution is answer.solution  # what is known is not solved again
     assert wider.speeds == ends == (wider.curve.speed[0], wider.curve.speed[-1])
 
@@ -908,6 +908,20 @@ def test_a_measured_curve_is_read(text, speed, friction):
     [found] = read_measured("m.csv", text.encode(), CONTACT)
     assert found.name == "m.csv"
     assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
+
+
+@pytest.mark.parametrize("contact", [START.contact, BALL.contact], ids=["cylinder", "ball"])
+def test_over_the_hersey_number_measured_points_stand_at_their_own(contact):
+    text = "curve;speed [m/s];viscosity [mPa*s];friction\na;0.01;50;0.6\nb;0.02;10;0.5\n"
+    first, second = read_measured("two.csv", text.encode(), contact)
+    later = contact.replace(viscosity=0.2)  # what the file does not say follows the page
+    for found, viscosity in ((first, 0.05), (second, 0.01)):
+        own = later.replace(speed=float(found.speed[0]), viscosity=viscosity)
+        assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(own.hersey_number, rel=1e-12)
+        assert found.places(later, "speed") == found.speed
+    [found] = read_measured("h.csv", b"Hersey number,friction\n1e-5,0.5\n", contact)
+    assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
+    assert contact.replace(speed=float(found.speed[0])).hersey_number == pytest.approx(1e-5, rel=1e-12)
 
 
 def test_each_curve_of_a_file_is_read_for_itself():

@@ -230,7 +230,7 @@ def curves_text(shown: View) -> str:
         columns = (found.speed, found.speed * factor, *(found.friction[name] for name in DEFINITIONS), found.contact)
         writer.writerows([name, *map(float, row), ""] for row in zip(*columns, strict=True))
     for each in shown.measured:
-        rows = zip(each.speed, each.speed * hersey, each.friction, strict=True)
+        rows = zip(each.speed, each.places(inputs.contact, "hersey") * hersey, each.friction, strict=True)
         writer.writerows([f"measured: {each.name}", float(speed), float(h), "", "", "", float(mu)] for speed, h, mu in rows)
     return file.getvalue()
 

@@ -11,7 +11,9 @@ from pathlib import Path
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
-from stribeck.explorer.asked.inputs import Inputs
+from stribeck.contacts.friction_rules import RULES
+from stribeck.explorer.asked.inputs import Abscissa, Inputs
+from stribeck.explorer.curves import hersey_scale
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.inputs import si_text
@@ -36,6 +38,10 @@ class Measured:
         Friction coefficient [-].
     source : Measurements
         All that its file holds.
+    made : Contact
+        The contact that was shown when it was loaded, with the inputs that its file gives.
+    own : tuple of str
+        Those of its inputs on which its Hersey number depends and that its file gives, or that its speeds were taken with.
     """
 
     name: str
@@ -43,6 +49,15 @@ class Measured:
     speed: Array
     friction: Array
     source: Measurements
+    made: Contact
+    own: tuple[str, ...]
+
+    def places(self, contact: Contact, abscissa: Abscissa) -> Array:
+        """Return the speeds at which its points are drawn: their own, or those of the contact with their Hersey number."""
+        if abscissa == "speed" or contact.INPUTS.geometry != self.made.INPUTS.geometry:
+            return self.speed
+        measured = contact.replace(**{name: getattr(self.made, name) for name in self.own})
+        return self.speed * (hersey_scale(measured) / hersey_scale(contact))
 
 
 @dataclass(frozen=True)
@@ -97,15 +112,16 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
     return Fitted(after, f"Fitted to {target}: {words}. Undo brings back the values before; intervals: stribeck fit.")
 
 
-def speeds_of(measured: Sequence[Measured]) -> list[float]:
-    """Return the speeds of measured points that have a place on a logarithmic axis [m/s]."""
-    return [speed for found in measured for speed in found.speed.tolist() if speed > 0]
+def speeds_of(measured: Sequence[Measured], now: Inputs) -> list[float]:
+    """Return the places of measured points along the speed, as far as a logarithmic axis has them [m/s]."""
+    return [place for found in measured for place in found.places(now.contact, now.abscissa).tolist() if place > 0]
 
 
 def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:
     r"""Return the measured curves of a file, over the speed.
 
-    .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta}
+    .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta},
+              \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta R} \text{ of a ball}
 
     Parameters
     ----------
@@ -133,11 +149,13 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
             data = read_measurements(path, FitSettings(geometry=contact.groups.geometry))
         except InputError as problem:
             raise InputError(str(problem).replace(str(path), name)) from None
-    found = []
+    found, rule = [], RULES[contact.groups.geometry]
     for k, (curve, inputs) in enumerate(zip(data.curves, data.inputs, strict=True)):
-        viscosity, load = inputs.get("viscosity", contact.viscosity), inputs.get("load", contact.load)
-        factor = {"speed": 1.0, "speed_viscosity": 1 / viscosity, "hersey_number": load / viscosity}[data.abscissa]
+        given = {each: value for each, value in inputs.items() if each in rule.hersey_exponents}
+        made = contact.replace(**given)
+        factor = {"speed": 1.0, "speed_viscosity": 1 / made.viscosity, "hersey_number": rule.hersey(made)}[data.abscissa]
+        own = tuple(given if data.abscissa == "speed" else rule.hersey_exponents)
         mine = data.curve == k
         label = name if len(data.curves) == 1 else f"{name}: {curve}"
-        found.append(Measured(label, name, data.values[mine] * factor, data.friction[mine], data))
+        found.append(Measured(label, name, data.values[mine] * factor, data.friction[mine], data, made, own))
     return found

@@ -404,7 +404,7 @@ class Tab:
 
     async def answered(self, now: Inputs) -> None:
         """Compute the answer; where that takes longer than a moment, mark what is shown."""
-        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured)))
+        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)))
         done, _ = await asyncio.wait({work}, timeout=MOMENT)
         if not done:
             self.page.show_working(now)
@@ -424,7 +424,7 @@ class Tab:
         """Show what has been solved since for the inputs that are shown."""
         if self.inputs is now and not self.working and not self.closed:
             self.answer, self.pinned, self.states = await self.run(
-                LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured)
+                LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)
             )
             if self.inputs is now:
                 await self.page.draw(now, self.seen())

@@ -206,7 +206,8 @@ def _line(row: Row) -> str:
 
 
 def _notes(notes: Iterable[str]) -> str:
-    return "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
+    found = "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
+    return found.replace("lambda ", "λ ").replace("wetted_radius", "a radius of the wetted disc")
 
 
 def comparison_html(answer: Answer, states: Sequence[tuple[str, BaseSolution, Definition]]) -> str:

@@ -56,6 +56,23 @@ WORDS = {
     "pressure": "cavity pressure",
     "hurst": "Hurst exponent",
     "pressure_viscosity": "pressure coefficient",
+    "infinite_viscosity": "viscosity at high rates",
+    "stress": "Eyring stress",
+    "gamma": "coefficient γ",
+    "roll_off_wavelength": "roll-off wavelength",
+    "roll_off": "roll-off wave number",
+    "q0": "smallest wave number",
+    "q1": "largest wave number",
+    "newtonian": "Newtonian",
+    "carreau": "Carreau",
+    "cross": "Cross",
+    "eyring": "Eyring",
+    "power-law": "power law",
+    "barus": "Barus",
+    "roelands": "Roelands",
+    "dowson-higginson": "Dowson, Higginson",
+    "exit": "film ends at the exit",
+    "reform": "cavity, film re-forms",
     "patir-cheng": "Patir and Cheng",
     "StandardLinearSolid": "viscoelastic, one time",
     "Prony": "viscoelastic, Prony series",
@@ -116,7 +133,11 @@ CHOICES = {
             "law", "Contact law", "", "law", {law: (LAW_NAMES[law], SURFACE if law == "persson" else NONE) for law in LAWS}
         ),
         Choice(
-            "preset", "Fluid preset", "", "", {"": ("choose ...", NONE)} | {k: (p.label, NONE) for k, p in PRESETS.items()}
+            "preset",
+            "Fluid preset",
+            "",
+            "",
+            {"": ("choose ...", NONE)} | {k: (p.label.replace("degC", "°C"), NONE) for k, p in PRESETS.items()},
         ),
         *(
             Choice(
@@ -124,7 +145,7 @@ CHOICES = {
                 label,
                 "fluid",
                 key,
-                {law: (law, (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
+                {law: (_words(law), (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
             )
             for name, label, key in LAW_OF_FLUID
         ),
@@ -133,7 +154,7 @@ CHOICES = {
             "Cavitation",
             "cavitation",
             "model",
-            {str(each): (str(each), ((), ("pressure",)) if each == "reform" else NONE) for each in Cavitation},
+            {str(each): (_words(each), ((), ("pressure",)) if each == "reform" else NONE) for each in Cavitation},
         ),
         Choice(
             "motion",

@@ -55,7 +55,7 @@ def all_charts(
 def axis_of(answer: Answer, measured: Sequence[Measured]) -> tuple[float, float]:
     """Return the ends of the axis of speeds, in whole decades farther where something was measured beyond [m/s]."""
     low, high = answer.speeds
-    speeds = speeds_of(measured)
+    speeds = speeds_of(measured, answer.inputs)
     if speeds:
         low = min(low, 10.0 ** math.floor(math.log10(min(speeds)) + 1e-9))
         high = max(high, 10.0 ** math.ceil(math.log10(max(speeds)) - 1e-9))
@@ -99,7 +99,8 @@ def friction_chart(
     for i, found in enumerate(measured):
         heights += _range(found.friction)
         symbol = ("circle", "diamond", "triangle")[i % 3]
-        series.append(points(f"measured{i}", found.name, found.speed * scale, found.friction, symbol, palette.ink))
+        places = found.places(contact, inputs.abscissa) * scale
+        series.append(points(f"measured{i}", found.name, places, found.friction, symbol, palette.ink))
     friction = answer.solution.friction(definition=chosen).total
     heights += [friction] if friction > 0 else []
     low, high = _friction_limits(heights)
