@@ -322,7 +322,7 @@ function stribeckState(mode, v) {
     const speed = value => mode === "si" ? withUnit(value, row.steps) : `speed group ${number(value)}`;
     const film = now.minimumGap * state.gap;
     const parts = [`${regimeOf(now)} lubrication at ${speed(values[row.name])}: friction ${number(now.friction, 4)} `
-      + `(${number(100 * now.solid / now.friction)} % from asperities); the fluid carries ${number(100 * now.fluidShare)} % of the load.`];
+      + `(${number(100 * now.solid / now.friction)}\u00a0% from asperities); the fluid carries ${number(100 * now.fluidShare)}\u00a0% of the load.`];
     const lambda = state.rms > 0 ? `, ${number(now.minimumGap / state.rms)} times the roughness` : "";
     const lengths = inputs.si[0].steps;
     parts.push(mode === "si" ? `Minimum film ${withUnit(film, lengths)}${lambda}.` : `Minimum gap ${number(now.minimumGap)} of the Hertz indentation.`);
@@ -333,7 +333,7 @@ function stribeckState(mode, v) {
 
   function beyond(state) {
     const {load, kappa} = atlas.box;
-    return `The table of this page covers load groups of ${load[0]} to ${load[1]} and relative roughnesses of ${kappa[0]} to ${kappa[1]}; `
+    return `The table of this page covers load groups of ${number(load[0])} to ${load[1]} and relative roughnesses of ${number(kappa[0])} to ${kappa[1]}; `
       + `this contact has ${number(state.load)} and ${number(state.roughness / state.load)}. The package solves it: stribeck curve.`;
   }
 
