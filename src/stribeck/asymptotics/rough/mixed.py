@@ -98,7 +98,7 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
     predicts="friction",
     plane="mixed",
     limits=(BOX[0], Limit("relative_roughness", 1e-4, 0.03), BOX[2], Limit("beta/mu0", 0.01, 3.0)),
-    worst=0.09,
+    worst=0.094,
     source="ours; [BP] Eq. (friction_hydro-mixed_transition)",
 )
 def friction(
@@ -133,11 +133,12 @@ def friction(
     the slope of the cylinder (theory.md, section 6): along the film :math:`h = h^* - c^2 \lambda^{1/5} h^* x/(1-x^2)^{1/2}`,
     so that the contact pressure leans towards the outlet.  The balanced friction is without it.
 
-    Against the solver, in the range: ``"uniform"`` within 9 %, 0.2 % in the median.  Where beta/mu0 is smaller, asperities
-    count at film ratios where little of their load is left, and the error is 17 % at 1e-3 and 29 % at 1e-4.  With mu0 = beta =
-    1 and up to relative roughness 0.1: ``"uniform"`` within 3.5 % from film ratio 5 on; ``"central"`` from 28 % below to 290 %
-    above, 7 % in the median; ``"large"`` from 76 % below, as the viscous friction of relative roughness 0.1 is beyond its
-    limit, to 300 % above, 31 % in the median.
+    Against the solver, in the range: ``"uniform"`` within 9.4 %, worst where all limits meet, at film ratio 3, load 1e-3,
+    relative roughness 1e-4 and beta/mu0 3; 0.2 % in the median.  Where beta/mu0 is smaller, asperities count at film ratios
+    where little of their load is left, and the error is 17 % at 1e-3 and 29 % at 1e-4.  With mu0 = beta = 1 and up to relative
+    roughness 0.1: ``"uniform"`` within 3.5 % from film ratio 5 on; ``"central"`` from 28 % below to 290 % above, 7 % in the
+    median; ``"large"`` from 76 % below, as the viscous friction of relative roughness 0.1 is beyond its limit, to 300 % above,
+    31 % in the median.
 
     Source: [BP] Eq. (friction_hydro-mixed_transition_dl); ours for ``"uniform"``.
     """
