@@ -15,7 +15,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import regime_of
+from stribeck.contacts.regime import REGIMES, regime_numbers
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.inputs import quantity, refuse_former, unit_of
@@ -137,9 +137,7 @@ class BatchSolution(Exported, Shown, ByValue):
         friction = self.friction
         with np.errstate(invalid="ignore", divide="ignore"):
             part = np.where(friction.total > 0, friction.contact / friction.total, 0.0)
-        shares = zip(self.ok.ravel(), self.fluid_load_share.ravel(), part.ravel(), strict=True)
-        names = [regime_of(float(fluid), float(mine)) if ok else "" for ok, fluid, mine in shares]
-        return np.array(names, dtype=np.str_).reshape(self.outcome.shape)
+        return np.where(self.ok, np.array(REGIMES)[regime_numbers(self.fluid_load_share, part)], "")
 
     def _each(self, of: Callable[[Any], float]) -> float | Array:
         """Return an input of each contact; of groups alone, that of a contact that has none of its own."""

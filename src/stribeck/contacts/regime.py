@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
+from stribeck._types import Array, Indices
 from stribeck.quantities.units import to_si
 
-__all__ = ["BOUNDARY_FLUID_SHARE", "HYDRODYNAMIC_CONTACT_SHARE", "Regime", "regime_of"]
+__all__ = ["BOUNDARY_FLUID_SHARE", "HYDRODYNAMIC_CONTACT_SHARE", "REGIMES", "Regime", "regime_numbers", "regime_of"]
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
+
+REGIMES: tuple[Regime, ...] = ("boundary", "mixed", "hydrodynamic")
+"""The regimes in the order of rising speed; their places are their numbers."""
 
 BOUNDARY_FLUID_SHARE = 0.05
 """Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
@@ -40,6 +46,22 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
         If one is no number.
     """
     fluid = to_si(fluid_load_share, "number", "fluid_load_share")
-    if to_si(contact_friction_share, "number", "contact_friction_share") <= HYDRODYNAMIC_CONTACT_SHARE:
-        return "hydrodynamic"
-    return "boundary" if fluid <= BOUNDARY_FLUID_SHARE else "mixed"
+    contact = to_si(contact_friction_share, "number", "contact_friction_share")
+    return REGIMES[int(regime_numbers(np.array(fluid), np.array(contact)))]
+
+
+def regime_numbers(fluid_load_share: Array, contact_friction_share: Array) -> Indices:
+    """Return the places in :data:`REGIMES` of the regimes of many states, by the rule of :func:`regime_of`.
+
+    Parameters
+    ----------
+    fluid_load_share, contact_friction_share : ndarray
+        Parts of the load and of the friction [-].
+
+    Returns
+    -------
+    ndarray of int
+        Of their shape.
+    """
+    slow = np.where(fluid_load_share <= BOUNDARY_FLUID_SHARE, REGIMES.index("boundary"), REGIMES.index("mixed"))
+    return np.where(contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE, REGIMES.index("hydrodynamic"), slow)

@@ -15,12 +15,13 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import PURE_SLIDING, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import regime_numbers
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
-from stribeck.regimes.phase_grid import MARKS, REGIMES, Diagram
+from stribeck.regimes.phase_grid import MARKS, Diagram
 
 DENSITY = 20
 """Points per decade of speed on which the transitions of a row are seen."""
@@ -206,9 +207,7 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups, of: Contact |
     }
     for name, found in values.items():
         diagram.fields[name][row] = found
-    hydrodynamic, boundary = contact <= HYDRODYNAMIC_CONTACT_SHARE, fluid <= BOUNDARY_FLUID_SHARE
-    names = np.where(hydrodynamic, REGIMES.index("hydrodynamic"), REGIMES.index("mixed"))
-    diagram.regime[row] = np.where(boundary & ~hydrodynamic, REGIMES.index("boundary"), names)
+    diagram.regime[row] = regime_numbers(fluid, contact)
     diagram.outcomes[row] = Outcome.CONVERGED.name
 
 

@@ -15,7 +15,8 @@ from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.curves.regime import Regime, Transition
+from stribeck.contacts.regime import REGIMES
+from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.outcome import Outcome
@@ -26,9 +27,6 @@ __all__ = ["AXES", "FIELDS", "LINES", "MARKS", "REGIMES", "Diagram", "empty_diag
 
 AXES = ("load", "roughness", "speed")
 """The dimensions of a diagram, in their order."""
-
-REGIMES: tuple[Regime, ...] = ("boundary", "mixed", "hydrodynamic")
-"""Names of the regimes; their places are the codes in a diagram, where -1 stands for a point without a state."""
 
 
 class Kind(NamedTuple):

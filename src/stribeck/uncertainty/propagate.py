@@ -15,7 +15,8 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.model import ARTICLE
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
+from stribeck.contacts.regime import REGIMES, regime_numbers
+from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
@@ -239,11 +240,9 @@ def _spread(name: str, label: str, value: float, samples: Array, dimension: str 
 
 
 def _regimes(share: Array, dry: Array) -> dict[str, float]:
-    """Return the part of the samples in each regime."""
-    hydrodynamic = dry <= HYDRODYNAMIC_CONTACT_SHARE
-    boundary = ~hydrodynamic & (1 - share <= BOUNDARY_FLUID_SHARE)
-    mixed = ~hydrodynamic & ~boundary
-    return {"boundary": float(boundary.mean()), "mixed": float(mixed.mean()), "hydrodynamic": float(hydrodynamic.mean())}
+    """Return the part of the samples in each regime, by the contact's share of their load and of their friction."""
+    found = regime_numbers(1 - share, dry)
+    return {name: float((found == number).mean()) for number, name in enumerate(REGIMES)}
 
 
 def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:
