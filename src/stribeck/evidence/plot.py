@@ -13,8 +13,8 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
-from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS, picture
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
+from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS, blank_figure, picture
+from stribeck.files.writing import PathLike, atomic_write
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -125,17 +125,11 @@ def _in_rows(panels: Sequence[Any]) -> list[list[Any]]:
 
 def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figure, list[list[Axes]]]:
     """Return an empty figure with headline, and its panels."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("a picture", "plot", "matplotlib") from None
     low = SCALED if mapped else LEGEND
     # Narrower pictures have no room for the legend.
     panel, height = PANEL[0] if columns == COLUMNS else WIDER, PANEL[1] * rows + HEAD + low
     width = panel * max(columns, 2) + 0.3
-    figure = Figure(figsize=(width, height), dpi=100, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = blank_figure(width, height, dpi=100, layout="constrained")
     engine: Any = figure.get_layout_engine()
     engine.set(rect=(0.005, low / height, 0.99, 1 - (HEAD + low) / height), w_pad=0.05, h_pad=0.05, wspace=0.02, hspace=0.03)
     figure.text(0.12 / width, 1 - 0.12 / height, title, size=13, weight="bold", color=INK, va="top", parse_math=False)

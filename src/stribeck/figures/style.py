@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS, blank_figure
 
 if TYPE_CHECKING:
     import xarray
@@ -47,7 +46,6 @@ DASHED: Any = (0, (5, 2.5))
 DOTTED: Any = (0, (1.2, 1.6))
 """Dashes of lines that formulas give; states of the solver are full lines or dots."""
 
-DPI = 150
 LINE = 0.17
 """Height of a line of the foot [inch]."""
 
@@ -75,16 +73,10 @@ def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
     MissingExtraError
         If matplotlib is not installed.
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("a picture", "plot", "matplotlib") from None
     foot = _foot(data, int(LETTERS_PER_INCH * (width - 0.3)))
     head, low = 0.45, LINE * len(foot) + 0.22
     whole = height + head + low
-    figure = Figure(figsize=(width, whole), dpi=DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = blank_figure(width, whole, layout="constrained")
     engine: Any = figure.get_layout_engine()
     engine.set(rect=(0.005, low / whole, 0.99, height / whole), w_pad=0.06, h_pad=0.06, wspace=0.03, hspace=0.04)
     headline = f"Figure {data.attrs['figure']}: {data.attrs['title']}"

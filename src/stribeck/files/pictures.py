@@ -63,6 +63,20 @@ def picture(also: str = "") -> Callable[[Draws], Draws]:
     return say
 
 
+def blank_figure(width: float, height: float, dpi: float = 150, **options: Any) -> Figure:
+    """Return a white figure of a size in inches with nothing on it, which can be written without a display."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("a picture", "plot", "matplotlib") from None
+    except ValueError as problem:  # of the environment variable MPLBACKEND, or of a file of settings
+        raise InputError(f"matplotlib cannot be loaded ({' '.join(str(problem).split())}).") from None
+    figure = Figure(figsize=(width, height), dpi=dpi, facecolor="white", **options)
+    FigureCanvasAgg(figure)
+    return figure
+
+
 def new_figure(
     size: tuple[float, float],
     footer: Sequence[tuple[str, str]],
@@ -81,17 +95,9 @@ def new_figure(
     """
     if ax is not None:
         return figure_of(ax), [ax]
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("a picture", "plot", "matplotlib") from None
-    except ValueError as problem:  # of the environment variable MPLBACKEND, or of a file of settings
-        raise InputError(f"matplotlib cannot be loaded ({' '.join(str(problem).split())}).") from None
     width, height = size
     height += LINE * len(footer) + LEGEND
-    figure = Figure(figsize=(width, height), dpi=150, facecolor="white")
-    FigureCanvasAgg(figure)
+    figure = blank_figure(width, height)
     low = (LINE * len(footer) + LEGEND + 0.72) / height
     high = 1 - top / height
     grid = figure.add_gridspec(

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ParamSpec, TypeVar
 
-from stribeck.quantities.keywords import with_nearest
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, to_si
 
 __all__ = [
@@ -503,15 +503,13 @@ def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
 
 def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
     """Return the function such that an argument under one of the :data:`FORMER` names is refused with the present name."""
+    answered = answers_typos(function)
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
         for old in FORMER.keys() & kwargs.keys():
             raise InputError(f"{old} = {show(kwargs[old])}: this input is called {FORMER[old]}; write {FORMER[old]} = ...")
-        try:
-            return function(*args, **kwargs)
-        except TypeError as problem:
-            raise with_nearest(problem, function) from None
+        return answered(*args, **kwargs)
 
     return checked
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure, picture
-from stribeck.files.writing import MissingExtraError, PathLike
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, blank_figure, figure_of, finish_figure, picture
+from stribeck.files.writing import PathLike
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.surfaces.analysis import Surface
 
@@ -45,11 +45,7 @@ def plot_surface(
         figure = figure_of(ax)
         _draw_heights(figure, ax, surface)
         return finish_figure(figure, path, force)
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("a picture", "plot", "matplotlib") from None
-    figure = Figure(figsize=(14.0, 5.2), dpi=130, facecolor="white")
+    figure = blank_figure(14.0, 5.2, dpi=130)
     heights, spectrum, law = figure.subplots(1, 3)
     figure.subplots_adjust(left=0.055, right=0.95, top=0.86, bottom=0.27, wspace=0.42)
     figure.suptitle(title or surface.topography.source or "Surface", x=0.055, ha="left", size=13, color=INK)
