@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
+from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.law import largest_load
 from stribeck.contact_laws.scaled import BlendedLaw, ScaledLaw, ShiftedLaw
@@ -51,6 +52,22 @@ def shape(request):
 
 
 # --- derivatives ---
+
+
+@pytest.mark.quick
+def test_laws_of_formulas_are_told_from_laws_with_kinks():
+    misfits = {name: misfit(law) for name, law in laws().items()}
+    assert misfits.pop("table") > 1e-5
+    assert max(misfits.values()) < 3e-8
+    for place in (0.0123, 0.31, 2.3, 17.3):
+
+        def kinked(s, place=place):
+            return -s - 1e-3 * np.maximum(np.log(s / place), 0.0)
+
+        def slope(s, place=place):
+            return -1 - 1e-3 * (s > place) / s
+
+        assert misfit(sb.FunctionLaw(kinked, slope)) > 1e-6, place
 
 
 @pytest.mark.quick

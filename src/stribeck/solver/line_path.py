@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
@@ -77,6 +78,9 @@ BETWEEN_MESHES = 0.2
 UNSEEN = 2.0
 """Stated error over the largest of three corrections with the Jacobian of a neighbour, for what they do not see."""
 
+LAW_PART = 0.03
+"""Difference of a contact law from the polynomials of its series, over the tolerance, up to which these are not checked."""
+
 BY_CHANCE = 0.25
 """Smallest error of an observable near a state, over the largest error of that state: a single one may pass through zero."""
 
@@ -141,8 +145,9 @@ class LineProblem:
         self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
-        self.exact = self.analytic and is_exponential(start.law)
-        orders = EXACT_ORDER if self.exact else ORDER
+        exact = self.analytic and is_exponential(start.law)
+        orders = EXACT_ORDER if exact else ORDER
+        self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= LAW_PART * rtol)
         self.order_if_sampled = ORDER_OF_CUSPS if fall_of(film, 1.0).broken else ORDER_OF_ANY_FILM
         self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
@@ -355,10 +360,10 @@ class LineProblem:
         return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return the largest difference between ``values()`` and states corrected at ``parts``, for non-analytic laws."""
+        """Return the largest difference between ``values()`` and states corrected at ``parts``, where a law is not smooth."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
-        if self.exact or not self.moves or not _alike(left, right):
+        if self.certain or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
         corrected = self._corrected(left, right, parts)
