@@ -18,7 +18,9 @@ from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
+from stribeck.solver.cold_start import first_path
 from stribeck.solver.corrector import Corrector
+from stribeck.solver.models.towards import _along
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import solved_point
 
@@ -202,6 +204,14 @@ def test_an_exit_that_moves_through_the_contact_is_predicted_with_the_contact_wh
     states = marched(np.geomspace(5e-5, 1e-5, 8))
     assert abs(states[-1].state.exit - states[0].state.exit) > 0.1
     assert max(point.state.prediction_error for point in states[4:]) < 0.05
+
+
+def test_an_exit_that_crosses_a_sharp_edge_of_the_contact_is_followed():
+    """The edge is narrower than what counted as near: 25 states where 7 serve; a fluid that thins was lost."""
+    groups = with_parts(sb.Groups(1e-7, 0.1, 1e-6), cavitation="exit")
+    path = _along(groups, replace(groups, speed=1e-8), first_path(groups).states[-1])
+    assert path.outcome.ok
+    assert len(path.states) < 12
 
 
 def test_neighbours_with_an_exit_share_meshes_where_the_contact_is_resolved():

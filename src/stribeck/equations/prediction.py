@@ -23,7 +23,8 @@ LARGEST_AMPLIFICATION = 40.0
 
 FAR_APART = 0.02
 """Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
-frame: the edge of a contact of asperities stays where it is while the exit moves through it."""
+frame: the edge of a contact of asperities stays where it is while the exit moves through it.  In thin films, whose edges are
+sharp, it is the width of an edge, the smallest gap to the power 2/3."""
 
 SHARPNESS = 6.0
 """Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
@@ -58,7 +59,8 @@ class Extrapolation:
     def _in_place(self) -> bool:
         """Whether gaps are extrapolated at fixed places of the contact."""
         exits = [s.exit for s in self.states]
-        return self.restart == math.inf and max(exits) - min(exits) > FAR_APART
+        edge = float(self.states[-1].gap.min()) ** (2 / 3)
+        return self.restart == math.inf and max(exits) - min(exits) > min(FAR_APART, edge)
 
     @cached_property
     def _moved(self) -> Array | None:
