@@ -258,13 +258,13 @@ def farther_panels(speed: float, model: Model) -> int:
     return int(np.clip(math.ceil(needed), 0, MOST_FARTHER))
 
 
-def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
-    """Return whether the panels of a neighbour serve a state."""
+def fits(found: Resolution, speed: float, law: ContactLaw, least: float = -0.4) -> bool:
+    """Return whether the panels of a neighbour serve a state, the smallest being at most ``2**-least`` of it too wide."""
     width, scale = layout(speed, law, found.model)
     excess = math.log2(width) + found.halvings
     if not 0 <= found.farther - farther_panels(speed, found.model) <= 2:
         return False
-    return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
+    return least <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
 
 
 def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:

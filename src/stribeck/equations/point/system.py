@@ -227,6 +227,7 @@ class Linear:
         mobility, by_gap, carried_by_gap = self.film.rim
         x, part = mesh.rim, np.pi / mesh.modes
         slope = equations.rim_slope(y.fluid[:, -1], y.offset)
+        self.rates_at_rim = equations.rim_rates(y.offset)
         self.rim_of_pressure = -part * x * mobility
         self.rim_of_gap = part * x * (speed * np.cos(mesh.angles) * carried_by_gap - by_gap * slope)
         self.rim_of_offset = self.rim_of_pressure * equations.rim_slope_by_offset(y.fluid[:, -1], y.offset)
@@ -245,8 +246,7 @@ class Linear:
             radial += film.crossed * mesh.scattered(in_angle)
             angular += mesh.gathered(film.crossed * in_radius)
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
-        rates_at_rim = self.equations.rim_rates(self.y.offset)
-        found[:, -1] += self.rim_of_pressure * (rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]
+        found[:, -1] += self.rim_of_pressure * (self.rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]
         return found
 
     def changes(self, x: Array, shape: Array | float = 0.0) -> Unknowns:

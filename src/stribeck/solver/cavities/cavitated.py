@@ -40,9 +40,10 @@ two higher: on many angles the nodes of the radius leave most of the error."""
 ROUGH_FRICTION = 10.0
 """Stated error of friction over the tolerance above which the first of these do not serve: it falls slower than others."""
 
-WASTE, WASTE_ANEW = 0.25, 0.4
+WASTE, WASTE_ANEW, REGULAR = 0.25, 0.4, 30
 """Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
-needs other meshes anyway, when it may move to the first."""
+needs other meshes anyway, when it may move to the first, or if that pair has this many angles, with which errors fall
+regularly."""
 
 COMPANY, FRONT = 0.6, 0.04
 """Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
@@ -55,14 +56,20 @@ NO_GAIN, WIDE = 0.7, 0.2
 """Error over that on fewer angles from which panels are halved that the line of rupture crosses in the contact, as it lies
 too far between their nodes; and the width from which they are [a]."""
 
+TORN_AHEAD, COARSER = 0.5, -1.0
+"""Speed over that of the state for which panels are made along a path to slower ones, where they have to be made anew; and the
+binary logarithm of the width of the smallest panel, over the one for the state, down to which they go on serving: between the
+nodes the line of rupture leaves more of the error."""
+
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
 
 FROM_FAR = 80
 """Steps for a state on other meshes than its neighbour's, or from cold; heavy loads took up to 43."""
 
-TOLERANCE = 1e-6
-"""Relative error of the gap that an iteration may leave: a hundredth of the smallest tolerance."""
+TOLERANCE, ROUGH = 1e-6, 1e-5
+"""Relative error of the gap that an iteration may leave, a hundredth of the smallest tolerance; and on the coarser of two
+meshes, which tells the error of the finer."""
 
 
 def pair_of(coarse: Level, fine: Level) -> Pair:
@@ -77,7 +84,10 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     parts = (
         dict.fromkeys(values, part) | dict.fromkeys(LOOSE_WHERE_TORN, loose) | dict.fromkeys(WITHOUT_TOLERANCE, 2.0 * loose)
     )
-    errors = {n: parts[n] * abs(value - rough[n]) + fine.iterated.left * scales[n] for n, value in values.items()}
+    errors = {
+        n: parts[n] * (abs(value - rough[n]) + coarse.iterated.left * scales[n]) + fine.iterated.left * scales[n]
+        for n, value in values.items()
+    }
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
@@ -186,7 +196,7 @@ def _pair(
 ) -> Pair | Outcome:
     """Return a state on two meshes of a resolution, with few and with many angles, or the outcome of the failure."""
     few, many, degree = rung
-    coarse = solve_level(replace(base, modes=few, degree=degree), speed, law, start, mesh, TOLERANCE, max_steps=FROM_FAR)
+    coarse = solve_level(replace(base, modes=few, degree=degree), speed, law, start, mesh, ROUGH, max_steps=FROM_FAR)
     if not coarse.outcome.ok:
         return coarse.outcome
     finer = replace(base, modes=many, degree=degree + 2)
@@ -208,17 +218,19 @@ def follow_cavitated(
     def predicted(name: str, mesh: PolarMesh) -> Unknowns:
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
-    serves, rung = fits(now, speed, law), _rung(neighbour)
-    part, lowest = (WASTE, 1) if serves else (WASTE_ANEW, _first_rung(rtol, now.model))
-    is_waste = rung > lowest and _within(neighbour, part * rtol, LADDER[rung - 1][1])
+    ahead = TORN_AHEAD * speed if speed < neighbour.fine.equations.speed else speed
+    serves, rung = fits(now, speed, law, COARSER), _rung(neighbour)
+    lowest, fewer = 1 if serves else _first_rung(rtol, now.model), LADDER[rung - 1][1]
+    part = WASTE if serves and fewer < REGULAR else WASTE_ANEW
+    is_waste = rung > lowest and _within(neighbour, part * rtol, fewer)
     if not serves or is_waste:
         fine = neighbour.fine
-        base = now if serves else _base(speed, law, fine, now.model)
+        base = now if fits(now, ahead, law) else _base(ahead, law, fine, now.model)
         start = predicted("fine", fine.mesh) if line else fine.unknowns
         found = _pair(base, LADDER[rung - is_waste], speed, law, start, fine.mesh)
         return found if isinstance(found, Pair) else None
     levels: list[Level] = []
-    for name in ("coarse", "fine"):
+    for name, tolerance in (("coarse", ROUGH), ("fine", TOLERANCE)):
         old: Level = getattr(neighbour, name)
         guess = old.unknowns
         if line:
@@ -226,7 +238,7 @@ def follow_cavitated(
         elif levels:
             guess = _carried(levels[0], neighbour)
         kept = old.iterated.preconditioner
-        level = solve_level(old.resolution, speed, law, guess, old.mesh, TOLERANCE, kept, max_steps=15)
+        level = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, kept, max_steps=15)
         if not level.outcome.ok:
             return None
         levels.append(level)
