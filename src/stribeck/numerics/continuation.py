@@ -8,7 +8,7 @@ corrector).
 """
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
@@ -46,8 +46,6 @@ class Path(Generic[S]):
         The accepted states.
     outcome : Outcome
         CONVERGED at the end asked for, PATH_LOST, INTERRUPTED, or that of the first state if this failed.
-    failures : int
-        Corrections that failed on the way.
     failure : state or None
         The last state that failed; where the path was lost, its outcome says why.
     """
@@ -55,7 +53,6 @@ class Path(Generic[S]):
     coordinates: tuple[float, ...]
     states: tuple[S, ...]
     outcome: Outcome
-    failures: int
     failure: S | None
 
     def at(self, coordinate: float) -> S:
@@ -119,7 +116,6 @@ def march(
     *,
     targets: Iterable[float] | None = None,
     history: Sequence[tuple[float, S]] = (),
-    accept: Collection[Outcome] = (Outcome.CONVERGED,),
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
     """Follow states from one coordinate to another in steps that adapt to the effort of the corrector.
@@ -138,8 +134,6 @@ def march(
         Coordinates between the ends to be met exactly, besides the ends.
     history : sequence of (float, state), optional
         Points already known, the last of them at ``start``, which is then not solved again.
-    accept : collection of Outcome, optional
-        Outcomes with which a state counts as a point of the path.
     on_point : callable, optional
         ``on_point(s, state)`` is called after each accepted point, for progress.
 
@@ -168,17 +162,17 @@ def march(
         raise ValueError(f"targets reach from {ahead[0]!r} to {ahead[-1]!r}; they must lie in {start!r}..{stop!r}")
 
     points = list(history)
-    failures, failure = 0, None
+    failure: S | None = None
     length, may_grow = steps.first, True
 
     def path(outcome: Outcome) -> Path[S]:
-        return Path(tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failures, failure)
+        return Path(tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failure)
 
     try:
         if not points:
             state = correct(start, [])
-            if state is None or state.outcome not in accept:
-                failures, failure = 1, state
+            if state is None or not state.outcome.ok:
+                failure = state
                 return path(Outcome.PATH_LOST if state is None else state.outcome)
             points.append((start, state))
             if on_point is not None:
@@ -190,8 +184,8 @@ def march(
             step = left if left <= length else min(length, 0.5 * left)
             s = target if step == left else here + sign * step
             state = correct(s, points[-steps.order - 1 :]) if s != here else None
-            if state is None or state.outcome not in accept:
-                failures, failure = failures + 1, failure if state is None else state
+            if state is None or not state.outcome.ok:
+                failure = failure if state is None else state
                 length, may_grow = 0.5 * step, False
                 if length < steps.shortest:
                     return path(Outcome.PATH_LOST)

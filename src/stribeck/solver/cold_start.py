@@ -175,7 +175,7 @@ def cold_start(groups: Groups) -> Path[State]:
     if 0.0 < top < RIGID_REACH:
         direct = correct(0.0, ())
         if direct is not None and direct.outcome.ok:
-            return Path((0.0,), (direct,), Outcome.CONVERGED, 0, None)
+            return Path((0.0,), (direct,), Outcome.CONVERGED, None)
     first = correct(top, ())
     known = [] if first is None or not first.outcome.ok else [(top, first)]
     return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3), history=known)
