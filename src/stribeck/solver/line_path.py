@@ -206,6 +206,10 @@ class LineProblem:
             refined = self.corrector.solve(guess, groups, SPREAD * spread)
         else:
             refined = self.corrector.cold(groups)
+        return self._accepted(s, refined, near)
+
+    def _accepted(self, s: float, refined: RefinedState | None, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expansion of a state whose error is within the tolerance, else its outcome."""
         if refined is None:
             return Outcome.PATH_LOST
         if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:

@@ -81,14 +81,9 @@ class ReformingLine(LineProblem):
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``."""
         refined = self._solved(s, near)
-        if refined is None:
-            return Outcome.PATH_LOST
-        if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
-            self.failure = refined
-            return refined.outcome
-        self.order = ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
-        found = replace(refined, outcome=Outcome.CONVERGED)
-        return self._expanded(s, found, min((one.radius for one in near), default=2.0))
+        if refined is not None and refined.state is not None:
+            self.order = ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
+        return self._accepted(s, refined, near)
 
     def _solved(self, s: float, near: Sequence[Expansion]) -> RefinedState | None:
         """Return the state at ``s``, from the nearest of others if that has a cavity."""
