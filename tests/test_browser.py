@@ -190,8 +190,8 @@ def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
     box = page.locator(".chart-plane").bounding_box()
     for step in (0, 1):
         page.mouse.move(box["x"] + 50 + 147 + step, box["y"] + 8 + 147)
-    page.wait_for_function("document.querySelector('.chart-plane').innerText.includes('film')")
-    under = page.locator(".chart-plane").inner_text().split()
+    page.wait_for_function("document.querySelector('.chart-plane .tip').innerText.includes('film')")
+    under = page.locator(".chart-plane .tip").inner_text().split()
     micrometres = float(under[1]) * {"nm": 1e-3, "µm": 1.0}[under[2]]
     assert micrometres == pytest.approx(1e6 * solution.central_gap * now.contact.hertz.indentation, rel=0.02)
     assert page.locator("[data-row=load] select").input_value() == "mN"
@@ -243,6 +243,7 @@ def test_dragging_a_slider_follows_the_hand(open_page):
 
 def test_a_bad_value_is_marked_with_its_sentence_and_the_picture_stays(open_page):
     page = open_page()
+    page.wait_for_function(f"({CHART})('friction').series.length > 0")
     before, picture = page.evaluate(NUMBERS), page.evaluate(CHART, "friction")["series"]
     field(page, "load").fill("-3")
     field(page, "load").press("Enter")
