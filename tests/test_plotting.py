@@ -111,6 +111,11 @@ def test_the_upper_axis_turns_hersey_numbers_into_speeds(curve):
     [upper] = figure.axes[0].child_axes
     np.testing.assert_allclose(upper.get_xlim(), curve.values[[0, -1]], rtol=1e-12)
     assert upper.get_xlabel() == "sliding speed $U$ (m/s)"
+    ball = sb.load_case(PDMS.with_name("rubber_ball.toml")).contact
+    drawn = plot_curve(sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3)).axes[0]
+    assert drawn.get_xlabel() == "Hersey number $ηUR/F_N$"
+    drawn.figure.canvas.draw()
+    np.testing.assert_allclose(drawn.child_axes[0].get_xlim(), (0.05, 0.2), rtol=1e-12)
 
 
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):

@@ -58,6 +58,8 @@ class FrictionRule(NamedTuple):
         ``hersey(contact)`` is the speed at the Hersey number one [m/s].
     hersey_exponents : dict of str to float
         Exponents of the inputs in it.
+    hersey_symbol : str
+        The Hersey number in symbols.
     """
 
     inputs: Mapping[str, Callable[[Contact | None], float]]
@@ -69,6 +71,7 @@ class FrictionRule(NamedTuple):
     rubbing: Callable[[Groups, Values], Any]
     hersey: Callable[[Contact], float]
     hersey_exponents: Mapping[str, float]
+    hersey_symbol: str
 
     def of_contact(self, contact: Contact | None) -> dict[str, float]:
         """Return the inputs of a contact; of none, those of groups alone."""
@@ -169,6 +172,7 @@ RULES: dict[Geometry, FrictionRule] = {
         rubbing=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
         hersey=lambda each: each.load / each.viscosity,
         hersey_exponents={"load": 1.0, "viscosity": -1.0},
+        hersey_symbol="ηU/F_N",
     ),
     "point": FrictionRule(
         inputs={
@@ -184,6 +188,7 @@ RULES: dict[Geometry, FrictionRule] = {
         rubbing=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
         hersey=lambda each: each.load / each.viscosity / each.radius,
         hersey_exponents={"load": 1.0, "viscosity": -1.0, "radius": -1.0},
+        hersey_symbol="ηUR/F_N",
     ),
 }
 """The rules by geometry."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import input_texts
+from stribeck.contacts.friction_rules import RULES
 from stribeck.files.pictures import (
     CONTACT,
     FLUID,
@@ -93,7 +94,7 @@ def plot_curve(
     for axes in (left, right):
         axes.set_ylabel(r"friction coefficient $\mu$")
     if by_speed and curve.contact is not None:
-        per_hersey = curve.contact.load / curve.contact.viscosity
+        per_hersey = RULES[curve.groups.geometry].hersey(curve.contact)
 
         def speed(hersey: Any) -> Any:
             return hersey * per_hersey
@@ -131,7 +132,7 @@ def plot_curve(
 def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     """Return the first panel's abscissa and its label."""
     if curve.over == "speed":
-        return curve.hersey_number, r"Hersey number $\eta U/F_N$"
+        return curve.hersey_number, f"Hersey number ${RULES[curve.groups.geometry].hersey_symbol}$"
     return curve.values, _abscissa_of_values(curve)
 
 

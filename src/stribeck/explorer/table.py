@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from html import escape
 
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import regime_of
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
@@ -19,8 +20,6 @@ from stribeck.solver.base_solution import BaseSolution
 __all__ = ["Row", "comparison_html", "margins_html", "numbers", "numbers_html"]
 
 MOST_DIGITS = 4
-
-HERSEY = {"line": "Hersey number ηU/F<sub>N</sub>", "point": "Hersey number ηUR/F<sub>N</sub>"}
 
 
 @dataclass(frozen=True)
@@ -86,7 +85,8 @@ def numbers(answer: Answer) -> list[Row]:
     rows.append(
         _row("lambda_ratio", "Lambda ratio h<sub>min</sub>/h<sub>rms</sub>", ratio, abs(ratio) * film_errors["minimum_gap"])
     )
-    rows.append(_row("hersey_number", HERSEY[contact.INPUTS.geometry], contact.hersey_number, 0.0))
+    symbol = RULES[contact.groups.geometry].hersey_symbol.replace("F_N", "F<sub>N</sub>")
+    rows.append(_row("hersey_number", f"Hersey number {symbol}", contact.hersey_number, 0.0))
     rows += _transition_rows(answer)
     return rows
 

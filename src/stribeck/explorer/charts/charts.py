@@ -9,6 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.answer import Answer, round_down, round_up
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
 from stribeck.explorer.charts.parts import Options, chart, line, linear_axis, log_axis, marker, pairs, points
@@ -68,7 +69,7 @@ def friction_chart(
     """Return friction over the speed or the Hersey number, with the present point, pins and measured curves."""
     inputs, curve = answer.inputs, answer.curve
     contact = inputs.contact
-    hersey = hersey_scale(contact)
+    hersey, symbol = hersey_scale(contact), RULES[contact.groups.geometry].hersey_symbol.replace("_N", "")
     scale = 1.0 if inputs.abscissa == "speed" else hersey
     ends = axis_of(answer, measured)
     ends = ends[0] * scale, ends[1] * scale
@@ -109,7 +110,7 @@ def friction_chart(
         x = np.full(2, minimum.speed * scale)
         series.append(line("minimum", "minimum friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
     series.append(marker(contact.speed * scale if contact.speed > 0 else ends[0], friction, palette))
-    abscissa = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
+    abscissa = "sliding speed U (m/s)" if inputs.abscissa == "speed" else f"Hersey number {symbol} (–)"
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
     listed += [each["name"] for each in series if each["id"].startswith(("pin", "measured", "minimum"))]
     return chart(palette, log_axis(abscissa, *ends), log_axis("friction coefficient µ", low, high), series, listed)

@@ -61,12 +61,13 @@ def figure_of(shown: View, what: str) -> Any:
         )
     figure = found.plot()
     axes = figure.axes[0]
+    added = []
     for i, (name, pinned, hersey) in enumerate(shown.pins):
         style: Any = {"color": LIGHT.pins[i % 6], "ls": (0, PIN_DASHES[i % 6])}
-        axes.plot(pinned.speed * hersey, pinned.friction[inputs.definition], lw=1.4, label=name, **style)
+        added += axes.plot(pinned.speed * hersey, pinned.friction[inputs.definition], lw=1.4, label=name, **style)
     for each in shown.measured:
         places = each.places(inputs.contact, "hersey") * hersey_scale(inputs.contact)
-        axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=LIGHT.ink, label=each.name)
-    if shown.pins or shown.measured:
-        axes.legend(frameon=False, fontsize=8)
+        added += axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=LIGHT.ink, label=each.name)
+    if added:  # the others are named below the picture
+        axes.legend(handles=added, frameon=False, fontsize=8)
     return figure
