@@ -107,11 +107,12 @@ const PAINT = {
     for (const [one, two] of data) brush.lineTo(x(one), y(two));
     brush.fill();
   },
-  text({ data, words, color }, { brush, x, y }) {
-    brush.fillStyle = color;
-    brush.font = `italic 12px ${FONT}`;
-    brush.textAlign = "center";
-    for (const [one, two] of data) brush.fillText(words, x(one), y(two));
+  text({ data, words, color }, { brush, x, y, box }) {
+    [brush.textAlign, brush.fillStyle, brush.font] = ["center", color, `italic 12px ${FONT}`];
+    const half = 0.5 * brush.measureText(words).width;
+    for (const [one, two] of data) {
+      if (x(one) - half >= box.left && x(one) + half <= box.left + box.width) brush.fillText(words, x(one), y(two));
+    }
   },
   line({ data, color, width, dash, opacity }, { brush, x, y }) {
     brush.globalAlpha = opacity ?? 1;
