@@ -3,6 +3,7 @@
 import importlib
 import json
 import math
+import pickle
 import re
 from dataclasses import replace
 from functools import partial
@@ -123,6 +124,12 @@ def test_the_fitted_friction_is_that_of_the_solver(fitted):
     assert fitted.friction[rows] == pytest.approx(solved, rel=1e-6)
     assert fitted.model_error < 1e-5
     assert fitted.solver_shift < 0.01
+
+
+def test_a_fit_survives_pickling_with_its_band(fitted):
+    again = pickle.loads(pickle.dumps(fitted))
+    assert again == fitted and again.data == fitted.data
+    np.testing.assert_allclose(again.band(0, [0.003, 0.03]), fitted.band(0, [0.003, 0.03]), rtol=1e-6)
 
 
 def test_order_of_rows_and_repeated_speeds_do_not_matter(tmp_path):

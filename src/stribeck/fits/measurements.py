@@ -22,7 +22,7 @@ from stribeck.files.text_table import MISSING, TextTable, header_words, is_calle
 from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.results import Shown
+from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, format_si, show, to_si
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measurements(Exported, Shown):
+class Measurements(Exported, Shown, ByValue):
     """Measured friction in SI units, each curve in order of increasing speed.
 
     Attributes

@@ -30,7 +30,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import IMAGINARY, RULES
+from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import STEP, check_solid, models_beside
 from stribeck.fits.measurements import Measurements
@@ -216,7 +216,6 @@ class FrictionModel:
 
     def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
-        self.rule = RULES[contact.groups.geometry]
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         groups = [each.groups for each in self.contacts]
         self.physics, self.model = [each.physics for each in groups], contact.groups.model
@@ -229,6 +228,11 @@ class FrictionModel:
         self.logs = self.logs_at(data.curve, data.values)
         still = np.zeros(len(self.free))
         self.moving = tuple(self._moving(curve, still) for curve in range(len(data.curves)))
+
+    @property
+    def rule(self) -> FrictionRule:
+        """What friction is made of, found by name, so that fits can be pickled."""
+        return RULES[self.contact.groups.geometry]
 
     def _moving(self, curve: int, theta: Array) -> tuple[int, ...]:
         """Return the free inputs on which the model of a curve depends at fixed groups."""

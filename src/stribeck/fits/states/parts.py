@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
 
-__all__ = ["FrictionParts", "ModelChange", "PartsOf"]
+__all__ = ["FrictionParts", "Made", "ModelChange", "PartsOf"]
 
 
 @dataclass(frozen=True)
@@ -61,3 +61,29 @@ class ModelChange(NamedTuple):
 
 PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
 """What gives the parts of the friction of states in a row, with their derivatives along changes of the model."""
+
+
+class Made:
+    """What gives the parts, made anew where it is unpickled: what it keeps of solved states stays behind.
+
+    Parameters
+    ----------
+    make : callable
+        ``make(*of, **here)`` returns what gives them.
+    *of
+        Its arguments.
+    **here
+        Those that are not pickled, such as what reports progress.
+    """
+
+    def __init__(self, make: Callable[..., PartsOf], *of: Any, **here: Any) -> None:
+        self.recipe = (make, *of)
+        self.parts_of = make(*of, **here)
+
+    def __call__(self, groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        """Return the parts."""
+        return self.parts_of(groups, changes)
+
+    def __reduce__(self) -> tuple[type[Made], tuple[Any, ...]]:
+        """Return how to make it."""
+        return Made, self.recipe

@@ -16,7 +16,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.fits.states.balls import OnState, curve_parts, kept_balls, lattice_parts
 from stribeck.fits.states.between import Between
 from stribeck.fits.states.cylinders import kept_parts, solved_parts
-from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
+from stribeck.fits.states.parts import FrictionParts, Made, ModelChange, PartsOf
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -106,20 +106,21 @@ def between(solve: PartsOf) -> Ways:
 
 def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     if in_atlas(model):
-        solved = solved_parts(definition, rtol)
-        return Ways(atlas_or(solved, definition), solved)
-    return between(kept_parts(definition, rtol))
+        solved = Made(solved_parts, definition, rtol)
+        return Ways(Made(atlas_or, solved, definition), solved)
+    return between(Made(kept_parts, definition, rtol))
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
-        kept = kept_balls(model, definition, max(rtol, BALL_RTOL), on_state)
+        kept = Made(kept_balls, model, definition, max(rtol, BALL_RTOL), on_state=on_state)
         if in_atlas(model):
-            return Ways(atlas_or(kept, definition), kept)
+            return Ways(Made(atlas_or, kept, definition), kept)
         return between(kept)
     logs, varies = model.start()
-    lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
-    return Ways(atlas_or(lattice, definition) if in_atlas(model) else lattice, solved)
+    lattice = Made(lattice_parts, logs, varies, definition)
+    solved = Made(curve_parts, definition, max(rtol, BALL_RTOL))
+    return Ways(Made(atlas_or, lattice, definition) if in_atlas(model) else lattice, solved)
 
 
 WAYS: dict[str, Callable[[FrictionModel, Definition, float, OnState], Ways]] = {"line": _of_cylinder, "point": _of_ball}
