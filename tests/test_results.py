@@ -155,6 +155,10 @@ def test_a_quantity_of_pint_is_an_input():
         "roughness": 1 * unit.um,
     }
     assert CONTACT.replace(**given) == CONTACT
+    ends = sb.stribeck_curve(CONTACT, speed=(1 * unit.mm / unit.s, 2 * unit.mm / unit.s), points=2, rtol=1e-3).values
+    assert ends == pytest.approx([1e-3, 2e-3])
+    spreads = [sb.propagate(CONTACT, {"roughness": error})["friction"] for error in (0.1 * unit.um, "0.1 um")]
+    assert spreads[0] == spreads[1]
     for wrong, said in (
         (50 * unit.N, "is a force"),
         (unit.Quantity([1, 2], "N/m"), "is not a single real number"),
@@ -171,6 +175,8 @@ def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
     for package, name, meant in ((sb, "stribek_curve", "stribeck_curve"), (sb.fluids, "Carreu", "Carreau")):
         with pytest.raises(AttributeError, match=f"no attribute '{name}'; did you mean {meant}"):
             getattr(package, name)
+    with pytest.raises(KeyError, match="did you mean glycerol-water"):
+        sb.fluids.PRESETS["glycerine"]
 
 
 def test_the_words_of_the_regimes_command_are_there_in_python(capsys):

@@ -20,6 +20,7 @@ shear rate at which a liquid of them thins is that over its viscosity (rotation 
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -212,38 +213,47 @@ _SALIVA = (
     "donor and stimulation: measure yours"
 )
 
+
+class _Presets(dict[str, Preset]):
+    def __missing__(self, name: str) -> Preset:
+        near = difflib.get_close_matches(str(name), self, n=1, cutoff=0.5)
+        raise KeyError(f"{name}; did you mean {near[0]}?" if near else f"{name}; there are {', '.join(self)}")
+
+
 PRESETS: Mapping[str, Preset] = MappingProxyType(
-    {
-        "water": Preset("water", {"temperature": 25.0}, water, "Cheng 2008", "0 to 100 degC"),
-        "glycerol-water": Preset(
-            "glycerol in water",
-            {"weight_fraction": 0.5, "temperature": 25.0},
-            glycerol_water,
-            "Cheng 2008",
-            "0 to 100 degC, all fractions",
-        ),
-        "silicone-oil": Preset("silicone oil", {"grade": 100.0}, _silicone, _SILICONE, "5 to 1000 cSt at 25 degC"),
-        "pao-10": Preset(
-            "PAO 10 at 40 degC",
-            {},
-            _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_STRESS),
-            _OIL,
-            "40 degC, to 0.5 GPa",
-        ),
-        "xanthan": Preset(
-            "0.25 % xanthan in water",
-            {},
-            _fixed("0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN),
-            _XANTHAN,
-            "25 degC, 0.1 to 1000 1/s",
-        ),
-        "saliva": Preset(
-            "saliva, a model of",
-            {},
-            _fixed("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
-            _SALIVA,
-            "37 degC, 10 to 1e4 1/s",
-        ),
-    }
+    _Presets(
+        {
+            "water": Preset("water", {"temperature": 25.0}, water, "Cheng 2008", "0 to 100 degC"),
+            "glycerol-water": Preset(
+                "glycerol in water",
+                {"weight_fraction": 0.5, "temperature": 25.0},
+                glycerol_water,
+                "Cheng 2008",
+                "0 to 100 degC, all fractions",
+            ),
+            "silicone-oil": Preset("silicone oil", {"grade": 100.0}, _silicone, _SILICONE, "5 to 1000 cSt at 25 degC"),
+            "pao-10": Preset(
+                "PAO 10 at 40 degC",
+                {},
+                _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_STRESS),
+                _OIL,
+                "40 degC, to 0.5 GPa",
+            ),
+            "xanthan": Preset(
+                "0.25 % xanthan in water",
+                {},
+                _fixed("0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN),
+                _XANTHAN,
+                "25 degC, 0.1 to 1000 1/s",
+            ),
+            "saliva": Preset(
+                "saliva, a model of",
+                {},
+                _fixed("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
+                _SALIVA,
+                "37 degC, 10 to 1e4 1/s",
+            ),
+        }
+    )
 )
 """Liquids by name; ``PRESETS["glycerol-water"](weight_fraction=0.8, temperature="20 degC")`` is a :class:`Liquid`."""

@@ -55,7 +55,7 @@ def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | Non
             raise InputError(f"{name} = {show(dict(value))} must be a table of value and error, such as "
                              f"{{ value = {show(DIMENSIONS[dimension].example)}, error = '20 %' }}.")  # fmt: skip
         center, error = value["value"], value["error"]
-        if isinstance(error, str) and not error.strip().endswith("%"):
+        if not (isinstance(error, str) and error.strip().endswith("%")):
             error = _number(f"the error of {name}", error, dimension)
     else:
         parts = _TEXT.fullmatch(value)

@@ -182,7 +182,7 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
         value = getattr(contact, kept)
         if value == 0:
             raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")
-        if isinstance(error, str):
+        if isinstance(error, str) or hasattr(error, "magnitude"):
             relative = relative_error(name, value, error, contact.INPUTS.quantities[kept].dimension)
         elif isinstance(error, bool) or not isinstance(error, int | float) or not 0 < error < 3:
             raise InputError(f"the error of {name} = {show(error)} must be a number such as 0.2, which is 20 %, or text.")
