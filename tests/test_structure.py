@@ -8,6 +8,7 @@ import importlib.metadata
 import inspect
 import json
 import pydoc
+import re
 import subprocess
 import sys
 import textwrap
@@ -299,6 +300,12 @@ def test_the_examples_in_docstrings_are_right():
     results = [doctest.testmod(module) for module in modules]
     assert sum(result.failed for result in results) == 0
     assert sum(result.attempted for result in results) > 0
+
+
+def test_the_tests_that_docstrings_name_are_there():
+    tests = {path.name for path in Path(__file__).parent.glob("*.py")}
+    named = {name for path in FILES for name in re.findall(r"test_\w+\.py", path.read_text())}
+    assert len(named) > 5 and named <= tests, named - tests
 
 
 def test_the_public_names_exist_once_and_in_a_list():

@@ -51,7 +51,7 @@ def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, A
 
     Notes
     -----
-    Relative error about 1e-8 beyond that of the state (``test_sensitivity.py``).
+    Those of the friction are the differences of solved states within 1e-6 (``test_regimes.py``).
     """
     if changes or not state.equations.operators.is_article:
         return _of_any_film(state, changes)

@@ -121,7 +121,7 @@ def power_spectrum(
     Notes
     -----
     Reliable are wavelengths of at most 1/2.5 of the scan's shorter side, and at least 4 points and the resolution.
-    The sum of all modes is the mean square of the windowed heights to rounding (``test_surface_spectrum.py``).
+    The sum of all modes is the mean square of the windowed heights to rounding (``test_surfaces.py``).
     """
     if topography.missing:
         raise InputError(f"{topography.source}: {topography.missing} points are missing; fill them first with repaired().")
