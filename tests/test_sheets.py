@@ -70,7 +70,7 @@ def test_a_new_law_is_one_row_and_stands_in_new_cases_and_on_the_page(monkeypatc
     found = runpy.run_path(str(source / "explorer/asked/choices.py"))["CHOICES"]
     for name in ("carreau-yasuda", "cross", "honey", "roelands", "patir-cheng", "retardation_time", *LAWS):
         assert name in text, name
-    assert found["fluid"].options["carreau-yasuda"] == ("carreau-yasuda", (("relaxation_time",), ()))
+    assert found["fluid"].options["carreau-yasuda"] == ("carreau yasuda", (("relaxation_time",), ()))
     assert "honey" in found["preset"].options and list(found["law"].options) == list(LAWS)
 
 

@@ -107,8 +107,9 @@ def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tu
 def _dimensions(name: str, value: Any) -> int:
     """Return 0 for a number and 1 for a range; refuse ragged and nested lists, and anything that is not a number."""
     try:
-        # Not of quantities of pint, which NumPy does not take one by one.
-        found = np.ndim([getattr(each, "magnitude", each) for each in value] if isinstance(value, list | tuple) else value)
+        # Magnitudes of quantities of pint, which NumPy does not take one by one.
+        numbers: Any = [getattr(each, "magnitude", each) for each in value] if isinstance(value, list | tuple) else value
+        found = np.ndim(numbers)
     except ValueError:  # ragged lists
         found = 2
     if found > 1 or isinstance(value, dict | set):
