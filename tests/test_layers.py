@@ -280,3 +280,10 @@ def test_the_drag_of_rolling_on_a_layer_feels_it_beyond_its_thickness():
     """Panels that ended at the thickness left it wrong by 1.3e-5 at a stated 2e-7."""
     solution = sb.solve(sb.Groups(1e-4, 1e-7, 0.0), slide_to_roll=0.0, solid=sb.solids.Layer(5.0, 0.5))
     assert solution.viscous_published == pytest.approx(4.92389246e-07, rel=2e-7)
+
+
+def test_panels_under_a_thick_film_are_not_so_wide_that_the_layer_becomes_springs_where_its_bending_is_felt():
+    """Laid anew, one outgrew that width by a twentieth: all gaps were wrong by 1.4e-6 at a stated 2e-7."""
+    solid = sb.solids.Layer(16.739126165540785, 0.5)
+    solution = sb.solve(sb.Groups(296226.29272583034, 3.793775991587669e-08, 3.3693813845458964e-11), solid=solid)
+    assert solution.central_gap == pytest.approx(863.4582872, rel=2e-7)
