@@ -10,6 +10,7 @@ from test_film_exit import differences
 from test_fluid_states import film_of
 
 import stribeck as sb
+import stribeck.equations.state
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -97,7 +98,18 @@ def test_a_cavity_is_found_by_its_length_where_its_inlet_is_thin():
     )
     solution = sb.solve(groups, cavitation="reform", cavity_pressure=-0.0142, slide_to_roll=0.0, **parts)
     assert solution.mesh.size < 700
-    assert (solution.exit_position, solution.reformation_position) == pytest.approx((0.9949323601, 0.9969348894), abs=1e-8)
+    assert (solution.exit_position, solution.reformation_position) == pytest.approx((0.9946148713, 0.9966168722), abs=1e-8)
+
+
+@pytest.mark.parametrize("solid", [sb.solids.Layer(1.0, 0.3), sb.solids.StandardLinearSolid(0.3, 3.0)], ids=lambda s: s.name)
+def test_a_cavity_on_a_solid_with_a_length_does_not_know_the_frame_in_which_it_is_solved(monkeypatch, solid):
+    """The frame stretched the layer with the cavity: the film was wrong by 4 % at a stated 2e-7, in another frame by 4 %."""
+    found = []
+    for restart in (0.25, 0.3):
+        monkeypatch.setattr(stribeck.equations.state, "_cavity_on_mesh", lambda guess, restart=restart: restart)
+        parts = {"cavitation": "reform", "cavity_pressure": -0.02, "solid": solid}
+        found.append(sb.solve(sb.Groups(1e-2, 0.1, 1e-3), **parts).observables.array(in_article=False))
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-6)
 
 
 @pytest.mark.quick

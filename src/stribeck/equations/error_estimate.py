@@ -151,21 +151,25 @@ class FineOperators:
         found[own] = (tail.weights @ tail.interpolation(mesh.order)) * mesh.stretch[own]
         return found
 
-    def deflection(self, pressure: Array, operators: Operators) -> Array:
-        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh."""
+    def deflection(self, pressure: Array, operators: Operators, dilation: Array | None = None) -> Array:
+        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh.
+
+        In a frame that is dilated, over that and but for its logarithm.
+        """
         if operators.deflection_by_tail is not None and operators.tail is not None:
             own = slice(-self.mesh.order, None)
             density = (pressure[:, own] * self.mesh.stretch[own]) @ operators.tail.interpolation(self.mesh.order).T
             inner = pressure.copy()
             inner[:, own] = 0.0
-            return self._deflection(inner, operators) + density @ operators.deflection_by_tail.T
-        return self._deflection(pressure, operators)
+            return self._deflection(inner, operators, None) + density @ operators.deflection_by_tail.T
+        return self._deflection(pressure, operators, dilation)
 
-    def _deflection(self, pressure: Array, operators: Operators) -> Array:
+    def _deflection(self, pressure: Array, operators: Operators, dilation: Array | None) -> Array:
         density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
         lowered = self.lowered(pressure)
         highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
-        return lowered @ operators.deflection.T + highest.reshape(len(pressure), -1) @ self._of_highest.T
+        found = lowered @ operators.deflection.T if dilation is None else operators.by_kernel(lowered, dilation)
+        return found + highest.reshape(len(pressure), -1) @ self._of_highest.T
 
 
 @dataclass(frozen=True)
@@ -287,7 +291,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         unresolved = fluid + integrated - coarse.to_order(lowered * coarse.stretch, mesh.order) / mesh.stretch
         fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
     pressure = equations.law.pressure(gap) + unresolved
-    deflection = fine.deflection(pressure, op)
+    deflection = fine.deflection(pressure, op, d)
     residual = np.empty((1 + PATTERNS, *y.shape))
     parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
     weights = fine.weights(op)

@@ -313,7 +313,8 @@ class Equations:
         of_fluid = self.fluid_by_dilation(g, d, by_pressure)
         through_pressure = 0.0 if by_pressure is None else by_pressure * of_fluid
         found = np.empty(n + 4)
-        found[:n] = -self.positions(y) * op.mesh.nodes - op.deflection @ pressure - scaled.deflection @ of_fluid
+        by_kernel = op.by_kernel(pressure, d) + op.kernel(d, derivative=True) @ pressure
+        found[:n] = -self.positions(y) * op.mesh.nodes - by_kernel - scaled.deflection @ of_fluid
         found[:n] += (np.log(d) + 1) / np.pi * (op.weights @ pressure)
         found[n] = op.weights @ pressure + scaled.weights @ of_fluid
         first, _, second = op.ends

@@ -5,12 +5,14 @@ the dilation d is one.  A film that begins anew does so at the edge :attr:`Mesh.
 of the cavity in units of that edge.  All operators are those in xi; the deflection of the half-plane changes with d by
 
 .. math:: w(x) = d \, (D p)(\xi) - \frac{d \ln d}{\pi} \int p \, d\xi
+
+For a solid with lengths of its own, such as a layer, D itself changes with d.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -26,6 +28,11 @@ from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 
 LOAD = 0.5 * np.pi
 """Load in Hertz units: the integral of the pressure."""
+
+
+CELL, IN_CELL = 0.05, 4
+"""Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
+number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation."""
 
 
 class Dilated(NamedTuple):
@@ -170,9 +177,13 @@ class Operators:
             return Dilated(self.deflection, of, self.weights, self.load_of_gradient, self.ends)
         shift = d * math.log(d) / math.pi
         first, at_exit, second = self.ends
+        kernel = self.kernel(d)
+        of = None
+        if of_gradient:
+            of = self.deflection_of_gradient if kernel is self.deflection else self.integral.after(kernel)
         return Dilated(
-            d * self.deflection - shift * self.weights,
-            d * self.deflection_of_gradient - shift * self.load_of_gradient if of_gradient else None,
+            d * kernel - shift * self.weights,
+            None if of is None else d * of - shift * self.load_of_gradient,
             d * self.weights,
             d * self.load_of_gradient,
             (d * first, at_exit, d * second),
@@ -182,4 +193,43 @@ class Operators:
         """Return the deflection under rows of nodal pressure."""
         if d is None:
             return pressure @ self.deflection.T
-        return d * (pressure @ self.deflection.T) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]
+        return d * self.by_kernel(pressure, d) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]
+
+    def by_kernel(self, pressure: Array, d: Numbers) -> Array:
+        """Return D p in a frame dilated by d, for rows of pressure and as many dilations."""
+        if isinstance(self.model.solid, HalfPlane):
+            return np.asarray(pressure @ self.deflection.T)
+        dilations = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
+        found = np.empty((*pressure.shape[:-1], self.mesh.size))
+        for row in np.ndindex(dilations.shape):
+            found[row] = self.kernel(float(dilations[row])) @ pressure[row]
+        return found
+
+    def kernel(self, d: float, derivative: bool = False) -> Array:
+        """Return D in a frame dilated by d, or its derivative by the logarithm of d."""
+        if isinstance(self.model.solid, HalfPlane):
+            return np.zeros((1, self.mesh.size)) if derivative else self.deflection
+        cell = round(math.log(d) / CELL)
+        if cell not in self.kernels:
+            while len(self.kernels) > 1:  # Newton's iteration goes to and fro between two at most
+                del self.kernels[next(iter(self.kernels))]
+            self.kernels[cell] = np.stack([self._kernel_at(math.exp(CELL * (cell + t))) for t in _IN_CELL])
+        at = math.log(d) / CELL - cell
+        weights = _OF_CELL @ (np.arange(IN_CELL) * at ** np.maximum(np.arange(IN_CELL) - 1, 0) / CELL) if derivative else None
+        weights = _OF_CELL @ at ** np.arange(IN_CELL) if weights is None else weights
+        return np.asarray(np.tensordot(weights, self.kernels[cell], 1))
+
+    @cached_property
+    def kernels(self) -> dict[int, Array]:
+        """D at the dilations of a cell, by the number of the cell: the last two that were asked for."""
+        return {}
+
+    def _kernel_at(self, d: float) -> Array:
+        """Return D of that dilation: the deflection in x over d, but for the logarithm of d."""
+        mesh = replace(self.mesh, edges=d * self.mesh.edges, restart=d * self.mesh.restart)
+        return np.asarray(self.model.solid.deflection(mesh) / d + math.log(d) / math.pi * self.weights)
+
+
+_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(IN_CELL) + 0.5) / IN_CELL)
+_OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T
+"""Coefficients of the polynomial that is one at one of these dilations and zero at the others, a row for each."""

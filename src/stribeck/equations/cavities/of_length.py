@@ -35,6 +35,15 @@ class OfLength(Equations):
         """Return the pressure of the cavity, a column of stacked states."""
         return np.asarray(y[..., self.layout.dilation])
 
+    def admissible(self, y: Array, dy: Array) -> float:
+        """Return the longest fraction of a Newton step: no gap may double, as where the exit moves with the thin inlet.
+
+        The pressure of the cavity may change as it likes.
+        """
+        at, step = self.layout, dy.copy()
+        step[at.dilation] = 0.0
+        return min(super().admissible(y, step), 1.0 / max(1.0, float((dy[at.gap] / y[at.gap]).max())))
+
     def by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
         """Return the derivative of the residual with respect to that pressure."""
         op, scaled = self.operators, self.operators.dilated(d, of_gradient=False)
