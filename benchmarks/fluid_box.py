@@ -44,6 +44,9 @@ WRONG = 10.0
 OUTWARDS = 3
 """How often the reach of the panels is doubled for the true error."""
 
+FRAME = 0.9
+"""Length of a cavity on the mesh for the true error over that on the mesh of the state."""
+
 
 def draw(family: str, index: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]:
     """Return groups and parts of one random state; those of one index do not depend on the others."""
@@ -168,6 +171,8 @@ def true_errors(point: RefinedState) -> np.ndarray:
     out = edges[-1] * 2.0 ** np.arange(1, OUTWARDS + 1)
     below = edges[0] * 2.0 ** np.arange(1, OUTWARDS + 1)
     mesh = replace(coarse, edges=np.concatenate([below[::-1], edges, out]), order=coarse.order + 4)
+    if mesh.restart < math.inf:  # in another frame too
+        mesh = replace(mesh, edges=FRAME * mesh.edges, restart=FRAME * mesh.restart)
     fine = solve_state(state.groups, Operators(mesh, state.groups.model), state, 1e-11)
     if not fine.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {fine.outcome.value}")
