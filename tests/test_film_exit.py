@@ -240,3 +240,14 @@ def test_a_cavity_under_a_rigid_film_goes_with_the_square_root_of_the_speed():
         ends = np.array([state.exit_position, state.reformation_position])
         found.append([*ends / np.sqrt(state.central_gap), state.flux_gap / state.central_gap])
     assert found[0] == pytest.approx(found[1], rel=3e-4)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3])
+def test_what_the_gap_misses_at_the_exit_is_in_the_error_of_its_place(rtol):
+    """The nodes hold the exit to a 38th of what it is wrong by: most of it lies between them."""
+    groups = with_parts(sb.Groups(1e-5, 0.1, 1e-4), cavitation="exit")
+    coarse, exact = solved_point(groups, rtol), solved_point(groups, 1e-8)
+    at_exit = NAMES.index("exit_position")
+    wrong = abs(coarse.values.array(in_article=False)[at_exit] - exact.values.array(in_article=False)[at_exit])
+    assert 1e-6 < wrong < coarse.estimate.discretisation[at_exit] < 100 * wrong
