@@ -480,6 +480,7 @@ def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
         ("solid", "layer_thickness", "2 s", "thickness = '2 s' is a time"),
         ("solid", "layer_thickness", "", "layer_thickness is missing, which this choice needs; add layer_thickness = 2 mm."),
         ("solid", "poisson_ratio", "0.7", "poisson_ratio"),
+        ("solid", "poisson_ratio", "1e999", "1e999 is not a finite number"),
         ("law", "hurst", "3", "hurst"),
     ],
 )

@@ -155,7 +155,7 @@ class Prony(_Viscoelastic):
         if isinstance(times, str) or not hasattr(times, "__len__") or not hasattr(moduli, "__len__"):
             raise InputError(f"times = {show(times)} and moduli = {show(moduli)} must be lists, of the same length.")
         if not 0 < len(times) == len(moduli) <= MOST_TERMS:
-            raise InputError(f"times has {len(times)} and moduli {len(moduli)} ; give as many of both, 1 to {MOST_TERMS}.")
+            raise InputError(f"times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MOST_TERMS}.")
         tau = tuple(_positive("times", each) for each in times)
         g = tuple(to_si(each, "number", "moduli") for each in moduli)
         if min(g) <= 0 or len(set(tau)) < len(tau):

@@ -6,6 +6,7 @@ Each row is a table of a case and one of its keys; the keys of a choice come fro
 from __future__ import annotations
 
 import functools
+import math
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -354,9 +355,12 @@ def _text(value: Any) -> str:
 
 def _number(text: str) -> float | str:
     try:
-        return float(text)
+        found = float(text)
     except ValueError:
         return text
+    if not math.isfinite(found):
+        raise InputError(f"{text} is not a finite number; give one from 1e-300 to 1e300.")
+    return found
 
 
 def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
