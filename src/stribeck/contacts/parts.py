@@ -18,7 +18,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
-from stribeck.quantities.part_inputs import PART_INPUTS, part_value, with_part_value
+from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, part_value, with_part_value
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Solid
@@ -152,6 +152,12 @@ class WithParts(Contact):
 
     def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
         names = self._part_names
+        for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
+            row = PART_INPUTS[PART_LETTERS.get(name, name)]
+            raise InputError(
+                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law to "
+                f"the contact as {row.table}."
+            )
         parts: Parts = inputs.get("parts", DEFAULT)
         object.__setattr__(self, "parts", DEFAULT)
         super()._keep(law, {name: value for name, value in inputs.items() if name not in names and name != "parts"})

@@ -127,7 +127,7 @@ def as_fluid(fluid: Any) -> Fluid:
             return Fluid(density=fluid)
     raise InputError(
         f"fluid = {show(fluid)}; give a law of sb.fluids such as Carreau('1 ms', 0.5) or Barus('15 1/GPa'), or "
-        "Fluid(rheology, viscosity, density) for several."
+        "Fluid(rheology, viscosity, density) for several; liquids by name are in sb.fluids.PRESETS."
     )
 
 
