@@ -170,7 +170,7 @@ def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
             assert curve.solutions[k].central_gap == pytest.approx(single.central_gap, rel=1e-6)
 
 
-def test_a_film_that_the_fluid_thins_a_thousand_times_is_found_from_a_faster_one():
+def test_a_film_that_the_fluid_thins_a_thousand_times_is_found():
     """From the Newtonian film coarse meshes led to states that were none."""
     groups = sb.Groups(0.146405, 6.78481e-4, 1.41017e-8)
     state = sb.solve(groups, fluid=sb.fluids.Eyring(0.0301836), slide_to_roll=2.455293, cavitation="exit")

@@ -220,7 +220,8 @@ def start_by_exponential(groups: Groups) -> Path[State]:
         here = replace(groups, law=shape if part == 1.0 else BlendedLaw(shape, part))
         guess: Guess = extrapolate(history, part) if history else start.states[-1]
         try:
-            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+            # Halved, not laid anew: the many short steps of this way need meshes that hardly move.
+            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE, anew=False)
         except MeshTooLargeError:
             return None
         return solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
