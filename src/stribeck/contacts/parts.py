@@ -155,8 +155,8 @@ class WithParts(Contact):
         for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
             row = PART_INPUTS[PART_LETTERS.get(name, name)]
             raise InputError(
-                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law to "
-                f"the contact as {row.table}."
+                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
+                f"to the contact as {row.table}."
             )
         parts: Parts = inputs.get("parts", DEFAULT)
         object.__setattr__(self, "parts", DEFAULT)

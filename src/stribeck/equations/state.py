@@ -44,8 +44,8 @@ END_TAIL = 3.5e-4
 """Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
 
 FINEST_OF_LAYER = 4.5
-"""Half-width in thicknesses of a layer that panels have at most where bending is felt: laid anew they may be a third wider, and
-from 6 on the layer acts as springs alone."""
+"""Half-width in thicknesses of a layer that panels have at most where bending is felt: laid anew they may be a third wider,
+and from 6 on the layer acts as springs alone."""
 
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which pressures on a layer have no effect."""
