@@ -14,13 +14,14 @@ from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.of_length import solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
+from stribeck.equations.prediction import extrapolate
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.corrector import Corrector
-from stribeck.solver.models.towards import _along
+from stribeck.solver.models.towards import Work, _along
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import solved_point
 
@@ -209,7 +210,7 @@ def test_an_exit_that_moves_through_the_contact_is_predicted_with_the_contact_wh
 def test_an_exit_that_crosses_a_sharp_edge_of_the_contact_is_followed():
     """The edge is narrower than what counted as near: 25 states where 7 serve; a fluid that thins was lost."""
     groups = with_parts(sb.Groups(1e-7, 0.1, 1e-6), cavitation="exit")
-    path = _along(groups, replace(groups, speed=1e-8), first_path(groups).states[-1])
+    path = _along(groups, replace(groups, speed=1e-8), first_path(groups).states[-1], work=Work(1000.0))
     assert path.outcome.ok
     assert len(path.states) < 12
 
@@ -251,3 +252,14 @@ def test_what_the_gap_misses_at_the_exit_is_in_the_error_of_its_place(rtol):
     at_exit = NAMES.index("exit_position")
     wrong = abs(coarse.values.array(in_article=False)[at_exit] - exact.values.array(in_article=False)[at_exit])
     assert 1e-6 < wrong < coarse.estimate.discretisation[at_exit] < 100 * wrong
+
+
+def test_an_exit_that_moves_through_a_contact_leaves_the_edge_of_its_asperities_in_the_prediction():
+    states = []
+    for speed in (1.2e-9, 1.1e-9, 1.0e-9):
+        groups = with_parts(sb.Groups(speed, 0.02, 3.2e-7), cavitation="exit")
+        states.append(solved_point(groups, 1e-4).state)
+    *before, last = states
+    predicted = extrapolate([(np.log(state.groups.speed), state) for state in before], np.log(last.groups.speed))
+    assert before[0].exit - last.exit > 5e-3
+    assert np.abs(predicted.log_gap(last.mesh) - np.log(last.gap)).max() < 0.3  # 1.2 in the frame of the exit

@@ -26,6 +26,9 @@ FAR_APART = 0.02
 frame: the edge of a contact of asperities stays where it is while the exit moves through it.  In thin films, whose edges are
 sharp, it is the width of an edge, the smallest gap to the power 2/3."""
 
+STAYS = 0.2
+"""Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too."""
+
 SHARPNESS = 6.0
 """Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
 that minimum: half way, by ``tanh``."""
@@ -59,8 +62,17 @@ class Extrapolation:
     def _in_place(self) -> bool:
         """Whether gaps are extrapolated at fixed places of the contact."""
         exits = [s.exit for s in self.states]
-        edge = float(self.states[-1].gap.min()) ** (2 / 3)
-        return self.restart == math.inf and max(exits) - min(exits) > min(FAR_APART, edge)
+        before, last = self.states[-2:]
+        if not last.equations.operators.has_exit:
+            return False
+        if self.restart == math.inf and max(exits) - min(exits) > FAR_APART:
+            return True
+        x = last.mesh.nodes
+        in_frame, in_place = (
+            np.abs(before.fields(at)[0] - last.log_gap(last.mesh)).max()
+            for at in (self._in_frame(before, x), _at_place(last, before, x))
+        )
+        return bool(in_place < STAYS * in_frame)
 
     @cached_property
     def _moved(self) -> Array | None:
@@ -105,12 +117,11 @@ class Extrapolation:
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
-        if self._moved is not None:
+        if self._moved is not None or self._in_place or any(s.restart != self.restart for s in self.states):
             return np.asarray(self.fields(mesh.nodes)[0])
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
-            in_frame = s.restart == self.restart and not self._in_place
-            log_gap += w * (s.log_gap(mesh) if in_frame else self._seen(s, mesh.nodes)[0])
+            log_gap += w * s.log_gap(mesh)
         return log_gap
 
     def fields(self, x: Array) -> Array:
@@ -121,16 +132,19 @@ class Extrapolation:
             with_edge = 0.5 * (1 + np.tanh(SHARPNESS * ((x - middle) / distance - 0.5)))
             places = [x + moved * with_edge for moved in self._moved]
         for w, s, place in zip(self.weights, self.states, places, strict=True):
-            fields += w * self._seen(s, place)
-        if self._in_place:
-            fields[1, x > 0] = 0.0
+            fields += w * s.fields(self._in_frame(s, place))
+        if self._in_place:  # the pressure has kinks where the film ends and begins
+            fields[0] = sum(w * s.fields(_at_place(self, s, x))[0] for w, s in zip(self.weights, self.states, strict=True))
         return fields
 
-    def _seen(self, state: State, x: Array) -> Array:
-        """Return the fields of a state whose exit may lie elsewhere, or whose cavity may have another length on its mesh."""
-        if self._in_place:
-            return state.fields(x + (self.exit - state.exit))
-        return state.fields(x if state.restart == self.restart else x * (state.restart / self.restart))
+    def _in_frame(self, state: State, x: Array) -> Array:
+        """Return coordinates in the frame of a state whose cavity may have another length on its mesh."""
+        return x if state.restart == self.restart else x * (state.restart / self.restart)
+
+
+def _at_place(one: Guess, other: Guess, x: Array) -> Array:
+    """Return the coordinates in the frame of another film of the places in the contact that ``x`` are in the frame of one."""
+    return (one.exit + one.dilation * x - other.exit) / other.dilation
 
 
 def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:

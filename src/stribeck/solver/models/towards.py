@@ -27,7 +27,7 @@ from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.prediction import SeenFrom, extrapolate
+from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
 from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
@@ -78,6 +78,23 @@ MOST_WORK, UNIT_SIZE = 3000.0, 300.0
 
 WORK_FASTER = 1000.0
 """The same for the way by a faster film."""
+
+MOST_WORK_TO_END = 6000.0
+"""The same for all paths of loads together on which the film is to end."""
+
+
+@dataclass
+class Work:
+    """Newton steps of :data:`UNIT_SIZE` unknowns that may be taken, and those that were."""
+
+    most: float
+    spent: float = 0.0
+
+    @property
+    def is_done(self) -> bool:
+        """Whether no more may be taken."""
+        return self.spent >= self.most
+
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """What :func:`march` asks for a state."""
@@ -253,7 +270,10 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     yield _changed(groups, article, WAYS[:1])
     if groups.speed > 0 and groups.model.film != Newtonian():
         yield from (slowed for factor in FASTER if (slowed := _slowed(groups, article, factor)) is not None)
-    yield _changed(groups, article, WAYS[1:])
+    if groups.model.film != Newtonian() or not isinstance(
+        groups.model.solid, HalfPlane
+    ):  # else nothing is changed, by any way
+        yield _changed(groups, article, WAYS[1:])
 
 
 def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: float) -> Path[State] | None:
@@ -264,7 +284,7 @@ def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: fl
         return None
     begun = _changed(above, article, WAYS[:1], WORK_FASTER)
     first = settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
-    path = None if first is None else _along(above, groups, first, *SLOWED, WORK_FASTER)
+    path = None if first is None else _along(above, groups, first, *SLOWED, work=Work(WORK_FASTER))
     return path if path is not None and path.outcome.ok else None
 
 
@@ -297,11 +317,15 @@ def extended(path: Path[State], state: State) -> Path[State]:
 
 def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state from a guess, or None."""
-    try:
-        mesh = mesh_for(guess, groups, contact_law(groups), order, tolerance, anew=False)
-    except MeshTooLargeError:
-        return None
-    return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
+    # Predictions from panels that lie elsewhere in the contact are uneven, which may ask for more panels than there are.
+    shapes: tuple[Guess, ...] = (guess, guess.states[-1]) if isinstance(guess, Extrapolation) else (guess,)
+    for shape in shapes:
+        try:
+            mesh = mesh_for(shape, groups, contact_law(groups), order, tolerance, anew=False)
+        except MeshTooLargeError:
+            continue
+        return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
+    return None
 
 
 def settled(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
@@ -320,13 +344,15 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
         found = None if guess is None else settled(groups, guess)
         if found is not None:
             return found
-    for start in range(len(full.states) - 2, -1, -1):
-        begun = full.states[start]
+    work = Work(MOST_WORK_TO_END)
+    for begun in full.states[-2::-1]:
+        if work.is_done:
+            break
         here = replace(begun.groups, model=groups.model)
         first = settled(here, _seen_from_exit(begun))
         if first is None:
             continue
-        path = _along(here, groups, first)
+        path = _along(here, groups, first, work=work)
         if path.outcome.ok:
             return path.states[-1]
     return None
@@ -338,7 +364,8 @@ def _along(
     first: State,
     order: int = ORDER,
     tolerance: float = MESH_TOLERANCE,
-    work: float = MOST_WORK,
+    *,
+    work: Work,
 ) -> Path[State]:
     """Return the path of states between two groups, straight in their logarithms."""
     names = ("speed", "load", "roughness")
@@ -389,22 +416,20 @@ def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way
             here = replace(groups, model=replace(plain, film=film, solid=solid))
             return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
 
-        found = march(_within(correct, work), 0.0, 1.0, BLENDING, history=[(0.0, start)])
+        found = march(_within(correct, Work(work)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
             again = settled(found.states[-1].groups, found.states[-1])
             return found if again is None else extended(found, again)
     return found
 
 
-def _within(correct: Correct, most: float) -> Correct:
+def _within(correct: Correct, work: Work) -> Correct:
     """Return a corrector that gives up when all its solves together have taken that much work."""
-    spent = 0.0
 
     def limited(s: float, history: Sequence[tuple[float, State]]) -> State | None:
-        nonlocal spent
-        state = correct(s, history) if spent < most else None
+        state = None if work.is_done else correct(s, history)
         if state is not None:
-            spent += state.root.steps * (state.y.size / UNIT_SIZE) ** 2
+            work.spent += state.root.steps * (state.y.size / UNIT_SIZE) ** 2
         return state
 
     return limited
