@@ -263,3 +263,10 @@ def test_an_exit_that_moves_through_a_contact_leaves_the_edge_of_its_asperities_
     predicted = extrapolate([(np.log(state.groups.speed), state) for state in before], np.log(last.groups.speed))
     assert before[0].exit - last.exit > 5e-3
     assert np.abs(predicted.log_gap(last.mesh) - np.log(last.gap)).max() < 0.3  # 1.2 in the frame of the exit
+
+
+def test_a_film_that_ends_is_found_from_full_ones_before_suction_cut_their_path():
+    """The path of the full film was lost at 1.05 of the speed asked for, where it had no use any more."""
+    groups = sb.Groups(1.026949284796445e-12, 1.6285676358360341, 0.03818644482)
+    path = first_path(with_parts(groups, cavitation="exit", solid=sb.solids.Layer(4.978420382416584, 0.5)))
+    assert path.states[-1].exit == pytest.approx(0.56367, abs=1e-4)

@@ -97,7 +97,6 @@ def test_a_cavity_is_found_by_its_length_where_its_inlet_is_thin():
         {"fluid": sb.fluids.Barus(0.095), "solid": sb.solids.Layer(8.5, 0.485)},
     )
     solution = sb.solve(groups, cavitation="reform", cavity_pressure=-0.0142, slide_to_roll=0.0, **parts)
-    assert solution.mesh.size < 700
     assert (solution.exit_position, solution.reformation_position) == pytest.approx((0.9946148713, 0.9966168722), abs=1e-8)
 
 

@@ -293,26 +293,32 @@ def _changed(
 ) -> Path[State]:
     """Return the path from the state of the article's model by the first of some ways to change the fluid that arrives."""
     model, solid = groups.model, groups.model.solid
-    path = article(replace(groups, model=Model(solid=solid)))
-    if not path.outcome.ok and not isinstance(solid, HalfPlane):
+    path, state = _newtonian(groups, article, solid)
+    if state is None and not isinstance(solid, HalfPlane):
         solid = ARTICLE.solid
-        path = article(replace(groups, model=ARTICLE))
-    if not path.outcome.ok:
-        return path
-    state = path.states[-1]
-    if model.cavitation is not Cavitation.NONE and groups.speed > 0:
-        found = _ended(replace(groups, model=Model(cavitation=Cavitation.EXIT, solid=solid)), path)
-        if found is None:
-            return replace(path, outcome=Outcome.PATH_LOST)
-        state = found
+        path, state = _newtonian(groups, article, solid)
+    if state is None:
+        return replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
     if model.film == Newtonian() and model.solid == solid:
         return extended(path, state)
     return _blended(groups, path, state, ways, work)
 
 
+def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
+    """Return the path from cold with the fluid of the article on a solid, and its end; None where it was not reached.
+
+    A film that ends may be found from states before the one at which the path of the full film was lost to its suction.
+    """
+    path = article(replace(groups, model=Model(solid=solid)))
+    if groups.model.cavitation is not Cavitation.NONE and groups.speed > 0 and path.states:
+        return path, _ended(replace(groups, model=Model(cavitation=Cavitation.EXIT, solid=solid)), path)
+    return path, path.states[-1] if path.outcome.ok else None
+
+
 def extended(path: Path[State], state: State) -> Path[State]:
-    """Return a path with one more state at its end."""
-    return replace(path, coordinates=(*path.coordinates, path.coordinates[-1]), states=(*path.states, state))
+    """Return a path that arrives, with one more state at its end."""
+    states, coordinates = (*path.states, state), (*path.coordinates, path.coordinates[-1])
+    return replace(path, coordinates=coordinates, states=states, outcome=Outcome.CONVERGED)
 
 
 def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
@@ -345,9 +351,10 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
         if found is not None:
             return found
     work = Work(MOST_WORK_TO_END)
-    for begun in full.states[-2::-1]:
+    for start in _farther_and_farther(len(full.states)):
         if work.is_done:
             break
+        begun = full.states[start]
         here = replace(begun.groups, model=groups.model)
         first = settled(here, _seen_from_exit(begun))
         if first is None:
@@ -356,6 +363,16 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
         if path.outcome.ok:
             return path.states[-1]
     return None
+
+
+def _farther_and_farther(count: int) -> Iterator[int]:
+    """Yield places before the last of so many, each about twice as far from it as the one before, and the first."""
+    back = 2
+    while back < count:
+        yield count - back
+        back *= 2
+    if count > 1:
+        yield 0
 
 
 def _along(
