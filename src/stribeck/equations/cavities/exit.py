@@ -24,7 +24,7 @@ from stribeck.equations.point.system import Unknowns
 
 __all__ = ["CavitatedEquations"]
 
-STREAKS = 0.05
+STREAKS = 0.18
 """Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns."""
 
 

@@ -40,7 +40,7 @@ two higher: on many angles the nodes of the radius leave most of the error."""
 ROUGH_FRICTION = 10.0
 """Stated error of friction over the tolerance above which the first of these do not serve: it falls slower than others."""
 
-WASTE, WASTE_ANEW, REGULAR = 0.25, 0.4, 30
+WASTE, WASTE_ANEW, REGULAR = 0.25, 0.44, 30
 """Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
 needs other meshes anyway, when it may move to the first, or if that pair has this many angles, with which errors fall
 regularly."""
@@ -48,6 +48,13 @@ regularly."""
 COMPANY, FRONT = 0.6, 0.04
 """Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
 angles: as the line of rupture walks from node to node, errors change sign by chance."""
+
+WALK, MOST_WALK = 0.58, 0.142
+"""The same over the share of the fluid times the central film, and at most: in thick films both meshes of a pair may err by
+the same.  Offsets erred by up to 0.35 times the film over that square, and by up to 0.09."""
+
+DRAG = ("J_couette", "J_balanced", "J_published")
+"""Integrals that have the shear, and with it the same error."""
 
 ALONE = 10.0
 """Smallest error of the minimum film and its place over the largest of all; the tolerance does not limit them."""
@@ -93,13 +100,14 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] = max(errors[name], balance)
     beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
     errors["J_poiseuille"] += beyond
-    for name in ("J_couette", "J_balanced", "J_published"):
-        errors[name] += beyond + doubt
+    # By the balance of forces and the sum of both parts these three differ by what is known better.
+    errors |= dict.fromkeys(DRAG, max(errors[name] for name in DRAG) + beyond + doubt)
     for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
-    widest = max(widest, FRONT / fine.mesh.modes**2)
+    walk = min(WALK * values["fluid_load_share"] * values["central_gap"], MOST_WALK)
+    widest = max(widest, max(FRONT, walk) / fine.mesh.modes**2)
     if fine.equations.spread is not None:  # where gas goes the film follows
         widest = max(widest, doubt / scales["J_balanced"])
     company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
