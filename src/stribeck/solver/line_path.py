@@ -78,7 +78,7 @@ BETWEEN_MESHES = 0.2
 UNSEEN = 2.0
 """Stated error over the largest of three corrections with the Jacobian of a neighbour, for what they do not see."""
 
-LAW_PART = 0.03
+LAW_PART = 1e-3
 """Difference of a contact law from the polynomials of its series, over the tolerance, up to which these are not checked."""
 
 BY_CHANCE = 0.25
