@@ -23,6 +23,7 @@ from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
+from stribeck.fits.fit import _places
 from stribeck.fits.model import FrictionModel, free_inputs
 from stribeck.fits.objective import minimise, objective
 from stribeck.fits.posterior import draw_posterior
@@ -157,6 +158,12 @@ def test_covariance_is_that_of_the_linearised_least_squares(fitted):
     assert fitted.covariance == pytest.approx(np.linalg.inv(J.T @ J), rel=1e-6)
     width = [each.standard_error for each in fitted.inputs]
     assert fitted.correlation == pytest.approx(fitted.covariance / np.outer(width, width))
+
+
+def test_a_search_begins_within_a_factor_of_ten_of_the_case_to_both_sides(fitted):
+    places = _places(fitted._minimum.objective)
+    assert (np.abs(places) <= math.log(10)).all()
+    assert (places.min(axis=0) < -1).all() and (places.max(axis=0) > 1).all()
 
 
 def test_an_end_of_an_interval_is_where_the_best_fit_is_worse_by_the_quantile(fitted):
