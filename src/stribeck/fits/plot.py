@@ -44,7 +44,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 LABELS = {
     "speed": "speed $U$, sum of both surfaces (m/s)",
     "speed_viscosity": r"viscosity times speed $\eta U$ (Pa m)",
-    "hersey_number": r"Hersey number $\eta U/F_N$",
+    "hersey_number": "Hersey number",
 }
 
 
