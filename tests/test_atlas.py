@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from numpy.polynomial import chebyshev as reference
 
 import stribeck as sb
@@ -481,3 +482,17 @@ def test_the_atlas_says_which_states_it_covers():
         else:
             with pytest.raises(sb.InputError):
                 sb.atlas.friction(groups)
+
+
+def test_a_curve_off_the_atlas_is_shown_and_drawn_as_a_solved_one(tmp_path):
+    ends = {"speed": (1e-7, 1e-1)}
+    read, solved = (sb.stribeck_curve(sb.Groups(1.0, 0.1, 1e-5), **ends, method=method) for method in ("atlas", "solver"))
+    assert [name for name, *_ in read.regime_ranges] == [name for name, *_ in solved.regime_ranges]
+    for (_, *edges), (_, *there) in zip(read.regime_ranges, solved.regime_ranges, strict=True):
+        assert edges == pytest.approx(there, rel=1e-3)
+    assert "minimum of friction" in repr(read)
+    assert len(repr(read)) < 1000
+    drawn = read.plot(tmp_path / "curve.png").axes[0]
+    above = solved.plot(ax=Figure().add_subplot()).axes[0]
+    assert [line.get_label() for line in drawn.lines[:3]] == [line.get_label() for line in above.lines[:3]]
+    assert drawn.get_xlim() == pytest.approx(above.get_xlim())

@@ -16,7 +16,17 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
+from stribeck.curves.regime import (
+    BOUNDARY_FLUID_SHARE,
+    HYDRODYNAMIC_CONTACT_SHARE,
+    Regime,
+    Transition,
+    ranges_of,
+    regime_of,
+)
+from stribeck.files.results import Drawn
+from stribeck.quantities.inputs import si_text
+from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
@@ -46,8 +56,8 @@ class Mark:
     friction: float
 
 
-@dataclass(frozen=True, eq=False)
-class AtlasCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class AtlasCurve(Drawn, Shown):
     """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields.
 
     Attributes
@@ -142,6 +152,11 @@ class AtlasCurve:
         return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
 
     @cached_property
+    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
+        """Regimes along the curve, ascending: name, and the values between which it holds."""
+        return ranges_of(self.values, self.regimes, self.transitions)
+
+    @cached_property
     def minimum(self) -> Mark | None:
         """The minimum friction, where its slope vanishes; None where the curve has none inside."""
         i = int(np.argmin(self.friction))
@@ -173,6 +188,25 @@ class AtlasCurve:
         slope = self._slope_at(self.values)
         crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
         return tuple(self._mark(Transition.MINIMUM, int(i), int(i) + 1, self._slope_at) for i in crossings)
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.curves.plot import plot_atlas_curve
+
+        return plot_atlas_curve(self, path, **options)
+
+    def _card(self) -> Card:
+        low, high = (self._where(value) for value in (self.values[0], self.values[-1]))
+        rows = [
+            ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
+            *((mark.name, f"{mark.friction:.4g} at {self._where(mark.value)}") for mark in self.transitions),
+            ("regimes", ", ".join(dict.fromkeys(self.regimes))),
+            ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
+            ("stated error", f"{self.table.error:.1g}, of the table"),
+        ]
+        return Card(f"{len(self)} points off the atlas, {self.over} {low} to {high}", rows, ())
+
+    def _where(self, value: float) -> str:
+        return f"{value:.4g}" if self.contact is None else si_text(float(value), self.over, 4, self.contact.INPUTS)
 
     def _mark(self, name: str, first: int, last: int, function: Callable[[Array], Array]) -> Mark:
         value = crossing(function, float(self.values[first]), float(self.values[last]))

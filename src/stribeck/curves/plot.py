@@ -38,9 +38,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from stribeck.curves.atlas_curve import AtlasCurve
     from stribeck.curves.result import StribeckCurve
 
-__all__ = ["plot_curve", "plot_profile"]
+__all__ = ["plot_atlas_curve", "plot_curve", "plot_profile"]
 
 DECADES_BELOW = 1.3
 """How far the axis extends below the minimum friction, so that both parts of the friction show."""
@@ -77,6 +78,7 @@ def plot_curve(
         figure = figure_of(ax)
         label = _abscissa_of_values(curve)
         _draw_friction(ax, curve, curve.values)
+        _strip(ax, curve, curve.values)
         ax.set(xlabel=label, ylabel=r"friction coefficient $\mu$")
         ax.legend(frameon=False, fontsize=8.5)
         return finish_figure(figure, path, force)
@@ -90,6 +92,7 @@ def plot_curve(
     )
     x, label = _abscissa(curve)
     _draw_friction(left, curve, x)
+    _strip(left, curve, x)
     left.set_xlabel(label)
     for axes in (left, right):
         axes.set_ylabel(r"friction coefficient $\mu$")
@@ -108,6 +111,7 @@ def plot_curve(
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":
         _draw_friction(right, curve, law, parts=False)
+        _strip(right, curve, law)
         right.set_xlabel("friction coefficient of smooth surfaces at the same speed")
         right.set_ylim(left.get_ylim())
         ends = np.array(right.get_ylim())
@@ -129,6 +133,31 @@ def plot_curve(
     return finish_figure(figure, path, force)
 
 
+@picture()
+def plot_atlas_curve(
+    curve: AtlasCurve, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
+    """Draw the friction of a curve that is read off the atlas, its parts, regimes and minimum, over what varies.
+
+    Parameters
+    ----------
+    curve : AtlasCurve
+        The curve.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into, in place of a new figure.
+    """
+    read = f"read off the atlas, within {curve.table.error:.1g}"
+    lines = [[*_given(curve), read, f"stribeck {version('stribeck')}"]]
+    figure, (axes,) = new_figure((6.8, 4.6), footer_lines(lines, [], 110), title=title or "Stribeck curve", ax=ax)
+    _draw_friction(axes, curve, curve.values)
+    axes.set(xlabel=_abscissa_of_values(curve), ylabel=r"friction coefficient $\mu$")
+    if ax is None:
+        add_legend(figure, (axes,))
+    else:
+        axes.legend(frameon=False, fontsize=8.5)
+    return finish_figure(figure, path, force)
+
+
 def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     """Return the first panel's abscissa and its label."""
     if curve.over == "speed":
@@ -136,7 +165,7 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     return curve.values, _abscissa_of_values(curve)
 
 
-def _abscissa_of_values(curve: StribeckCurve) -> str:
+def _abscissa_of_values(curve: StribeckCurve | AtlasCurve) -> str:
     """Return the label of the coordinate."""
     if curve.contact is None:
         symbol = SYMBOLS_OF_GROUPS[curve.over]
@@ -145,7 +174,7 @@ def _abscissa_of_values(curve: StribeckCurve) -> str:
     return f"{curve.over} {row.symbol} ({DIMENSIONS[row.dimension].unit})"
 
 
-def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = True) -> None:
+def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, parts: bool = True) -> None:
     """Draw friction, its parts, the regimes and the landmarks against x."""
     total, error = curve.friction, curve.friction_error
     style: dict[str, Any] = {"marker": "o", "ms": 3.0} if len(curve) <= FEW else {}
@@ -181,7 +210,6 @@ def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = 
         elif "50 %" in mark.name:
             label = f"fluid carries half the load, at {_place(curve, mark.value)}"
             axes.plot(at, mark.friction, "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
-    _strip(axes, curve, x)
 
 
 def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:
@@ -202,7 +230,7 @@ def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:
     _shade(axes, curve, x)
 
 
-def _shade(axes: Axes, curve: StribeckCurve, x: Array) -> None:
+def _shade(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array) -> None:
     """Shade the regimes and name those that have room for it."""
     whole = math.log(x.max() / x.min()) if len(x) > 1 else 0.0
     for regime, low, high in curve.regime_ranges:
@@ -244,18 +272,24 @@ def _strip(axes: Axes, curve: StribeckCurve, x: Array) -> None:
         )
 
 
-def _place(curve: StribeckCurve, value: float) -> str:
+def _place(curve: StribeckCurve | AtlasCurve, value: float) -> str:
     if curve.contact is None:
         return f"{curve.over} group {value:.3g}"
     return si_text(value, curve.over, 3, curve.contact.INPUTS)
 
 
-def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
-    count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
-    law = law_text(curve.solutions[0]) if len(curve) else ""
+def _given(curve: StribeckCurve | AtlasCurve) -> list[str]:
+    """Return the inputs that stay along the curve."""
     first = [*input_texts(curve.contact, None if curve.over != "speed" else "speed", curve.over)]
     if curve.contact is None:
         first += [rf"$\mu_0$ = {curve.boundary_friction:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
+    return first
+
+
+def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
+    count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
+    law = law_text(curve.solutions[0]) if len(curve) else ""
+    first = _given(curve)
     groups = curve.groups
     for name in ("speed", "load", "roughness"):
         values = np.asarray(getattr(groups, name))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Sequence
 from enum import StrEnum
-from typing import Literal, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 from stribeck._types import Array
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
@@ -19,6 +21,7 @@ __all__ = [
     "check_method",
     "check_transition",
     "excess",
+    "ranges_of",
     "regime_of",
 ]
 
@@ -28,6 +31,18 @@ Share = TypeVar("Share", float, Array)
 
 METHODS: tuple[Method, ...] = ("solver", "atlas")
 """Where states come from: solved, or read off :mod:`stribeck.atlas`."""
+
+
+class Place(Protocol):
+    """A named place of a curve: a transition that was located."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def value(self) -> float:
+        """Where along the curve."""
 
 
 class Transition(StrEnum):
@@ -68,3 +83,28 @@ def check_method(method: str) -> Method:
         if isinstance(method, str) and method == known:
             return known
     raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
+
+
+def ranges_of(
+    values: Array, regimes: Sequence[Regime], transitions: Iterable[Place]
+) -> tuple[tuple[Regime, float, float], ...]:
+    """Return the regimes of points along a curve, ascending: name, and the values between which it holds.
+
+    They meet at a located transition where there is one, else in the middle between two points.
+    """
+    edges = [float(values[0])]
+    names = [regimes[0]]
+    marks = {mark.name: mark.value for mark in transitions}
+    ends = {"boundary": Transition.BOUNDARY_END, "hydrodynamic": Transition.HYDRODYNAMIC_START}
+    for i in range(1, len(values)):
+        if regimes[i] != names[-1]:
+            low, high = float(values[i - 1]), float(values[i])
+            located = {name: marks.get(ends[name], low) for name in (names[-1], regimes[i]) if name in ends}
+            inside = [value for value in located.values() if low < value < high]
+            if len(inside) == 2 and inside[0] < inside[1]:
+                names.append("mixed")
+            elif len(inside) == 2:  # where asperities hardly rub the film is hydrodynamic before it bears load
+                inside = [located["hydrodynamic"]]
+            edges += inside or [math.sqrt(low * high)]
+            names.append(regimes[i])
+    return tuple(zip(names, edges, [*edges[1:], float(values[-1])], strict=True))

@@ -21,7 +21,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
-from stribeck.curves.regime import Regime, Transition, check_transition, excess, regime_of
+from stribeck.curves.regime import Regime, Transition, check_transition, excess, ranges_of, regime_of
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.files.results import Exported
@@ -338,23 +338,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
         They meet at a located transition where there is one, else in the middle between two points.
         """
-        regimes = self.regimes
-        edges = [float(self.values[0])]
-        names = [regimes[0]]
-        marks = {mark.name: mark.value for mark in self.transitions}
-        ends = {"boundary": Transition.BOUNDARY_END, "hydrodynamic": Transition.HYDRODYNAMIC_START}
-        for i in range(1, len(self)):
-            if regimes[i] != names[-1]:
-                low, high = float(self.values[i - 1]), float(self.values[i])
-                located = {name: marks.get(ends[name], low) for name in (names[-1], regimes[i]) if name in ends}
-                inside = [value for value in located.values() if low < value < high]
-                if len(inside) == 2 and inside[0] < inside[1]:
-                    names.append("mixed")
-                elif len(inside) == 2:  # where asperities hardly rub the film is hydrodynamic before it bears load
-                    inside = [located["hydrodynamic"]]
-                edges += inside or [math.sqrt(low * high)]
-                names.append(regimes[i])
-        return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
+        return ranges_of(self.values, self.regimes, self.transitions)
 
     @property
     def error_estimate(self) -> float:
