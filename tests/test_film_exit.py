@@ -210,7 +210,7 @@ def test_an_exit_that_moves_through_the_contact_is_predicted_with_the_contact_wh
 def test_an_exit_that_crosses_a_sharp_edge_of_the_contact_is_followed():
     """The edge is narrower than what counted as near: 25 states where 7 serve; a fluid that thins was lost."""
     groups = with_parts(sb.Groups(1e-7, 0.1, 1e-6), cavitation="exit")
-    path = _along(groups, replace(groups, speed=1e-8), first_path(groups).states[-1], work=Work(1000.0))
+    path = _along(groups, replace(groups, speed=1e-8), first_path(groups).states[-1], Work(1000.0))
     assert path.outcome.ok
     assert len(path.states) < 12
 

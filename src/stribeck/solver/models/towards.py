@@ -35,7 +35,6 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
@@ -66,18 +65,8 @@ HEIGHTS = (-400.0, 400.0)
 BLENDING = Steps(1.0, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
 
-FASTER = (1e2, 1e4)
-"""Factors of the speed from which a state is looked for that changing the fluid does not reach: in thicker films the laws of
-a fluid and the roughness change less."""
-
-SLOWED = (12, 1e-4)
-"""Nodes per panel and tolerance of the meshes on the way down from there: on coarse ones states were found that are none."""
-
 MOST_WORK, UNIT_SIZE = 3000.0, 300.0
 """Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100."""
-
-WORK_FASTER = 1000.0
-"""The same for the way by a faster film."""
 
 MOST_WORK_TO_END = 6000.0
 """The same for all paths of loads together on which the film is to end."""
@@ -268,29 +257,13 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
         The path from cold to groups with the model of the article.
     """
     yield _changed(groups, article, WAYS[:1])
-    if groups.speed > 0 and groups.model.film != Newtonian():
-        yield from (slowed for factor in FASTER if (slowed := _slowed(groups, article, factor)) is not None)
     if groups.model.film != Newtonian() or not isinstance(
         groups.model.solid, HalfPlane
     ):  # else nothing is changed, by any way
         yield _changed(groups, article, WAYS[1:])
 
 
-def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: float) -> Path[State] | None:
-    """Return the path down from a speed larger by a factor, if that is reached and leads to the groups."""
-    try:
-        above = replace(groups, speed=factor * groups.speed)
-    except InputError:  # beyond the range of groups
-        return None
-    begun = _changed(above, article, WAYS[:1], WORK_FASTER)
-    first = settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
-    path = None if first is None else _along(above, groups, first, *SLOWED, work=Work(WORK_FASTER))
-    return path if path is not None and path.outcome.ok else None
-
-
-def _changed(
-    groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way], work: float = MOST_WORK
-) -> Path[State]:
+def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way]) -> Path[State]:
     """Return the path from the state of the article's model by the first of some ways to change the fluid that arrives."""
     model, solid = groups.model, groups.model.solid
     path, state = _newtonian(groups, article, solid)
@@ -301,7 +274,7 @@ def _changed(
         return replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
     if model.film == Newtonian() and model.solid == solid:
         return extended(path, state)
-    return _blended(groups, path, state, ways, work)
+    return _blended(groups, path, state, ways)
 
 
 def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
@@ -334,12 +307,12 @@ def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float =
     return None
 
 
-def settled(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
+def settled(groups: Groups, guess: Guess) -> State | None:
     """Return a coarse state on a mesh made for it, or None."""
-    state = _coarse(groups, guess, order, tolerance)
+    state = _coarse(groups, guess)
     if state is None or not state.outcome.ok:
         return None
-    again = _coarse(groups, state, order, tolerance)
+    again = _coarse(groups, state)
     return again if again is not None and again.outcome.ok else None
 
 
@@ -359,7 +332,7 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
         first = settled(here, _seen_from_exit(begun))
         if first is None:
             continue
-        path = _along(here, groups, first, work=work)
+        path = _along(here, groups, first, work)
         if path.outcome.ok:
             return path.states[-1]
     return None
@@ -375,15 +348,7 @@ def _farther_and_farther(count: int) -> Iterator[int]:
         yield 0
 
 
-def _along(
-    start: Groups,
-    end: Groups,
-    first: State,
-    order: int = ORDER,
-    tolerance: float = MESH_TOLERANCE,
-    *,
-    work: Work,
-) -> Path[State]:
+def _along(start: Groups, end: Groups, first: State, work: Work) -> Path[State]:
     """Return the path of states between two groups, straight in their logarithms."""
     names = ("speed", "load", "roughness")
     ends = [(float(getattr(start, name)), float(getattr(end, name))) for name in names]
@@ -393,7 +358,7 @@ def _along(
         t = s / length
         speed, load, roughness = (a ** (1 - t) * b**t if a > 0 else 0.0 for a, b in ends)
         here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
-        return _coarse(here, extrapolate(history, s), order, tolerance)
+        return _coarse(here, extrapolate(history, s))
 
     return march(_within(correct, work), 0.0, length, SLOWING, history=[(0.0, first)])
 
@@ -412,7 +377,7 @@ def _seen_from_exit(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way], work: float) -> Path[State]:
+def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way]) -> Path[State]:
     """Return the path on which fluid and solid change into those of the groups, by the first way that arrives."""
     own, plain = groups.model, start.groups.model
     found = path
@@ -433,7 +398,7 @@ def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way
             here = replace(groups, model=replace(plain, film=film, solid=solid))
             return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
 
-        found = march(_within(correct, Work(work)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
+        found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
             again = settled(found.states[-1].groups, found.states[-1])
             return found if again is None else extended(found, again)
