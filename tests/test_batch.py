@@ -92,7 +92,7 @@ def test_every_contact_law_can_be_solved(law):
 
 def test_a_law_whose_cold_start_fails_is_reached_through_the_exponential_one(monkeypatch):
     direct = cold_start.cold_start
-    lost = cold_start.Path((), (), Outcome.PATH_LOST, 1, None)
+    lost = cold_start.Path((), (), Outcome.PATH_LOST, None)
     monkeypatch.setattr(cold_start, "cold_start", lambda groups: direct(groups) if groups.law is None else lost)
     assert sb.solve_batch(crowd(2, law=sb.GreenwoodTripp())).ok.all()
 

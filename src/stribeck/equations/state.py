@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
@@ -24,7 +23,7 @@ from stribeck.equations.line import Equations, Operators, slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, reference, ungraded
+from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
@@ -379,12 +378,13 @@ def mesh_for(
     lift = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
+    highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
         size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
-        return np.asarray((size[:, None] * _highest_degree(order))[None])
+        return np.asarray((size[:, None] * highest)[None])
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -459,9 +459,10 @@ def mesh_for(
         reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
-    places = [x for x in (0.0, restart) if ends and x < math.inf]
+    places: list[float] = []
     start = guess.mesh if anew and isinstance(guess, State) else None
     if ends:
+        places = [0.0] if restart == math.inf else [0.0, restart]
         reach = 2 * max(reach, places[-1])
     if ends and start is not None:
         start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
@@ -476,12 +477,6 @@ def mesh_for(
         return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
     return replace(graded(mesh, places, levels), restart=restart)
-
-
-@lru_cache(maxsize=8)
-def _highest_degree(order: int) -> Array:
-    """Return the Legendre polynomial of the highest degree that panels hold, at their nodes."""
-    return np.asarray(legendre.legval(reference(order).nodes, np.eye(order)[-1]))
 
 
 def _cavity_on_mesh(guess: Guess) -> float:

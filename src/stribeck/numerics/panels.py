@@ -87,6 +87,12 @@ def reference(order: int) -> Reference:
 
 
 @lru_cache(maxsize=32)
+def highest_degree(order: int) -> Array:
+    """Return the Legendre polynomial of the highest degree that the nodes of a panel hold, at these."""
+    return np.asarray(legendre.legval(reference(order).nodes, np.eye(order)[-1]))
+
+
+@lru_cache(maxsize=32)
 def between_orders(order: int, other: int) -> Array:
     """Return the matrix from nodal values (as a row) of one rule to those of another with more nodes."""
     return reference(order).interpolation(reference(other).nodes).T

@@ -152,6 +152,8 @@ def refine_cavitated(
                     continue
                 return found if best is None else replace(best, outcome=found)
             if best is not None and held(found) > NO_GAIN * held(best):
+                if known is not None:  # panels of a neighbour; a cold start has its own
+                    break
                 base = replace(base, splits=tuple(sorted({*base.splits, *_crossed(found.fine)})))
             best, start, mesh = found, found.fine.unknowns, found.fine.mesh
             if holds_torn(found, rtol):
