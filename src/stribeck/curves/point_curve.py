@@ -405,7 +405,7 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch.
 
     They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
-    roughness, or from the first below it that is solved; smooth surfaces have no plateau, and their curve covers eight decades
+    roughness, or from the first below it that is solved, to the last that is; smooth surfaces have no plateau, and their curve covers eight decades
     up to speed 10.
     """
     kappa = float(groups.relative_roughness)
@@ -421,7 +421,8 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     while low > SLOWEST:
         state = solver(math.log(low))
         if not state.outcome.ok:
-            if share is not None:
+            if share is not None:  # slower ones are not solved
+                low *= 10
                 break
             fastest = low = high = low / 10
             continue
