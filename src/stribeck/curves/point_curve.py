@@ -405,8 +405,8 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch.
 
     They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
-    roughness, or from the first below it that is solved, to the last that is; smooth surfaces have no plateau, and their curve covers eight decades
-    up to speed 10.
+    roughness, or from the first below it that is solved, to the last that is; smooth surfaces have no plateau, and their
+    curve covers eight decades up to speed 10.
     """
     kappa = float(groups.relative_roughness)
     if kappa == 0:

@@ -152,8 +152,8 @@ def refine_cavitated(
                     continue
                 return found if best is None else replace(best, outcome=found)
             if best is not None and held(found) > NO_GAIN * held(best):
-                if known is not None:  # panels of a neighbour; a cold start has its own
-                    break
+                if known is not None and _rung(found) > _rung(best) and held(found) >= held(best) > rtol:
+                    break  # a cold start has panels of its own
                 base = replace(base, splits=tuple(sorted({*base.splits, *_crossed(found.fine)})))
             best, start, mesh = found, found.fine.unknowns, found.fine.mesh
             if holds_torn(found, rtol):
