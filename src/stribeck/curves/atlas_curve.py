@@ -22,7 +22,7 @@ from stribeck.curves.regime import (
     Regime,
     Transition,
     ranges_of,
-    regime_of,
+    regimes_along,
 )
 from stribeck.files.results import Drawn
 from stribeck.quantities.inputs import si_text
@@ -148,8 +148,7 @@ class AtlasCurve(Drawn, Shown):
     @property
     def regimes(self) -> tuple[Regime, ...]:
         """Lubrication regime of each point."""
-        shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
-        return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+        return regimes_along(self.observable("fluid_load_share"), self.friction_contact, self.friction)
 
     @cached_property
     def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:

@@ -23,6 +23,7 @@ __all__ = [
     "excess",
     "ranges_of",
     "regime_of",
+    "regimes_along",
 ]
 
 Method = Literal["solver", "atlas"]
@@ -83,6 +84,12 @@ def check_method(method: str) -> Method:
         if isinstance(method, str) and method == known:
             return known
     raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
+
+
+def regimes_along(fluid_load_share: Array, by_asperities: Array, friction: Array) -> tuple[Regime, ...]:
+    """Return the lubrication regime of each point of a curve, from the friction that asperities cause and all of it."""
+    shares = zip(fluid_load_share, by_asperities, friction, strict=True)
+    return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
 
 
 def ranges_of(

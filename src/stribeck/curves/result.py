@@ -21,7 +21,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
-from stribeck.curves.regime import Regime, Transition, check_transition, excess, ranges_of, regime_of
+from stribeck.curves.regime import Regime, Transition, check_transition, excess, ranges_of, regimes_along
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.files.results import Exported
@@ -329,8 +329,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def regimes(self) -> tuple[Regime, ...]:
         """Lubrication regime of each point."""
-        shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
-        return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+        return regimes_along(self.observable("fluid_load_share"), self.friction_contact, self.friction)
 
     @cached_property
     def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:

@@ -23,8 +23,7 @@ LARGEST_AMPLIFICATION = 40.0
 
 FAR_APART = 0.02
 """Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
-frame: the edge of a contact of asperities stays where it is while the exit moves through it.  In thin films, whose edges are
-sharp, it is the width of an edge, the smallest gap to the power 2/3."""
+frame: the edge of a contact of asperities stays where it is while the exit moves through it."""
 
 STAYS = 0.2
 """Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too."""

@@ -257,9 +257,8 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
         The path from cold to groups with the model of the article.
     """
     yield _changed(groups, article, WAYS[:1])
-    if groups.model.film != Newtonian() or not isinstance(
-        groups.model.solid, HalfPlane
-    ):  # else nothing is changed, by any way
+    model = groups.model
+    if model.film != Newtonian() or not isinstance(model.solid, HalfPlane):  # else nothing is changed, by any way
         yield _changed(groups, article, WAYS[1:])
 
 
