@@ -1,11 +1,12 @@
 """Viscoelastic and combined solids: memory, hysteresis friction, dry contacts against an independent solver."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from fit_data import TRUE
-from scipy.integrate import trapezoid
+from scipy.integrate import quad, trapezoid
 from test_model_parts import REFERENCE, observed
 
 import stribeck as sb
@@ -192,18 +193,25 @@ def test_impossible_solids_are_refused_by_name(make, said):
 
 
 @pytest.mark.quick
-def test_pressures_on_panels_wider_than_a_layer_is_thick_deflect_it_as_on_narrow_ones():
-    layer = sb.solids.Layer(0.4, 0.45)
-    fine = Mesh(np.arange(-6, 6.25, 0.25), 12)
-    coarse = Mesh(np.array([-6.0, -2.0, 2.0, 6.0]), 16)  # panels of ten thicknesses
+@pytest.mark.parametrize("d", [0.9, 0.1, 0.004])
+def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its_kernel(d):
+    mesh = Mesh(np.array([-6.1, -6.0, 6.0, 6.1]), 12)
+    at = np.flatnonzero(np.abs(mesh.nodes) < 6.1)[8:-8]
 
-    def pressure(x):
-        return (1 + 0.3 * x) * np.exp(-0.05 * x * x) * (np.abs(x) < 6)
+    def pressure(y):
+        return (1 + 0.3 * y) * (1 - (y / 8) ** 2) ** 3 * (np.abs(y) < 6)
 
-    found = layer.deflection(coarse) @ pressure(coarse.nodes)
-    exact = fine.interpolate(layer.deflection(fine) @ pressure(fine.nodes), coarse.nodes[: -coarse.order])
-    inner = np.abs(coarse.nodes[: -coarse.order]) < 4
-    np.testing.assert_allclose(found[: -coarse.order][inner], exact[inner], rtol=0, atol=1e-7)
+    def exact(x):
+        def pushed(y):
+            xi = np.array([abs(x - y) / d])
+            return float((smooth_kernel(xi, 0.45) - np.log(xi) / math.pi)[0]) * pressure(y)
+
+        first, last = max(-6, x - REACH * d), min(6, x + REACH * d)
+        places = sorted({first, last} | {y for y in (x - 0.3 * d, x, x + 0.3 * d) if first < y < last})
+        return sum(quad(pushed, *part, epsabs=1e-11, epsrel=0)[0] for part in pairwise(places))
+
+    found = (Layer(d, 0.45).deflection(mesh) @ pressure(mesh.nodes))[at]
+    np.testing.assert_allclose(found, [exact(x) for x in mesh.nodes[at]], rtol=0, atol=1e-9 * d)
 
 
 @pytest.mark.quick
