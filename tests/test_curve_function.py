@@ -15,6 +15,7 @@ from stribeck.equations.observables import ROW
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import corrector
 from stribeck.solver.cold_start import first_path
+from stribeck.solver.expansion import expand_article
 from stribeck.solver.line_path import LineProblem
 from stribeck.solver.refinement import converge, verify
 
@@ -64,6 +65,17 @@ def test_errors_of_states_on_a_kept_mesh_are_those_by_their_own_jacobians():
     for point in (one.point for one in curve._function.expansions):
         own = verify(point.state.corrected(), point.refined.groups, point.fine, 1e-6)
         assert own.estimate.total < 1.2 * point.refined.estimate.total
+
+
+def test_the_series_does_not_depend_on_where_the_jacobian_was_taken():
+    groups = sb.Groups(1e-6, 0.003, 3e-6)
+    state = converge(first_path(groups).states[-1], groups, 1e-6).state.corrected()
+    y, equations = state.y, state.equations
+    beside = y.copy()
+    beside[equations.layout.gap] *= 1 + 1e-5 * np.sin(np.arange(state.gap.size))
+    around = groups, (1.0, 0.0, 0.0), np.zeros(17), 16
+    exact, other = (expand_article(equations, y, equations.inverse(at), *around).observables for at in (y, beside))
+    assert np.nanmax(np.abs(other - exact).max(axis=0) / np.fmax(np.abs(exact).max(axis=0), 1e-300)) < 1e-9
 
 
 @pytest.mark.parametrize(("over", "ends"), [("load", (0.01, 0.8)), ("roughness", (1e-5, 1e-2))])
