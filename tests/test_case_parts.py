@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import stribeck as sb
-from stribeck.cases.case import check_case
+from stribeck.cases.reading import check_case
 
 CONTACT = {
     "radius": "10 mm",

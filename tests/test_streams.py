@@ -14,10 +14,10 @@ import pytest
 from command_line import PDMS, call, environment
 
 import stribeck as sb
-from stribeck.cases.case import read_toml
 from stribeck.cli.exits import complain
 from stribeck.files import pictures
 from stribeck.files.reading import read_bounded
+from stribeck.files.toml import read_toml
 
 COMMAND = (sys.executable, "-m", "stribeck")
 SOLVE = (*COMMAND, "solve", "--groups", "1e-4", "0.1", "1e-3")

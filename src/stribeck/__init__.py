@@ -6,7 +6,8 @@ _PACKAGES = ("asymptotics", "atlas", "fluids", "solids", "surfaces")
 _HOMES = {
     "batches.result": ("BatchSolution",),
     "batches.solve_batch": ("solve_batch",),
-    "cases.case": ("Case", "load_case"),
+    "cases.case": ("Case",),
+    "cases.reading": ("load_case",),
     "cases.fit_settings": ("FitSettings",),
     "checks.check": ("Check", "Checks"),
     "checks.table": ("check",),

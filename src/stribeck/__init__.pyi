@@ -3,8 +3,9 @@
 from stribeck import asymptotics, atlas, fluids, solids, surfaces
 from stribeck.batches.result import BatchSolution
 from stribeck.batches.solve_batch import solve_batch
-from stribeck.cases.case import Case, load_case
+from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.reading import load_case
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.table import check
 from stribeck.cli.reports.explain import Explanation as Explanation

@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterator
 from importlib.resources import files
 from pathlib import Path
 
-from stribeck.cases.case import Case, load_case
+from stribeck.cases.case import Case
+from stribeck.cases.reading import load_case
 from stribeck.data_sheet.content import Content, content_of
 from stribeck.data_sheet.picture import draw_report
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.cases.case import Case, load_case
+from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
+from stribeck.cases.reading import load_case
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw

@@ -13,13 +13,15 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from stribeck.cases.case import Case, check_case, parse_toml
+from stribeck.cases.case import Case
+from stribeck.cases.reading import check_case
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.asked.carried import model_changes, model_words, tables_of, toml_text
 from stribeck.explorer.asked.inputs import Inputs, exact_text
 from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.measured import Measured
+from stribeck.files.toml import parse_toml
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution

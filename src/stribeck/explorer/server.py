@@ -10,7 +10,7 @@ from functools import partialmethod
 from pathlib import Path
 from urllib.parse import quote
 
-from stribeck.cases.case import load_case
+from stribeck.cases.reading import load_case
 from stribeck.contacts.line import LineContact
 from stribeck.explorer.asked.inputs import Inputs, from_case, units_of
 from stribeck.explorer.asked.url import LONGEST, check_length

@@ -19,7 +19,7 @@ from typing import Any
 
 from nicegui import background_tasks, events, ui
 
-from stribeck.cases.case import load_case
+from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
 from stribeck.explorer import table
 from stribeck.explorer.answer import Answer, Answerer

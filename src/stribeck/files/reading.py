@@ -1,14 +1,20 @@
-"""Input files, bounded before they are read: no pipe is waited for, no device and no enormous file fills the memory."""
+"""Input files and their text, bounded before they are read.
+
+No pipe is waited for, no device and no enormous file fills the memory.
+"""
 
 from __future__ import annotations
 
+import codecs
 import errno
 import os
 import stat
+from pathlib import Path
 
 from stribeck.files.writing import PathLike
+from stribeck.quantities.units import InputError
 
-__all__ = ["read_bounded"]
+__all__ = ["content_of", "read_bounded", "text_of"]
 
 KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
 
@@ -53,3 +59,28 @@ def read_bounded(path: PathLike, largest: int) -> bytes:
         return bytes(content[: largest + 1])
     finally:
         os.close(number)
+
+
+def content_of(path: Path, largest: int, kind: str) -> bytes:
+    """Return the content of a file as :func:`read_bounded` does, or say why not; ``kind`` is what to give."""
+    try:
+        return read_bounded(path, largest)
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", problem)
+        received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
+        raise InputError(f"{received}; give the path of {kind}.") from None
+
+
+def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
+    """Return the text of a file of at most ``largest`` bytes in UTF-8, UTF-16 or Windows-1252; ``kind`` is what to give."""
+    content = content_of(path, largest, kind)
+    if len(content) > largest:
+        raise InputError(f"{path} has more than {largest} bytes; {advice}.")
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    if b"\0" in content:
+        raise InputError(f"{path} is not text; export it as CSV, or give it the ending of its format.")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")  # what spreadsheets in Europe write

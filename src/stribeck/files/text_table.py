@@ -5,8 +5,6 @@ Measured friction, contact laws, power spectra and heights all come through here
 
 from __future__ import annotations
 
-import codecs
-import csv
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -16,26 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.reading import read_bounded
+from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, cells_of, has_number
+from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEETS, text_of_spreadsheet
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = [
-    "MISSING",
-    "TextTable",
-    "cells_of",
-    "header_words",
-    "is_called",
-    "number_of",
-    "read_table",
-    "read_two_columns",
-    "split_header",
-    "text_of",
-    "values_of",
-]
-
-MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
-"""Cells that hold no value, in lower case."""
+__all__ = ["TextTable", "read_table", "read_two_columns", "values_of"]
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
@@ -49,10 +33,6 @@ EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 LOOK_AHEAD = 3
 """Rows below a header among which one must hold numbers."""
 
-_POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
-_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
-_WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
-_HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 
 
@@ -134,7 +114,7 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
     separator = _separator(first)
     header = tuple(cells_of(first, separator, path, number))
     elsewhere = "" if header_row or expected != EXPECTED else "; if the header is not in this row, set header_row in [fit]"
-    if all(_POINT.fullmatch(cell) or _COMMA.fullmatch(cell) for cell in header):
+    if all(POINT.fullmatch(cell) or COMMA.fullmatch(cell) for cell in header):
         raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
     if len(header) < 2:
         raise InputError(
@@ -155,7 +135,7 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
         rows.append(tuple(cells))
         numbers.append(i)
     units: tuple[str, ...] = ()
-    if rows and not any(_has_number(cell) for cell in rows[0]):
+    if rows and not any(has_number(cell) for cell in rows[0]):
         plain = all(cell.lower() in MISSING for cell in rows[0])
         units = () if plain else tuple(cell.strip("[]()") for cell in rows[0])
         if units:
@@ -215,24 +195,6 @@ def read_two_columns(
     return values, (first, second)
 
 
-def split_header(header: str) -> tuple[str, str]:
-    """Return the words of a header and its unit, as of ``speed [mm/s]`` or ``speed / mm/s``; empty where it has none."""
-    parts = _HEADER.fullmatch(header)
-    if parts is None or not parts[1]:
-        return header.strip(), ""
-    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
-
-
-def header_words(header: str) -> str:
-    """Return the words of a header in lower case, without its unit and without signs."""
-    return " ".join(re.sub(r"[^0-9a-zµμ]+", " ", split_header(header)[0].lower()).split())
-
-
-def is_called(header: str, name: str) -> bool:
-    """Return whether a name means a header, with or without its unit."""
-    return name.strip() in (header, split_header(header)[0])
-
-
 def values_of(
     path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], *, comma: bool, missing: bool = True
 ) -> Array:
@@ -250,62 +212,6 @@ def values_of(
     return values
 
 
-def number_of(cell: str, decimal: str = ".") -> tuple[float, str] | None:
-    """Return the number that a cell holds and its own unit, or None; with ``decimal = ","`` points pass too."""
-    text = cell.replace("\N{MINUS SIGN}", "-").strip()
-    unit = ""
-    bare = _POINT.fullmatch(text) or _COMMA.fullmatch(text)
-    with_unit = None if bare else _WITH_UNIT.fullmatch(text)
-    if with_unit:
-        text, unit = with_unit.groups()
-    if decimal == "," and _COMMA.fullmatch(text):
-        text = text.replace(",", ".")
-    return (float(text), unit) if _POINT.fullmatch(text) else None
-
-
-def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
-    """Return the text of a file of at most ``largest`` bytes in UTF-8, UTF-16 or Windows-1252; ``kind`` is what to give."""
-    try:
-        content = read_bounded(path, largest)
-    except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", problem)
-        received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
-        raise InputError(f"{received}; give the path of {kind}.") from None
-    if len(content) > largest:
-        raise InputError(f"{path} has more than {largest} bytes; {advice}.")
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return content.decode("utf-16", errors="replace")
-    if b"\0" in content:
-        raise InputError(f"{path} is not text; export it as CSV, or give it the ending of its format.")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace")  # what spreadsheets in Europe write
-
-
-def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
-    """Return the cells of a line without quotes and white space around them; an empty ``separator`` is white space."""
-    if separator and '"' not in line:
-        return [cell.replace("\N{NO-BREAK SPACE}", " ").strip() for cell in line.split(separator)]
-    if separator:
-        try:
-            [cells] = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
-        except (csv.Error, ValueError) as problem:
-            raise InputError(f"{path}: row {number} cannot be split into cells ({problem}); check its quotes.") from None
-        return [cell.replace("\N{NO-BREAK SPACE}", " ").strip() for cell in cells]
-    words = line.split()
-    if not any(mark in line for mark in "[("):
-        return words
-    cells = []
-    for word in words:
-        # A unit in brackets belongs to the word before it.
-        if cells and (word[0] in "[(" or cells[-1].count("[") > cells[-1].count("]")):
-            cells[-1] += f" {word}"
-        else:
-            cells.append(word)
-    return cells
-
-
 def _one_table(filled: list[tuple[int, str]], separator: str) -> tuple[list[tuple[int, str]], dict[int, int]]:
     """Return the rows below a header that may come again above each step of a rig, and the step of each; text is left out.
 
@@ -313,7 +219,7 @@ def _one_table(filled: list[tuple[int, str]], separator: str) -> tuple[list[tupl
     """
     head = filled[0][1].strip()
     body = filled[1:]
-    while len(body) > 1 and separator not in body[-1][1] and not _has_number(body[-1][1]):
+    while len(body) > 1 and separator not in body[-1][1] and not has_number(body[-1][1]):
         body = body[:-1]
     if not any(line.strip() == head for _, line in body):
         return body, {}
@@ -321,7 +227,7 @@ def _one_table(filled: list[tuple[int, str]], separator: str) -> tuple[list[tupl
     for i, line in body:
         if line.strip() == head:
             block += 1
-        elif sum(_has_number(cell) for cell in cells_of(line, separator, Path(), i)) > 1:
+        elif sum(has_number(cell) for cell in cells_of(line, separator, Path(), i)) > 1:
             kept.append((i, line))
             blocks[i] = block
     return kept, blocks
@@ -348,10 +254,6 @@ def _row(line: str, separator: str, width: int, path: Path, number: int) -> list
     return cells
 
 
-def _has_number(cell: str) -> bool:
-    return any(sign.isdigit() for sign in cell) and number_of(cell, ",") is not None
-
-
 def _header_at(lines: list[tuple[int, str]]) -> int:
     """Return the place of the header: that of the first line, unless only one below it has numbers below it as it should."""
     found = [k for k in range(len(lines)) if _is_header(lines[k : k + 1 + LOOK_AHEAD])]
@@ -366,10 +268,10 @@ def _is_header(lines: list[tuple[int, str]]) -> bool:
         header, *rows = (cells_of(line, separator, Path(), 0) for _, line in lines)
     except InputError:
         return False
-    if len(header) < 2 or not all(header) or any(_has_number(cell) for cell in header):
+    if len(header) < 2 or not all(header) or any(has_number(cell) for cell in header):
         return False
     rows = [_row(line, separator, len(header), Path(), 0) for _, line in lines[1:]]
-    numbers = [sum(_has_number(cell) for cell in row) for row in rows]
+    numbers = [sum(has_number(cell) for cell in row) for row in rows]
     return bool(rows) and all(len(row) == len(header) for row in rows) and max(numbers) > 1 and max(numbers[:2]) > 1
 
 
@@ -393,11 +295,11 @@ def _decimal_comma(path: Path, header: tuple[str, ...], rows: list[tuple[str, ..
     point: tuple[int, str, str] | None = None
     for number, row in zip(numbers, rows, strict=True):
         for name, cell in zip(header, row, strict=True):
-            parts = _WITH_UNIT.fullmatch(cell)
+            parts = WITH_UNIT.fullmatch(cell)
             text = (parts[1] if parts else cell).strip()
-            if comma is None and _COMMA.fullmatch(text):
+            if comma is None and COMMA.fullmatch(text):
                 comma = number, name, cell
-            elif point is None and "." in text and _POINT.fullmatch(text):
+            elif point is None and "." in text and POINT.fullmatch(text):
                 point = number, name, cell
     if comma and point:
         raise InputError(

@@ -9,8 +9,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from stribeck.cases.case import Case, load_case, read_toml
+from stribeck.cases.case import Case
+from stribeck.cases.reading import load_case
 from stribeck.contacts.line import InputError
+from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows

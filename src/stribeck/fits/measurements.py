@@ -16,9 +16,10 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.cells import MISSING, header_words, is_called, number_of, split_header
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.files.text_table import MISSING, TextTable, header_words, is_called, number_of, read_table, split_header
+from stribeck.files.text_table import TextTable, read_table
 from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos

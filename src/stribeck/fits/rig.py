@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.text_table import MISSING, TextTable, header_words, is_called, number_of, split_header
+from stribeck.files.cells import MISSING, header_words, is_called, number_of, split_header
+from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["MADE_SPEED", "RIG", "Averaged", "Row", "average_repeats", "prepared"]

@@ -14,7 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.text_table import MISSING, cells_of, text_of, values_of
+from stribeck.files.cells import MISSING, cells_of
+from stribeck.files.reading import text_of
+from stribeck.files.text_table import values_of
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.topography import Topography
 

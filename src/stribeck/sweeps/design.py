@@ -8,7 +8,7 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, get_args
@@ -16,23 +16,16 @@ from typing import Annotated, Any, get_args
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.case import (
-    Case,
-    contact_inputs,
-    error_sentence,
-    example_of,
-    geometry_of,
-    group_inputs,
-    read_toml,
-    surface_table,
-)
-from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
+from stribeck.cases.law import ASPERITIES, FROM_TABLES, SURFACE, TABLES_OF, Law
 from stribeck.cases.model_parts import take_parts
+from stribeck.cases.reading import contact_inputs, geometry_of, group_inputs
+from stribeck.cases.tables import error_sentence, example_of, optional_table, shared_types
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts
+from stribeck.files.toml import read_toml
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives, quantity
 from stribeck.quantities.results import Card, Shown
@@ -245,10 +238,10 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
 
 @functools.cache
 def _model(geometry: str) -> Any:
-    """Return the pydantic model of a sweep file of a geometry, made on first use because pydantic is slow to import."""
-    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
+    """Return the pydantic model of a sweep file of a geometry."""
+    from pydantic import BeforeValidator, Field, ValidationInfo, create_model
 
-    known = INPUT_TABLES[geometry]
+    known, shared = INPUT_TABLES[geometry], shared_types()
 
     def check_input(value: Any, info: ValidationInfo) -> float:
         return quantity(str(info.field_name), value, known)
@@ -256,53 +249,33 @@ def _model(geometry: str) -> Any:
     def check_group(value: Any, info: ValidationInfo) -> float:
         return _group(str(info.field_name), value)
 
-    si = Annotated[float, BeforeValidator(check_input)]
-    number = Annotated[float, BeforeValidator(check_group)]
-    text = Annotated[str, Field(strict=True, description="text in quotes")]
+    def optional(kind: Any, description: str, **limits: Any) -> Any:
+        return Annotated[kind | None, Field(strict=True, description=description, **limits)], None
 
-    class Table(BaseModel):
-        model_config = ConfigDict(extra="forbid")
+    def keys(check: Callable[..., float], names: Iterable[str]) -> dict[str, Any]:
+        return dict.fromkeys(names, (Annotated[float, BeforeValidator(check)] | None, None))
 
-    keys: dict[str, Any] = dict.fromkeys(known.quantities, (si | None, None))
-    keys["law"] = (Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law)
-    contact_table = create_model("Contact", __base__=Table, **keys)
+    def table(name: str, **fields: Any) -> Any:
+        made = create_model(name, __base__=shared.Table, **fields)
+        return made, Field(description=f"a table, [{name}]", default_factory=made)
 
-    class GroupTable(Table):
-        speed: number | None = None
-        load: number | None = None
-        roughness: number | None = None
-        boundary_friction: number | None = None
-        beta: number | None = None
-        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
-
-    class Design(Table):
-        kind: Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")] = "grid"
-        points: Annotated[
-            int | None, Field(strict=True, ge=1, le=MOST_STATES, description=f"a whole number from 1 to {MOST_STATES}")
-        ] = None
-        seed: Annotated[int | None, Field(strict=True, ge=0, le=2**63 - 1, description="a whole number, zero or positive")] = (
-            None
-        )
-
-    class Solver(Table):
-        rtol: Annotated[
-            float,
-            Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes"),
-        ] = Case.rtol
-
-    class File(Table):
-        contact: Annotated[contact_table, Field(description="a table, [contact]", default_factory=contact_table)]  # type: ignore[valid-type]
-        groups: Annotated[GroupTable, Field(description="a table, [groups]", default_factory=GroupTable)]
-        vary: Annotated[dict[str, Any], Field(description="a table, [vary]")]
-        design: Annotated[Design, Field(description="a table, [design]", default_factory=Design)]
-        solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
-        surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
-        asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
-        table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
-        title: text = Case.title
-        notes: text = Case.notes
-
-    return File
+    return create_model(
+        "File",
+        __base__=shared.Table,
+        contact=table("contact", **keys(check_input, known.quantities), law=shared.law),
+        groups=table("groups", **keys(check_group, (*GROUPS, *COEFFICIENTS)), law=shared.law),
+        vary=(dict[str, Any], Field(description="a table, [vary]")),
+        design=table(
+            "design",
+            kind=(Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")], "grid"),
+            points=optional(int, f"a whole number from 1 to {MOST_STATES}", ge=1, le=MOST_STATES),
+            seed=optional(int, "a whole number, zero or positive", ge=0, le=2**63 - 1),
+        ),
+        solver=table("solver", rtol=shared.rtol),
+        surface=optional_table("surface", SURFACE),
+        asperities=optional_table("asperities", ASPERITIES),
+        **shared.ends,
+    )
 
 
 # --- what varies ---

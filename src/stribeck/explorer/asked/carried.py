@@ -14,9 +14,10 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from stribeck.cases.case import Case, check_case
+from stribeck.cases.case import Case
 from stribeck.cases.law import LAWS, self_contained
 from stribeck.cases.model_parts import FLUID_LAWS, KEYS, preset_facts, take_parts
+from stribeck.cases.reading import check_case
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry

@@ -1,0 +1,105 @@
+"""TOML files: read within bounds of size and depth, with sentences for what is wrong."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from stribeck.files.reading import content_of
+from stribeck.quantities.units import InputError
+
+__all__ = ["parse_toml", "read_toml"]
+
+LARGEST_TOML = 1_000_000  # [byte]
+
+_DEEPEST = 16
+_MOST_PARTS = 64
+
+# For 20 000 parts Python's parser takes half a minute, so that these are looked for before it sees the text.  Texts may
+# hold a few that look like it.
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
+
+# What Python's parser says of slips that are frequent, and what to do about them.
+_SLIPS = {
+    "Expected newline or end of document after a statement": 'a value with a unit needs quotes, as in radius = "10 mm"',
+    "Cannot overwrite a value": "a key may occur only once in its table",
+}
+
+
+def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
+    """Return the tables of a TOML file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    kind : str
+        What the file is, for sentences.
+    needed : str
+        The table without which it says nothing.
+
+    Returns
+    -------
+    dict
+        What the file says, at least one entry.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is too large, empty or no TOML.
+    """
+    return parse_toml(content_of(path, LARGEST_TOML, f"a TOML {kind}"), path, kind, needed)
+
+
+def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
+    """Return the tables of the content of a TOML file.
+
+    Parameters
+    ----------
+    content : bytes
+        The content.
+    path : pathlib.Path
+        Where it comes from, for sentences.
+    kind, needed : str
+        As in :func:`read_toml`.
+
+    Returns
+    -------
+    dict
+        What the file says, at least one entry.
+
+    Raises
+    ------
+    InputError
+        If it is too large, empty or no TOML.
+    """
+    if len(content) > LARGEST_TOML:
+        raise InputError(f"{path} has more than {LARGEST_TOML} bytes; a {kind} is a short TOML file.")
+    try:
+        # Some editors write a byte-order mark, which TOML does not know.
+        text = content.decode("utf-8-sig")
+        if _DEEP_KEY.search(text):
+            raise ValueError(f"a key has more than {_MOST_PARTS} parts")
+        table = tomllib.loads(text)
+        if _depth(table) > _DEEPEST:
+            raise ValueError(f"tables or lists are nested more than {_DEEPEST} deep")
+    except UnicodeDecodeError as problem:
+        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file.") from None
+    except (ValueError, RecursionError) as problem:
+        said = " ".join(str(problem).split())
+        advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))
+        raise InputError(f"{path} is not valid TOML: {said}{advice}.") from None
+    if not table:
+        raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
+    return table
+
+
+def _depth(table: Any) -> int:
+    """Return how deep tables and lists lie in each other."""
+    depth, level = 0, [table]
+    while level:
+        depth += 1
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [value for values in inner for value in values if isinstance(value, dict | list)]
+    return depth
