@@ -18,7 +18,8 @@ from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.scaling import SCALINGS
 from stribeck.evidence.ball import OBSERVED
 from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
-from stribeck.evidence.formulas import AXES, LOCATED, MEASURED, OF_STATE, error_map, error_maps, kind_of, relative_error
+from stribeck.evidence.error_maps import AXES, error_map, error_maps, kind_of
+from stribeck.evidence.formulas import LOCATED, MEASURED, OF_STATE, relative_error
 
 pytest.importorskip("xarray")
 

@@ -1,4 +1,4 @@
-"""Formulas compared with the solver: the quantity that each predicts, and its relative error, at a state or over a grid.
+"""Formulas compared with the solver: the quantity that each predicts, and its relative error at a state.
 
 Source: none; this is the evidence for :data:`stribeck.asymptotics.FORMULAS`, shown in validity.md.
 """
@@ -6,35 +6,30 @@ Source: none; this is the evidence for :data:`stribeck.asymptotics.FORMULAS`, sh
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from stribeck._types import Array, Flags
+from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups
-from stribeck.contacts.scaling import SCALINGS
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.evidence import ball
-from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.units import InputError, show
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
-__all__ = ["AXES", "FIELDS", "MEASURED", "RTOL", "error_map", "error_maps", "judged_groups", "kind_of", "relative_error"]
+__all__ = ["FIELDS", "MEASURED", "RTOL", "judged_groups", "relative_error"]
 
 FIELDS = ("gap", "pressure", "contact_pressure", "fluid_pressure")
 """Fields along the contact: predicted by formulas of the groups and of positions x."""
@@ -45,16 +40,13 @@ POSITIONS = 201
 RTOL = 1e-7
 """Relative tolerance of the reference states."""
 
-SMALL_SHARE = 1e-3
-"""Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and
-on a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
 
 CURVE_POINTS = 41
 """Points of the curve on which a minimum or a load share is searched, which is then located exactly."""
 
 
 @lru_cache(maxsize=4096)
-def _state(groups: Groups) -> Solution:
+def state_of(groups: Groups) -> Solution:
     found: Solution = solve(groups, rtol=RTOL)
     return found
 
@@ -115,7 +107,7 @@ LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
 def _measured(name: str, groups: Groups, **options: Any) -> float:
     if groups.geometry == "point":
         return ball.OBSERVED[name](ball.state(groups), options)
-    return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](_state(groups), options)
+    return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](state_of(groups), options)
 
 
 MEASURED: dict[str, Callable[..., float]] = {
@@ -123,24 +115,6 @@ MEASURED: dict[str, Callable[..., float]] = {
 }
 """The solver's value of each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
 (1 by default) and definition (that of the article)."""
-
-AXES: dict[str, dict[str, tuple[float, ...]]] = {
-    "smooth": {"speed": (-11, 8, 4)},
-    "rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-6, 3, 3)},
-    "mixed": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 3), "speed": (-12, 2, 3)},
-    "located": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 2)},
-    "smooth ball": {"speed": (-5, 4, 3)},
-    "ball at rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 2, 2)},
-    "any ball": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-3, -1, 1), "speed": (-8, 1, 1)},
-}
-"""The groups on which the error depends for each kind of formula, and their grid: loads, or decades and points per decade."""
-
-LABELS = {"load": "load group", "relative_roughness": "relative roughness h_rms/F_N", "speed": "speed group"}
-
-ROUNDING = 1e-12
-
-SMOOTH_LOAD = 0.1
-"""Load at which smooth contacts are solved; their relative errors do not depend on it."""
 
 
 def judged_groups(formula: Formula[Any], groups: Groups) -> Groups:
@@ -184,13 +158,13 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     """
     state = judged_groups(formula, groups)
     if formula.predicts in FIELDS:
-        return _field_error(formula, groups, ball.state(state) if state.geometry == "point" else _state(state), options)
+        return field_error(formula, groups, ball.state(state) if state.geometry == "point" else state_of(state), options)
     found = float(formula.function(groups, **options))
     right = MEASURED[formula.predicts](state, **options)
     return (found - right) / right
 
 
-def _field_error(formula: Formula[Any], groups: Groups, state: Solution | PointState, options: dict[str, Any]) -> float:
+def field_error(formula: Formula[Any], groups: Groups, state: Solution | PointState, options: dict[str, Any]) -> float:
     assert formula.interval is not None, f"{formula.name} is a field and has no interval"
     ends = formula.interval(groups)
     if not np.isfinite(ends).all():
@@ -202,239 +176,3 @@ def _field_error(formula: Formula[Any], groups: Groups, state: Solution | PointS
         right = getattr(state.profile(x), formula.predicts)
     found = formula.function(groups, x, **options)
     return float(np.abs(found - right).max() / np.abs(right).max())
-
-
-def kind_of(formula: Formula[Any]) -> str:
-    """Return the kind of a formula, by the groups on which its error depends, as a key of :data:`AXES`.
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-
-    Returns
-    -------
-    str
-        Its plane, or ``"located"`` where it predicts what is located on a curve over the speed; for the ball the same
-        in words.
-    """
-    if formula.geometry == "point":
-        return {"smooth": "smooth ball", "rest": "ball at rest", "mixed": "any ball"}[formula.plane]
-    return "located" if formula.predicts in LOCATED else formula.plane
-
-
-def error_map(
-    formula: Formula[Any],
-    *,
-    load: ArrayLike | None = None,
-    relative_roughness: ArrayLike | None = None,
-    speed: ArrayLike | None = None,
-    predicts: str | None = None,
-    **options: Any,
-) -> xarray.Dataset:
-    r"""Return the error of a formula relative to the solver over a grid of states.
-
-    .. math:: \epsilon = \frac{f - s}{s}, \qquad \epsilon = \frac{\max_x |f - s|}{\max_x |s|} \text{ for a field}
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-    load, relative_roughness, speed : float or array_like, shape (n,), optional
-        The grid [-], ascending; by default that of :data:`AXES`, as on validity.md.  What the error does not depend on is
-        not used: of formulas for smooth contacts all but the speed, of those at rest and of located quantities the speed.
-    predicts : str, optional
-        Key of :data:`MEASURED` to judge by, where the options make the formula predict something else.
-    **options
-        Arguments of the formula beside the groups; boundary_friction, beta and definition hold for the solver too.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``error``, signed but for a field, nan where formula or solver has no value, and ``valid``, whether a state is in the
-        formula's range, over those of load, relative_roughness and speed on which the error depends; needs the extra ``data``.
-
-    Raises
-    ------
-    InputError
-        If an axis is not made of ascending numbers, positive but for a speed of zero, or ``predicts`` is unknown.
-    MissingExtraError
-        If xarray is not installed.
-
-    Notes
-    -----
-    States are solved to ``rtol`` 1e-7, along rows over the speed.  On rows fields are good to 1e-4 between the nodes.
-    """
-    if predicts is not None and predicts not in MEASURED:
-        raise InputError(f"predicts = {show(predicts)}; it must be one of {', '.join(MEASURED)}.")
-    judged = formula if predicts is None else replace(formula, predicts=predicts)
-    grid = {"load": load, "relative_roughness": relative_roughness, "speed": speed}
-    return _maps(kind_of(judged), [judged], _axes(kind_of(judged), grid), options)[formula.name]
-
-
-def error_maps(
-    formulas: Sequence[Formula[Any]],
-    *,
-    load: ArrayLike | None = None,
-    relative_roughness: ArrayLike | None = None,
-    speed: ArrayLike | None = None,
-) -> dict[str, xarray.Dataset]:
-    """Return the maps of several formulas, each state being solved once for all of them.
-
-    Parameters
-    ----------
-    formulas : sequence of Formula
-        The formulas.
-    load, relative_roughness, speed : float or array_like, shape (n,), optional
-        As in :func:`error_map`.
-
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        What :func:`error_map` returns, by name of the formula.
-
-    Raises
-    ------
-    InputError
-        If an axis is not made of ascending numbers, positive but for a speed of zero.
-    MissingExtraError
-        If xarray is not installed.
-    """
-    grid = {"load": load, "relative_roughness": relative_roughness, "speed": speed}
-    found: dict[str, xarray.Dataset] = {}
-    for kind in AXES:
-        members = [formula for formula in formulas if kind_of(formula) == kind]
-        if members:
-            found |= _maps(kind, members, _axes(kind, grid), {})
-    return {formula.name: found[formula.name] for formula in formulas}
-
-
-def _axes(kind: str, given: dict[str, ArrayLike | None]) -> dict[str, Array]:
-    """Return the grid for a kind of formulas, as given or else as in :data:`AXES`."""
-    found = {}
-    for name, default in AXES[kind].items():
-        value = given[name]
-        if value is None and name != "load":
-            low, high, each = default
-            value = np.logspace(low, high, round((high - low) * each) + 1)
-        axis = np.atleast_1d(np.asarray(default if value is None else value, dtype=float))
-        lowest = 0.0 if name == "speed" else math.ulp(0.0)
-        if axis.ndim != 1 or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all() or not (axis >= lowest).all():
-            raise InputError(f"{name} = {show(value)}; a map needs positive increasing numbers (a speed may be zero).")
-        found[name] = axis
-    return found
-
-
-def _maps(
-    kind: str, formulas: Sequence[Formula[Any]], axes: dict[str, Array], options: dict[str, Any]
-) -> dict[str, xarray.Dataset]:
-    """Return the maps of formulas of one kind."""
-    loads = axes.get("load", np.array([SMOOTH_LOAD]))
-    kappas = axes.get("relative_roughness", np.zeros(1))
-    speeds = axes.get("speed", np.array([1.0 if kind == "located" else 0.0]))
-    shape = len(loads), len(kappas), len(speeds)
-    geometry = formulas[0].geometry
-    exponent = SCALINGS[geometry].roughness_exponent
-    fields = [formula for formula in formulas if formula.predicts in FIELDS]
-    wanted = {formula.predicts for formula in formulas} - set(FIELDS)
-    right = {name: np.full(shape, math.nan) for name in wanted}
-    errors = {formula.name: np.full(shape, math.nan) for formula in fields}
-    estimate = 0.0
-    for i, load in enumerate(loads.tolist()):
-        for j, kappa in enumerate(kappas.tolist()):
-            base = Groups(1.0, load, kappa * load**exponent, geometry=geometry)
-            for name in wanted & set(LOCATED):
-                right[name][i, j, 0] = LOCATED[name](base, options)
-            for k, on_ball in _ball_row(base, speeds) if geometry == "point" else ():
-                estimate = max(estimate, on_ball.error_estimate)
-                for name in wanted:
-                    right[name][i, j, k] = ball.OBSERVED[name](on_ball, options)
-                for formula in fields:
-                    groups = replace(base, speed=float(speeds[k]))
-                    errors[formula.name][i, j, k] = _field_error(formula, groups, on_ball, options)
-            for k, found_in_row in _row(base, speeds) if kind != "located" and geometry == "line" else ():
-                small = "fluid_load_share" in wanted and 0 < found_in_row.fluid_load_share < SMALL_SHARE
-                state = _state(found_in_row.groups) if small else found_in_row
-                estimate = max(estimate, state.error_estimate)
-                for name in wanted:
-                    right[name][i, j, k] = OF_STATE[name](state, options)
-                for formula in fields:
-                    groups = replace(base, speed=float(speeds[k]))
-                    errors[formula.name][i, j, k] = _field_error(formula, groups, state, options)
-    groups = Groups(speeds, loads[:, None, None], kappas[:, None] * loads[:, None, None] ** exponent, geometry=geometry)
-    found = {}
-    for formula in formulas:
-        if formula not in fields:
-            with np.errstate(all="ignore"):
-                values = np.broadcast_to(formula.function(groups, **options), shape)
-                errors[formula.name] = (values - right[formula.predicts]) / right[formula.predicts]
-        valid = np.broadcast_to(_valid(formula, groups, options), shape)
-        found[formula.name] = _dataset(formula, options, axes, errors[formula.name], valid, estimate)
-    return found
-
-
-def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Flags:
-    """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
-    steps = 1 - ROUNDING, 1 + ROUNDING
-    near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
-    given = {name: options[name] for name in ("boundary_friction", "beta") if name in options}
-    return np.asarray(np.logical_or.reduce([formula.valid(state, **given) for state in near]))
-
-
-def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
-    """Return the states of one load and roughness over the speed that could be solved, with their places in ``speeds``."""
-    moving = [k for k, speed in enumerate(speeds.tolist()) if speed > 0]
-    # Two speeds would be taken as the ends of a curve.
-    alone = list(range(len(speeds))) if len(moving) < 3 else [k for k in range(len(speeds)) if k not in moving]
-    found = [(k, _state(replace(base, speed=float(speeds[k])))) for k in alone]
-    if len(moving) > 2:
-        try:
-            curve = stribeck_curve(load=base.load, roughness=base.roughness, speed=speeds[moving], rtol=RTOL)
-        except SolveError:
-            return found
-        places = dict(zip(speeds.tolist(), range(len(speeds)), strict=True))
-        found += [(places[value], state) for value, state in zip(curve.values.tolist(), curve.solutions, strict=True)]
-    return found
-
-
-def _ball_row(base: Groups, speeds: Array) -> list[tuple[int, PointState]]:
-    """Return the states of a ball of one load and roughness over the speed, with their places in ``speeds``."""
-    found = ball.row([replace(base, speed=float(speed)) for speed in speeds])
-    return [(k, state) for k, state in enumerate(found) if state is not None]
-
-
-def _dataset(
-    formula: Formula[Any], options: dict[str, Any], axes: dict[str, Array], error: Array, valid: Flags, estimate: float
-) -> xarray.Dataset:
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a map of errors", "data", "xarray") from None
-    shape = tuple(map(len, axes.values()))
-    given = ", ".join(f"{name}={value!r}" for name, value in options.items())
-    field = formula.predicts in FIELDS
-    label = f"error of {formula.name} relative to the solver" + (
-        ", largest over x relative to the largest value" if field else ""
-    )
-    return xarray.Dataset(
-        {
-            "error": (tuple(axes), error.reshape(shape), {"units": "1", "long_name": label}),
-            "valid": (
-                tuple(axes),
-                valid.reshape(shape),
-                {"units": "1", "long_name": f"whether in its range: {formula.range}"},
-            ),
-        },
-        coords={name: (name, values, {"units": "1", "long_name": LABELS[name]}) for name, values in axes.items()},
-        attrs={
-            "title": f"{formula.name}({given})" if given else formula.name,
-            "formula": formula.name,
-            "predicts": formula.predicts,
-            "reference": formula.source,
-            "range": formula.range,
-            "worst_stated": formula.worst,
-            "rtol": RTOL,
-            "error_estimate": estimate,
-            "source": f"stribeck {version('stribeck')}",
-        },
-    )

@@ -1,0 +1,162 @@
+"""What the tables of a sweep file may hold: what stays fixed, what varies, and the sentences for what cannot be."""
+
+import functools
+import math
+from collections.abc import Callable, Iterable
+from typing import Annotated, Any, get_args
+
+from stribeck.cases.law import ASPERITIES, SURFACE
+from stribeck.cases.tables import example_of, optional_table, shared_types
+from stribeck.contacts.groups import Groups
+from stribeck.quantities.hints import advice_on
+from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives, quantity
+from stribeck.quantities.units import InputError, show
+from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind
+
+__all__ = ["COEFFICIENTS", "GROUPS", "axis_of", "design_problems", "file_model", "kind_of", "missing"]
+
+MOST_STATES = 1_000_000
+
+GROUPS = ("speed", "load", "roughness")
+COEFFICIENTS = ("boundary_friction", "beta")
+"""What friction needs beside groups."""
+
+
+@functools.cache
+def file_model(geometry: str) -> Any:
+    """Return the pydantic model of a sweep file of a geometry."""
+    from pydantic import BeforeValidator, Field, ValidationInfo, create_model
+
+    known, shared = INPUT_TABLES[geometry], shared_types()
+
+    def check_input(value: Any, info: ValidationInfo) -> float:
+        return quantity(str(info.field_name), value, known)
+
+    def check_group(value: Any, info: ValidationInfo) -> float:
+        return _group(str(info.field_name), value)
+
+    def optional(kind: Any, description: str, **limits: Any) -> Any:
+        return Annotated[kind | None, Field(strict=True, description=description, **limits)], None
+
+    def keys(check: Callable[..., float], names: Iterable[str]) -> dict[str, Any]:
+        return dict.fromkeys(names, (Annotated[float, BeforeValidator(check)] | None, None))
+
+    def table(name: str, **fields: Any) -> Any:
+        made = create_model(name, __base__=shared.Table, **fields)
+        return made, Field(description=f"a table, [{name}]", default_factory=made)
+
+    return create_model(
+        "File",
+        __base__=shared.Table,
+        contact=table("contact", **keys(check_input, known.quantities), law=shared.law),
+        groups=table("groups", **keys(check_group, (*GROUPS, *COEFFICIENTS)), law=shared.law),
+        vary=(dict[str, Any], Field(description="a table, [vary]")),
+        design=table(
+            "design",
+            kind=(Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")], "grid"),
+            points=optional(int, f"a whole number from 1 to {MOST_STATES}", ge=1, le=MOST_STATES),
+            seed=optional(int, "a whole number, zero or positive", ge=0, le=2**63 - 1),
+        ),
+        solver=table("solver", rtol=shared.rtol),
+        surface=optional_table("surface", SURFACE),
+        asperities=optional_table("asperities", ASPERITIES),
+        **shared.ends,
+    )
+
+
+def kind_of(table: dict[str, Any]) -> Kind | None:
+    """Return the kind of design that a file asks for, None if there is none such."""
+    design = table.get("design", {})
+    kind = design.get("kind", "grid") if isinstance(design, dict) else None
+    return next((known for known in get_args(Kind) if known == kind), None)
+
+
+def axis_of(name: str, entry: Any, kind: Kind, si: bool, inputs: InputTable) -> Axis:
+    """Return what one entry of ``[vary]`` says."""
+    known = tuple(inputs.quantities) if si else (*GROUPS, *COEFFICIENTS)
+    if name not in known:
+        hint = advice_on(name, known) or f"known are {', '.join(known)}"
+        raise InputError(f"{show(name)} cannot vary; {hint}.")
+    check: Callable[[str, Any], float] = functools.partial(quantity, table=inputs) if si else _group
+    if isinstance(entry, list):
+        if not entry:
+            raise InputError(f"{name} = [] is empty; list its values.")
+        return Axis(name, values=tuple(check(name, value) for value in entry))
+    if kind == "list" or not isinstance(entry, dict):
+        ranges = "" if kind == "list" else ", or a range as in { range = [1, 10], points = 11 }"
+        raise InputError(f"{name} = {show(entry)} must be a list of values{ranges}.")
+    extra = [key for key in entry if key not in ("range", "points", "spacing")]
+    if extra:
+        raise InputError(f"{name} has the unknown key {show(extra[0])}; known are range, points and spacing.")
+    ends, spacing, points = entry.get("range"), entry.get("spacing", "log"), entry.get("points")
+    if not isinstance(ends, list) or len(ends) != 2:
+        raise InputError(f"{name}: range = {show(ends)} must be a list of two values, the lowest and the highest.")
+    low, high = (check(name, end) for end in ends)
+    if not low < high:
+        raise InputError(f"{name}: range = {show(ends)} must increase; write the lowest value first.")
+    if spacing not in ("log", "linear"):
+        raise InputError(f"{name}: spacing = {show(spacing)} must be 'log' or 'linear'.")
+    if spacing == "log" and low == 0:
+        raise InputError(f"{name}: range = {show(ends)} begins at zero; add spacing = 'linear', or list the values.")
+    if kind in RANDOM:
+        if points is not None:
+            raise InputError(f"{name}: points = {show(points)} is for grids; with kind = '{kind}' it belongs in [design].")
+        return Axis(name, low=low, high=high, spacing=spacing)
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MOST_STATES:
+        raise InputError(f"{name}: points = {show(points)} must be a whole number from 2 to {MOST_STATES}.")
+    return Axis(name, low=low, high=high, points=points, spacing=spacing)
+
+
+def design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
+    """Return what in ``[design]`` does not go with its kind or with the axes."""
+    kind, points = design["kind"], design["points"]
+    problems = []
+    if kind in RANDOM:
+        if points is None:
+            problems.append(f"[design] points is missing; set how many states kind = '{kind}' draws, as in points = 256.")
+        elif kind == "sobol" and points & (points - 1):
+            near = 2 ** round(math.log2(points))
+            problems.append(f"[design] points = {points} must be a power of two for kind = 'sobol', such as {near}.")
+        return problems
+    for key in ("points", "seed"):
+        if design[key] is not None:
+            problems.append(f"[design] {key} = {design[key]} is for {', '.join(RANDOM)}; kind = '{kind}' does not use it.")
+    sizes = {axis.name: len(axis) for axis in axes}
+    if kind == "list" and len(set(sizes.values())) > 1:
+        counts = ", ".join(f"{name} has {size}" for name, size in sizes.items())
+        problems.append(f"[vary] the lists must have the same length with kind = 'list': {counts}.")
+    states = math.prod(sizes.values()) if kind == "grid" else max(sizes.values())
+    if states > MOST_STATES:
+        problems.append(f"[vary] makes {states} states; at most {MOST_STATES} are possible in one sweep.")
+    return problems
+
+
+def missing(
+    fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables: tuple[str, ...], inputs: InputTable
+) -> list[str]:
+    """Return what is given twice or not at all; ``by_tables`` are the inputs that the surface gives."""
+    table = "contact" if si else "groups"
+    problems = []
+    for name in varied:
+        if name in fixed:
+            problems.append(f"[{table}] {name} = {show(fixed[name])} also stands in [vary]; keep one of them.")
+    given = {**fixed, **varied}
+    if not si:
+        return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
+    for name in inputs.names:
+        if name not in given and name not in inputs.choices and name not in by_tables:
+            problems.append(f"[contact] {name} is missing; {example_of(name, inputs)}, or let it vary in [vary].")
+    try:
+        check_alternatives(given, inputs)
+    except InputError as problem:
+        problems.append(f"[contact] {problem}")
+    return problems
+
+
+def _group(name: str, value: Any) -> float:
+    """Return a group or a coefficient, checked."""
+    if name in COEFFICIENTS:
+        return quantity(name, value)
+    if isinstance(value, str):
+        raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
+    return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
