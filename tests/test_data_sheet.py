@@ -9,9 +9,9 @@ from command_line import EXAMPLES, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
-from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
+from stribeck.quantities.given.conversions import CONVERSIONS, GIVEN, read_given
+from stribeck.quantities.given.uncertain import split_error
 from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
-from stribeck.quantities.uncertain import split_error
 from stribeck.uncertainty.states import _by_quadratics, _values, states_of
 
 SHEET = {

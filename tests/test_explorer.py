@@ -35,7 +35,7 @@ from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
 from stribeck.quantities import units
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.solids.viscoelastic import Prony
 
 START = server.example()

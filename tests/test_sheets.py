@@ -14,8 +14,8 @@ from stribeck.cases import model_parts
 from stribeck.cases.law import LAWS
 from stribeck.data_sheet.report import page_of
 from stribeck.fluids import presets
-from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import FACTS
+from stribeck.quantities.given.conversions import CONVERSIONS
 from stribeck.quantities.inputs import INPUT_TABLES
 
 

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.quantities.units import DIMENSIONS, InputError, format_factor, format_percent, format_si, to_si
+from stribeck.quantities.formats import format_factor, format_percent, format_si
+from stribeck.quantities.units import DIMENSIONS, InputError, to_si
 
 pytestmark = pytest.mark.quick
 

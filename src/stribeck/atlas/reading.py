@@ -30,7 +30,8 @@ from stribeck.atlas.tables import BOX, TABLES, covers, for_groups, holds_for
 from stribeck.contacts.friction import PURE_SLIDING, Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.line import Groups, InputError
-from stribeck.quantities.inputs import quantity, refuse_former
+from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import show
 
 __all__ = [

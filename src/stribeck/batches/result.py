@@ -18,7 +18,8 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import REGIMES, regime_numbers
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.quantities.inputs import quantity, refuse_former, unit_of
+from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.inputs import quantity, unit_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown

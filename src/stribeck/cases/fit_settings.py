@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from stribeck.cases.model_parts import take_parts
-from stribeck.quantities.hints import advice_on
-from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, ROWS, InputTable, quantity
+from stribeck.quantities.given.hints import advice_on
+from stribeck.quantities.input_rows import ROWS
+from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, quantity
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.quantities.units import InputError, show, to_si
 

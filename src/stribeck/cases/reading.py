@@ -16,10 +16,11 @@ from stribeck.cases.tables import error_sentence, example_of, file_model
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
 from stribeck.files.toml import read_toml
-from stribeck.quantities.conversions import read_given
+from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.facts import FACTS, fact_values
-from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives
-from stribeck.quantities.uncertain import split_error
+from stribeck.quantities.given.conversions import read_given
+from stribeck.quantities.given.uncertain import split_error
+from stribeck.quantities.inputs import INPUT_TABLES, InputTable
 from stribeck.quantities.units import InputError
 
 __all__ = ["check_case", "contact_inputs", "geometry_of", "group_inputs", "load_case"]

@@ -6,7 +6,7 @@ import math
 
 from stribeck.checks.check import Check, verdict_of
 from stribeck.checks.subject import Subject
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0

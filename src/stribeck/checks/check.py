@@ -255,7 +255,8 @@ def number_text(value: float, unit: str) -> str:
     str
         The text.
     """
-    from stribeck.quantities.units import DIMENSIONS, format_si
+    from stribeck.quantities.formats import format_si
+    from stribeck.quantities.units import DIMENSIONS
 
     kind = next((name for name, each in DIMENSIONS.items() if unit and each.unit == unit), None)
     if kind is None or not math.isfinite(value):

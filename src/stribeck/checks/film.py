@@ -7,7 +7,7 @@ import math
 from stribeck.checks.check import Check, Verdict, number_text, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contacts.friction_rules import slide_to_roll
-from stribeck.quantities.units import format_percent
+from stribeck.quantities.formats import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
 USUAL_THINNING, WATERY_THINNING = 1e6, 1e9

@@ -9,7 +9,8 @@ from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
 from stribeck.curves.regime import Transition
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import InputError
 from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 

@@ -36,8 +36,9 @@ from stribeck.cli.arguments import (
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, say, stdout_console
 from stribeck.cli.progress import interruptible
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError
 
 
 def solve_command(

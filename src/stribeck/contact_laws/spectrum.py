@@ -22,8 +22,9 @@ import numpy as np
 import scipy
 
 from stribeck._types import Array
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.results import ByValue
-from stribeck.quantities.units import InputError, format_si, show
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
 

@@ -17,7 +17,8 @@ from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
-from stribeck.quantities.inputs import LINE, InputTable, quantity, refuse_former, signature_of
+from stribeck.quantities.contact_values import refuse_former, signature_of
+from stribeck.quantities.inputs import LINE, InputTable, quantity
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]

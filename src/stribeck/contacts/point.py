@@ -18,8 +18,10 @@ from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
-from stribeck.quantities.inputs import POINT, InputTable, quantity, refuse_former, signature_of
-from stribeck.quantities.units import InputError, format_si, show
+from stribeck.quantities.contact_values import refuse_former, signature_of
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.inputs import POINT, InputTable, quantity
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["HamrockDowsonNumbers", "PointContact"]
 

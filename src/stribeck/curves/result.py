@@ -25,9 +25,10 @@ from stribeck.curves.regime import Regime, Transition, check_transition, excess,
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.files.results import Exported
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError, format_si, show
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.path import SolvedPath

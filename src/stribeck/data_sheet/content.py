@@ -21,7 +21,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.quantities.units import format_percent, format_share, format_si
+from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import regime_margins, scanned_rtol
 from stribeck.regimes.sentences import ways_to

@@ -27,9 +27,10 @@ from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau
+from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import InputError, format_percent, show
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:

@@ -24,9 +24,10 @@ from stribeck.files.datasets import Column, listed, new_dataset
 from stribeck.files.results import Exported
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import DIMENSIONS, InputError, format_percent, format_si, show
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:

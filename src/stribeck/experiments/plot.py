@@ -25,7 +25,7 @@ from stribeck.files.pictures import (
     picture,
 )
 from stribeck.files.writing import PathLike
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

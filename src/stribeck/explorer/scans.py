@@ -13,8 +13,9 @@ from stribeck.cases.law import law_of_file
 from stribeck.explorer.asked.carried import json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, with_model
 from stribeck.explorer.downloads import shown_name
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import quantity
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
 from stribeck.surfaces.case_table import surface_table
 from stribeck.surfaces.files import read_topography

@@ -12,8 +12,8 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import regime_of
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
+from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES
-from stribeck.quantities.units import format_factor, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.base_solution import BaseSolution
 

@@ -15,8 +15,8 @@ from stribeck.contacts.line import InputError
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
-from stribeck.quantities.units import format_si
 
 __all__ = ["format_interval", "format_value", "load_fit_case", "write_fitted_case"]
 

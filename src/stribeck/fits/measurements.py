@@ -21,10 +21,12 @@ from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
 from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
-from stribeck.quantities.inputs import ROWS, quantity
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.input_rows import ROWS
+from stribeck.quantities.inputs import quantity
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
-from stribeck.quantities.units import InputError, format_si, show, to_si
+from stribeck.quantities.units import InputError, show, to_si
 
 if TYPE_CHECKING:
     import xarray

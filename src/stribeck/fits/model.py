@@ -36,8 +36,9 @@ from stribeck.contacts.with_parts import STEP, check_solid, models_beside
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states.between import Between
 from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError
 
 __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
 

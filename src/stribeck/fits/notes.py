@@ -13,8 +13,8 @@ from stribeck.contacts.contact import Contact
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.objective import Minimum
 from stribeck.fits.result import FitOutcome, FittedInput
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import LINE
-from stribeck.quantities.units import format_si
 
 __all__ = ["notes_of", "outcome_of"]
 

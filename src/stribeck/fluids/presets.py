@@ -31,7 +31,8 @@ from typing import Any
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
-from stribeck.quantities.units import InputError, format_si, show, to_si
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["PRESETS", "Liquid", "Preset", "celsius", "glycerol_water", "water"]
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from stribeck.quantities.inputs import Input, InputTable
+from stribeck.quantities.input_rows import Input
+from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_value", "with_part_value"]
@@ -17,7 +18,7 @@ __all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_valu
 
 @dataclass(frozen=True, kw_only=True)
 class PartInput(Input):
-    """A number of a law, see :class:`stribeck.quantities.inputs.Input`.
+    """A number of a law, see :class:`stribeck.quantities.input_rows.Input`.
 
     Attributes
     ----------

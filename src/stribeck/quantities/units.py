@@ -1,4 +1,4 @@
-"""Text with units to SI numbers, and SI numbers to short text, at the border of the package.
+"""Text with units to SI numbers, at the border of the package.
 
 Inside the package everything is dimensionless; this module is the only one that knows what a unit is. Numbers
 are read here and only the unit itself is handed to pint, because pint reads "1,5 MPa" as 15 MPa and
@@ -18,19 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "DIMENSIONS",
-    "Dimension",
-    "InputError",
-    "format_bound",
-    "format_factor",
-    "format_percent",
-    "format_share",
-    "format_si",
-    "read_number",
-    "real_array",
-    "to_si",
-]
+__all__ = ["DIMENSIONS", "Dimension", "InputError", "read_number", "real_array", "to_si"]
 
 
 class InputError(ValueError):
@@ -236,139 +224,6 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
     if found.size and found.dtype.kind not in "iuf":
         raise InputError(f"{name} = {show(value)} is not made of real numbers; give a number or an array of them.")
     return found.astype(np.float64)
-
-
-def format_si(value: float, dimension: str, digits: int = 3) -> str:
-    """Return an SI number as short text with a fitting prefix, for people.
-
-    Parameters
-    ----------
-    value : float
-        The number, in the SI unit of its dimension.
-    dimension : str
-        One of the keys of :data:`DIMENSIONS`.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Text that :func:`to_si` reads back (where the value is finite and has a unit).
-
-    Examples
-    --------
-    >>> format_si(3.1e-4, "speed")
-    '310 µm/s'
-    """
-    value = float(value)
-    steps = DIMENSIONS[dimension].steps
-    power = 0
-    if value != 0 and math.isfinite(value):
-        # Rounding first: 999.9e-6 with three digits is 1 mm, not 1000 µm.
-        exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])
-        power = max((step for step in steps if step <= exponent), default=min(steps))
-    number = f"{value / 10.0**power:.{digits}g}"
-    if re.fullmatch(r"-?\d(\.\d+)?e\+0[345]", number):  # 1000 GPa, where there is no larger unit, not 1e+03 GPa
-        number = f"{float(number):.0f}"
-    return f"{number} {steps[power]}".rstrip()
-
-
-def format_bound(error: float) -> str:
-    """Return a bound by a positive error with one digit, rounded up.
-
-    Parameters
-    ----------
-    error : float
-        The error.
-
-    Returns
-    -------
-    str
-        The text.
-
-    Examples
-    --------
-    >>> format_bound(3.2e-8)
-    '< 4e-08'
-    """
-    digits = f"{error:.0e}"
-    if float(digits) < error * (1 - 1e-9):  # rounding of the error itself is no reason
-        step = 10.0 ** int(digits.partition("e")[2])
-        digits = f"{float(digits) + step:.0e}"
-    return f"< {digits if error < 1e-4 else format(float(digits), 'g')}"
-
-
-def format_factor(factor: float) -> str:
-    """Return a factor with three digits, written out up to a million.
-
-    Parameters
-    ----------
-    factor : float
-        The factor.
-
-    Returns
-    -------
-    str
-        The text.
-
-    Examples
-    --------
-    >>> format_factor(5.527), format_factor(189600.0)
-    ('5.53', '190000')
-    """
-    return f"{float(f'{factor:.3g}'):.0f}" if 999.5 <= factor < 999_500 else f"{factor:.3g}"
-
-
-def format_percent(part: float, digits: int = 2) -> str:
-    """Return a part of a whole in per cent.
-
-    Parameters
-    ----------
-    part : float
-        The part, 1 for the whole.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        The text.
-
-    Examples
-    --------
-    >>> format_percent(0.9999), format_percent(0.1462)
-    ('100 %', '15 %')
-    """
-    return f"{float(f'{100 * part:.{digits}g}'):g} %"
-
-
-LEAST_SHARE = 1e-4
-"""Smallest share that is worth a number in text; files hold all of them."""
-
-
-def format_share(part: float, error: float) -> str:
-    """Return a share in per cent, or a bound where it is below its error or a ten-thousandth.
-
-    Parameters
-    ----------
-    part : float
-        The share, 0 to 1; exactly zero is none at all.
-    error : float
-        Its absolute error.
-
-    Returns
-    -------
-    str
-        The text.
-
-    Examples
-    --------
-    >>> format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)
-    ('20.3 %', '< 0.01 %')
-    """
-    if 0 < part <= max(error, LEAST_SHARE):
-        return f"{format_bound(100 * max(error, LEAST_SHARE))} %"
-    return f"{100 * part:.3g} %"
 
 
 def show(value: Any) -> str:

@@ -30,8 +30,9 @@ from stribeck.files.pictures import (
     picture,
 )
 from stribeck.files.writing import PathLike
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import QUANTITIES, SYMBOLS
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     import xarray

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.quantities.units import format_factor, format_si
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 
 __all__ = ["ways_to"]

@@ -21,7 +21,7 @@ from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import refuse_former
+from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.corrector import Corrector

@@ -20,11 +20,11 @@ from stribeck.contacts.regime import Regime, regime_of
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.quantities.inputs import refuse_former
+from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import format_si
 
 if TYPE_CHECKING:
     import xarray

@@ -9,7 +9,7 @@ from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import format_percent, format_si
+from stribeck.quantities.formats import format_percent, format_si
 
 __all__ = [
     "ADVICE",

@@ -27,8 +27,9 @@ from stribeck.files.pictures import (
     picture,
 )
 from stribeck.files.writing import PathLike
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import SYMBOLS
-from stribeck.quantities.units import DIMENSIONS, InputError, format_si
+from stribeck.quantities.units import DIMENSIONS, InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.solution import Solution
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.topography import Topography
 

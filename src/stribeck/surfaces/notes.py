@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.surfaces.detrend import Form
 from stribeck.surfaces.fit_result import SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum

@@ -13,7 +13,8 @@ import numpy as np
 
 from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, blank_figure, figure_of, finish_figure, picture
 from stribeck.files.writing import PathLike
-from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import DIMENSIONS
 from stribeck.surfaces.analysis import Surface
 
 if TYPE_CHECKING:

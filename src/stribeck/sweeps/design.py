@@ -25,9 +25,10 @@ from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.files.toml import read_toml
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError
 from stribeck.sweeps.points import Axis, Kind, points_of
 from stribeck.sweeps.tables import COEFFICIENTS, GROUPS, axis_of, design_problems, file_model, kind_of, missing
 

@@ -20,7 +20,7 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.uncertain import relative_error
+from stribeck.quantities.given.uncertain import relative_error
 from stribeck.quantities.units import InputError, show
 from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import films_of, states_by_inputs, states_of

@@ -11,7 +11,8 @@ import numpy as np
 from stribeck.contacts.contact import Contact
 from stribeck.files.datasets import Column, listed, new_dataset
 from stribeck.files.results import Exported
-from stribeck.quantities.units import DIMENSIONS, format_percent, format_share, format_si
+from stribeck.quantities.formats import format_percent, format_share, format_si
+from stribeck.quantities.units import DIMENSIONS
 
 if TYPE_CHECKING:
     import xarray

@@ -12,8 +12,8 @@ from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.part_inputs import fitted_rows
-from stribeck.quantities.units import format_percent, format_si
 
 if TYPE_CHECKING:
     from rich.console import Console

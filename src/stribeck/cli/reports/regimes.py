@@ -20,8 +20,8 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
+from stribeck.quantities.formats import LEAST_SHARE, format_factor, format_share, format_si
 from stribeck.quantities.part_inputs import fitted_rows
-from stribeck.quantities.units import LEAST_SHARE, format_factor, format_share, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution

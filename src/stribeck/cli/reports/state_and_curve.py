@@ -23,7 +23,7 @@ from stribeck.cli.reports.words import (
 )
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:

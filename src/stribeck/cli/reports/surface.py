@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from stribeck.cli.exits import say
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 from stribeck.surfaces.analysis import Surface
 from stribeck.surfaces.plot import error_text
 

@@ -17,9 +17,9 @@ from stribeck.contacts.friction import PURE_SLIDING, Definition, Friction
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.regime import regime_of
-from stribeck.quantities.inputs import ROWS
+from stribeck.quantities.formats import format_bound, format_si
+from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.units import format_bound, format_si
 from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:

@@ -20,8 +20,10 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry
 from stribeck.explorer.asked.carried import contact_of, model_of_case, rest_of_case, tables_of
-from stribeck.quantities.inputs import INPUT_TABLES, Input, InputTable, quantity
-from stribeck.quantities.units import DIMENSIONS, InputError, format_si, read_number, show, to_si
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.input_rows import Input
+from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
+from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
 __all__ = [
     "FIELDS",

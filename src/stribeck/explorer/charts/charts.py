@@ -15,7 +15,8 @@ from stribeck.explorer.charts.palette import PIN_DASHES, Palette
 from stribeck.explorer.charts.parts import Options, chart, line, linear_axis, log_axis, marker, pairs, points
 from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale
 from stribeck.explorer.measured import Measured, speeds_of
-from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.point.solution import Field
 
 __all__ = ["DEFINITIONS", "all_charts"]

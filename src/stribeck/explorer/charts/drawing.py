@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stribeck.explorer.answer import Answer
-from stribeck.quantities.units import format_si
+from stribeck.quantities.formats import format_si
 
 __all__ = ["drawing"]
 

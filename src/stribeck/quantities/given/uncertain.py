@@ -7,7 +7,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from stribeck.quantities.units import DIMENSIONS, InputError, format_percent, show, to_si
+from stribeck.quantities.formats import format_percent
+from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = ["has_error", "relative_error", "split_error"]
 
