@@ -23,10 +23,12 @@ from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
+from stribeck.fits.certainty.posterior import draw_posterior
 from stribeck.fits.fit import _places
-from stribeck.fits.model import FrictionModel, free_inputs
-from stribeck.fits.objective import minimise, objective
-from stribeck.fits.posterior import draw_posterior
+from stribeck.fits.free_inputs import free_inputs
+from stribeck.fits.least_squares import minimise
+from stribeck.fits.model import FrictionModel
+from stribeck.fits.objective import objective
 from stribeck.fits.states.cylinders import solved_parts
 from stribeck.fits.states.ways import atlas_parts
 
@@ -406,7 +408,7 @@ def test_outliers_do_not_steer_the_robust_fit():
 
 
 def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
-    for module in ("stribeck.fits.fit", "stribeck.fits.objective"):
+    for module in ("stribeck.fits.fit", "stribeck.fits.least_squares"):
         monkeypatch.setattr(importlib.import_module(module), "minimise", partial(minimise, most=1))
     found = sb.fit(noisy(1), START, intervals=False)
     assert not found.converged and "did not converge" in found.outcome.value

@@ -7,7 +7,8 @@ from fit_data import TRUE, measured
 import stribeck as sb
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.free_inputs import free_inputs
+from stribeck.fits.model import FrictionModel
 from stribeck.fits.states.cylinders import kept_parts, solved_parts
 from stribeck.fits.states.ways import in_atlas
 

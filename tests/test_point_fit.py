@@ -10,7 +10,8 @@ from command_line import call
 import stribeck as sb
 from stribeck.batches.lattice import Lattice
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.free_inputs import free_inputs
+from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import ways
 from stribeck.fits.states.balls import curve_parts, lattice_parts
 from stribeck.fits.states.parts import FrictionParts

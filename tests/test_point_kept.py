@@ -12,7 +12,8 @@ import stribeck as sb
 from stribeck.batches.kept import KeptStates, between
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
-from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.free_inputs import free_inputs
+from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import ways
 from stribeck.fits.states.balls import kept_balls
 from stribeck.fits.states.between import Between

@@ -159,8 +159,8 @@ def fit_command(
     steps = None if posterior is None else as_whole("posterior", posterior)
     if steps is not None:
         need_extra("a posterior", "fit", "emcee")
+    from stribeck.fits.certainty.posterior import draw_posterior
     from stribeck.fits.fit import fit
-    from stribeck.fits.posterior import draw_posterior
 
     with interruptible() as progress:
         found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))

@@ -23,12 +23,14 @@ from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.identifiability import undetermined
+from stribeck.fits.certainty.identifiability import undetermined
+from stribeck.fits.certainty.profile_likelihood import BetterMinimumError, Ends, profile_ends
+from stribeck.fits.free_inputs import FreeInput, free_inputs
+from stribeck.fits.least_squares import Minimum, effective_parameters, minimise, settle
 from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
+from stribeck.fits.model import FrictionModel
 from stribeck.fits.notes import notes_of, outcome_of
-from stribeck.fits.objective import Minimum, Objective, effective_parameters, minimise, objective, settle
-from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
+from stribeck.fits.objective import Objective, objective
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FittedInput, unit_of
 from stribeck.fits.states.between import Between

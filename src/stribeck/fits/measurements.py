@@ -7,65 +7,33 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, header_words, is_called, number_of, split_header
+from stribeck.files.cells import split_header
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
-from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
+from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column
+from stribeck.fits.table.repeats import Row, average_repeats
+from stribeck.fits.table.rig import prepared
+from stribeck.fits.table.values import Values
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.input_rows import ROWS
-from stribeck.quantities.inputs import quantity
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Measurements", "read_measurements"]
 
-Abscissa = Literal["speed", "speed_viscosity", "hersey_number"]
-
-ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
-
 UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1"}
-
-DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
-
-WORDS = {
-    "speed": {"speed", "velocity", "sliding speed", "sliding velocity", "u", "v"},
-    "speed_viscosity": {"eta u", "etau", "speed viscosity", "viscosity speed", "viscosity times speed"},
-    "hersey_number": {"hersey", "hersey number"},
-    "friction": {
-        *("friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"),
-        *("friction coeff", "traction coeff", "traction coefficient"),
-    },
-    "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
-    "curve": {"curve", "series", "sample"},
-    MADE_RATIO: {"slide to roll"},
-} | {
-    row.name: {row.name.replace("_", " "), *row.headers}
-    for row in ROWS
-    if not row.derived and row.name not in ("speed", "boundary_friction")
-}
-"""Headers that say what a column is, in lower case; in other languages [fit.columns] says it."""
-
-LARGEST_FRICTION = 10.0
-"""Friction coefficient from which percent are suspected."""
-
-BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
-"""Units of a friction coefficient."""
-
-_FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,10 +152,10 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     settings = settings or FitSettings()
     table = read_table(Path(path), settings.header_row)
     written = table.header
-    table, made, run = prepared(table, settings, lambda meaning: _has(table, settings, meaning))
-    columns = _columns(table, settings)
-    abscissa = _abscissa(table, columns)
-    reader = _Reader(table, settings)
+    table, made, run = prepared(table, settings, lambda meaning: has_column(table, settings, meaning))
+    columns = columns_of(table, settings)
+    abscissa = abscissa_of(table, columns)
+    reader = Values(table, settings)
     rows: list[Row] = []
     runs: list[str] = []
     empty: list[int] = []
@@ -233,149 +201,6 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     return found
 
 
-class _Reader:
-    """Cells in SI units; a cell with a unit of its own is read with that."""
-
-    def __init__(self, table: TextTable, settings: FitSettings) -> None:
-        self.table, self.settings = table, settings
-        self.decimal = "," if table.decimal_comma else "."
-        self.factors: dict[tuple[str, str], float] = {}
-
-    def value(self, i: int, column: str, meaning: str) -> float | None:
-        """Return a value in SI units, None where it is missing."""
-        at = self.table.header.index(column)
-        cell = self.table.rows[i][at]
-        where = f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
-        if cell.lower() in MISSING:
-            return None
-        found = number_of(cell, self.decimal)
-        if found is None:
-            raise InputError(f"{where}: {show(cell)} is not a number; leave the cell empty where a value is missing.")
-        number, unit = found
-        value = number * (self._factor(unit, meaning, where) if unit else self._unit(column, at, meaning))
-        return self._checked(value, cell, meaning, where)
-
-    def _unit(self, column: str, at: int, meaning: str) -> float:
-        """Return the SI value of the unit of a column: that of [fit.units], of the header, or of a row of units."""
-        key = (column, meaning)
-        if key not in self.factors:
-            row = self.table.units_row[at] if self.table.units_row else ""
-            unit = self.settings.units.get(meaning) or split_header(column)[1] or row
-            where = f"{self.table.path}: column {show(column)}"
-            self.factors[key] = self._factor(unit, meaning, where)
-        return self.factors[key]
-
-    def _factor(self, unit: str, meaning: str, where: str) -> float:
-        dimension = DIMENSION.get(meaning) or self.settings.inputs.quantities[meaning].dimension
-        if dimension == "number":
-            if unit not in BARE:
-                raise InputError(f"{where} has the unit {show(unit)}; {meaning.replace('_', ' ')} is a bare number or in %.")
-            return BARE[unit]
-        if not unit:
-            noun = meaning.replace("_", " ")
-            raise InputError(
-                f"{where} has no unit; write it in the header, as in '{noun} [mm/s]', or {meaning} = \"mm/s\" in [fit.units]."
-                if dimension == "speed"
-                else f"{where} has no unit; write it in the header, in brackets, or in [fit.units] under {meaning}."
-            )
-        try:
-            return to_si(f"1 {unit}", dimension, meaning)
-        except InputError as problem:
-            raise InputError(f"{where}: {str(problem).replace(f'{meaning} = ', 'unit ', 1)}") from None
-
-    def _checked(self, value: float, cell: str, meaning: str, where: str) -> float:
-        if self.settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
-            value = abs(value)
-        if meaning in ABSCISSAS and value <= 0:
-            kind = "negative" if value < 0 else "zero, which is static friction and not a point of the curve"
-            raise InputError(
-                f"{where}: {show(cell)} is {kind}; take the row out, or set magnitudes = true in [fit] where the sign "
-                "is the direction of a stroke."
-                if value < 0
-                else f"{where}: {show(cell)} is {kind}; take the row out."
-            )
-        if meaning == "friction" and value <= 0:
-            raise InputError(
-                f"{where}: {show(cell)} must be positive; take the row out, correct the zero of the force, or set "
-                "magnitudes = true in [fit] where the sign is the direction of a stroke."
-            )
-        if meaning == "friction" and value > LARGEST_FRICTION:
-            raise InputError(
-                f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "
-                'header or friction = "%" in [fit.units].'
-            )
-        if meaning == "error" and value <= 0:
-            raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
-        if meaning in self.settings.inputs.quantities and meaning != "speed":
-            try:
-                quantity(meaning, value, self.settings.inputs)
-            except InputError as problem:
-                raise InputError(f"{where}: {problem}") from None
-        return value
-
-
-def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
-    """Return what is in the file -> headers of its columns."""
-    found: dict[str, list[str]] = {}
-    for meaning, wanted in settings.columns.items():
-        texts = wanted if isinstance(wanted, list) else [wanted]
-        if meaning in RIG:
-            continue
-        for text in texts:
-            same = [name for name in table.header if is_called(name, text)]
-            if len(same) != 1:
-                raise InputError(
-                    f"{table.path}: {_listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}."
-                )
-            found.setdefault(meaning, []).append(same[0])
-    declared = {name for names in found.values() for name in names}
-    declared |= {name for name in table.header if _declared_for_rig(name, settings)}
-    for name in table.header:
-        words = header_words(name)
-        for meaning, known in WORDS.items():
-            if name in declared or words not in known or meaning in settings.columns:
-                continue
-            if meaning == "speed" and MADE_SPEED in table.header and name != MADE_SPEED:
-                continue
-            if meaning in found:
-                raise InputError(
-                    f"{table.path}: the columns {show(found[meaning][0])} and {show(name)} both look like {meaning}; "
-                    f"say which in [fit.columns] of the case."
-                )
-            found[meaning] = [name]
-    if "friction" not in found or not any(name in found for name in ABSCISSAS):
-        missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
-        used = {name for names in found.values() for name in names}
-        unknown = [name for name in table.header if name not in used] or [""]
-        speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", split_header(name)[1])]
-        bare = [name for name in unknown if name not in speeds and split_header(name)[1] in BARE and not _FORCE.search(name)]
-        if "friction" in missing and not bare and any(_FORCE.search(name) for name in unknown):
-            raise InputError(
-                f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
-                "friction, the friction force over the normal force."
-            )
-        examples = {"speed": (speeds or unknown)[0], "friction": (bare or unknown)[-1]}
-        raise InputError(
-            f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
-            f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."
-        )
-    return found
-
-
-def _listed(table: TextTable) -> str:
-    return f"the columns are {', '.join(show(name) for name in table.header if name)} (separated by {table.separator}s)"
-
-
-def _abscissa(table: TextTable, columns: dict[str, list[str]]) -> Abscissa:
-    there = [name for name in ABSCISSAS if name in columns]
-    if len(there) > 1:
-        # Speed is what was set; the others follow from it.
-        if "speed" in there:
-            return "speed"
-        raise InputError(f"{table.path}: the file has {' and '.join(there)}; keep one of them.")
-    return there[0]
-
-
 def _curves(
     path: str, rows: list[Row], settings: FitSettings, named: bool
 ) -> tuple[tuple[str, ...], list[int], tuple[dict[str, float], ...]]:
@@ -409,25 +234,6 @@ def _label(inputs: dict[str, float], of_all: list[dict[str, float]], settings: F
     rows = settings.inputs.quantities
     differing = [name for name in inputs if len({each.get(name) for each in of_all}) > 1]
     return ", ".join(f"{rows[name].label} {format_si(inputs[name], rows[name].dimension, 4)}" for name in differing) or "data"
-
-
-def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
-    """Return whether a table has an unambiguous column of friction, or of an abscissa."""
-    wanted = ABSCISSAS if meaning == "speed" else (meaning,)
-    if any(each in settings.columns for each in wanted):
-        return True
-    words = {header_words(name) for name in table.header if not _declared_for_rig(name, settings)}
-    # Beside these a sliding speed is the difference of the surface speeds, and the speed their sum.
-    rolling = [PATTERNS[each] for each in ("slide_to_roll", "entrainment_speed", "surface_speeds")]
-    rolls = any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
-    sliding = {"sliding speed", "sliding velocity"} if rolls else set()
-    return any(words & (WORDS[each] - sliding) for each in wanted)
-
-
-def _declared_for_rig(name: str, settings: FitSettings) -> bool:
-    """Return whether the settings say that a column is one of a rig."""
-    texts = [text for meaning in RIG for text in np.atleast_1d(settings.columns.get(meaning, [])).tolist()]
-    return any(is_called(name, text) for text in texts)
 
 
 def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[str, ...], run: str) -> str:

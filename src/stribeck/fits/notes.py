@@ -10,8 +10,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
-from stribeck.fits.identifiability import Unidentifiable
-from stribeck.fits.objective import Minimum
+from stribeck.fits.certainty.identifiability import Unidentifiable
+from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import FitOutcome, FittedInput
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import LINE

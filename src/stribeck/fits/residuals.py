@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.fits.objective import MAD, Minimum
+from stribeck.fits.least_squares import MAD, Minimum
 
 __all__ = ["Quality", "judge_residuals"]
 

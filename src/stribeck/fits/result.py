@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.fits.identifiability import Unidentifiable
+from stribeck.fits.certainty.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.fits.states.between import Between

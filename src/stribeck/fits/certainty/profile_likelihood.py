@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fits.objective import Minimum, minimise
+from stribeck.fits.least_squares import Minimum, minimise
 
 __all__ = ["BetterMinimumError", "Ends", "profile_ends"]
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
-from stribeck.fits.objective import Minimum
+from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit
 from stribeck.fits.states.ways import in_atlas
 from stribeck.quantities.units import InputError

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fits.model import FreeInput, Prediction
+from stribeck.fits.free_inputs import FreeInput
+from stribeck.fits.model import Prediction
 
 __all__ = ["Unidentifiable", "undetermined"]
 

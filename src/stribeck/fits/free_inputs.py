@@ -1,0 +1,145 @@
+"""The inputs that a fit is free to change: where they start, their bounds and priors, and whether these data can tell them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.contacts.contact import Contact
+from stribeck.fits.measurements import Measurements
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
+from stribeck.quantities.units import InputError
+
+__all__ = ["FreeInput", "free_inputs"]
+
+DEFAULT_FACTOR = 1e3
+"""Bounds of a free input without any of its own: this factor below and above its first value."""
+
+
+@dataclass(frozen=True)
+class FreeInput:
+    """An input that is fitted, as the logarithm of a factor on what it starts from.
+
+    Parameters
+    ----------
+    name : str
+        Name of the input of the contact.
+    curve : int or None
+        The curve that has it for itself; None where all share it.
+    start : float
+        Value of factor one, in SI units; 1 where curves that share it have different values.
+    low, high : float
+        Bounds of the logarithm of the factor.
+    prior : tuple of float, or None
+        Mean and standard deviation of that logarithm before the data.
+    is_factor : bool
+        Whether what is fitted is a common factor on values that differ.
+    """
+
+    name: str
+    curve: int | None
+    start: float
+    low: float
+    high: float
+    prior: tuple[float, float] | None = None
+    is_factor: bool = False
+
+    def value(self, theta: float) -> float:
+        """Return the input in SI units, or the factor, at a logarithm of the factor."""
+        return self.start * math.exp(theta)
+
+
+def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], settings: FitSettings) -> tuple[FreeInput, ...]:
+    """Return the inputs to fit, one for each name, or one for each curve where the settings say so.
+
+    Parameters
+    ----------
+    contact : Contact
+        What the fit starts from.
+    data : Measurements
+        The curves.
+    names : sequence of str
+        Inputs to fit.
+    settings : FitSettings
+        Bounds, priors, and which inputs each curve has for itself.
+
+    Returns
+    -------
+    tuple of FreeInput
+        In the order of ``names`` and of the curves.
+
+    Raises
+    ------
+    InputError
+        If one cannot be told from these data at all, starts at zero, or starts outside its bounds.
+    """
+    found = []
+    contacts = [contact.replace(**inputs) for inputs in data.inputs]
+    for name in names:
+        _check_matters(name, data)
+        values = {curve: value for curve, each in enumerate(contacts) if (value := getattr(each, name, None)) is not None}
+        if not values:
+            raise InputError(f"{name} is free, but no curve has one: it belongs to {_owner(name)}; give it in the case.")
+        alone = name in settings.per_curve and len(data.inputs) > 1
+        differ = max(values.values()) > min(values.values())
+        for curve in values if alone else (None,):
+            start = values[curve] if curve is not None else 1.0 if differ else next(iter(values.values()))
+            if start == 0:
+                raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
+            largest = start if curve is not None else max(values.values())
+            smallest = start if curve is not None else min(values.values())
+            each_free = _free_input(name, curve, start, differ and not alone, settings, contact)
+            found.append(_in_range(each_free, smallest, largest))
+    return tuple(found)
+
+
+def _owner(name: str) -> str:
+    """Return the part of the contact that has a parameter of this name."""
+    return PART_INPUTS[name].of if name in PART_INPUTS else "another contact"
+
+
+def _in_range(free: FreeInput, smallest: float, largest: float) -> FreeInput:
+    """Return a free input whose bounds leave all its values in the range of its law."""
+    row = PART_INPUTS.get(free.name)
+    if row is None:
+        return free
+    low, high = row.range
+    low = max(free.low, math.log(low / smallest)) if low > 0 else free.low
+    return replace(free, low=low, high=min(free.high, math.log(high / largest)))
+
+
+def _free_input(
+    name: str, curve: int | None, start: float, is_factor: bool, settings: FitSettings, contact: Contact
+) -> FreeInput:
+    low, high = -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
+    prior = settings.priors.get(name)
+    if is_factor and (name in settings.bounds or prior):
+        raise InputError(
+            f"{name} has bounds or a prior in [fit], but its values differ between the curves and share one factor; "
+            f"list {name} under per_curve, or leave bounds and prior out."
+        )
+    if name in settings.bounds:
+        ends = settings.bounds[name]
+        if not ends[0] <= start <= ends[1]:
+            limits = " to ".join(_text(name, end, contact) for end in ends)
+            raise InputError(f"{name} starts at {_text(name, start, contact)}, outside its bounds {limits}.")
+        low, high = math.log(ends[0] / start), math.log(ends[1] / start)
+    mean_and_width = (math.log(prior.value / start), math.log(prior.factor)) if prior else None
+    return FreeInput(name, curve, start, low, high, mean_and_width, is_factor)
+
+
+def _text(name: str, value: float, contact: Contact) -> str:
+    return format_si(value, fitted_rows(contact.INPUTS)[name].dimension)
+
+
+def _check_matters(name: str, data: Measurements) -> None:
+    """Refuse an input on which the predicted friction does not depend, given what friction was measured against."""
+    if name == "viscosity" and data.abscissa != "speed":
+        against = data.abscissa.replace("_", " times ") if data.abscissa == "speed_viscosity" else "Hersey number"
+        raise InputError(
+            f"viscosity is free, but friction was measured against {against}, which holds it already: "
+            "no value of it changes the prediction. Take it out of free, or give the speeds."
+        )

@@ -1,0 +1,303 @@
+"""The minimum of an objective by least squares, with the size of the noise found from its own residuals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.fits.model import Prediction
+from stribeck.fits.objective import CAUCHY, Objective
+from stribeck.quantities.units import InputError
+from stribeck.solver.solve import SolveError
+
+__all__ = ["MAD", "Minimum", "effective_parameters", "minimise", "settle"]
+
+MAD = 1.482602218505602
+"""Standard deviation over median absolute deviation of a normal distribution."""
+
+VALUE_TOLERANCE, PLACE_TOLERANCE = 1e-8, 1e-7
+"""Relative change of q and absolute change of a logarithm at which the least squares end; solved states are good to 1e-6."""
+
+MOST_EVALUATIONS = 200
+
+NO_INFORMATION = 1e-9
+"""Singular value of the derivatives, over the largest, below which a direction is rounding and no step goes along it."""
+
+SETTLED = 1e-4
+"""Relative change of the scale of the noise below which it is settled."""
+
+MOST_ROUNDS = 30
+
+NEAR = 1e-2
+"""Distance to the optimum, in standard errors, below which a fit counts as converged."""
+
+AT_BOUND = 1e-4
+"""Distance of the logarithm of a factor from its bound below which it is at it."""
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the least squares converged or stopped.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (p,)
+        Logarithms of the factors.
+    value : float
+        q there.
+    residuals : ndarray, shape (n,)
+        Residuals of the data over their errors.
+    jacobian : ndarray, shape (n, p)
+        Their derivatives.
+    prediction : Prediction
+        Friction there.
+    fall : float
+        How far q is above its optimum, by its derivatives.
+    ended : bool
+        Whether the iteration and the scale of the noise came to rest.
+    evaluations : int
+        Predictions that were made.
+    objective : Objective
+        What was minimised, with its final scale.
+    """
+
+    theta: Array
+    value: float
+    residuals: Array
+    jacobian: Array
+    prediction: Prediction
+    fall: float
+    ended: bool
+    evaluations: int
+    objective: Objective
+
+    @property
+    def distance(self) -> float:
+        """Estimated distance to the optimum, in standard errors."""
+        noise = noise_of(self) if self.objective.sigma is None else 1.0
+        return math.sqrt(self.fall) / max(noise, 1e-300)
+
+    @property
+    def converged(self) -> bool:
+        """Whether this is the optimum, within a hundredth of a standard error."""
+        return self.ended and self.distance < NEAR
+
+    @property
+    def at_bound(self) -> Array:
+        """Which logarithms of factors are at one of their bounds."""
+        low, high = self.objective.bounds
+        return np.asarray((self.theta - low < AT_BOUND) | (high - self.theta < AT_BOUND))
+
+
+def minimise(
+    goal: Objective,
+    start: Array,
+    fixed: dict[int, float] | None = None,
+    most: int = MOST_EVALUATIONS,
+    on_step: Callable[[int], object] | None = None,
+    tolerance: float = VALUE_TOLERANCE,
+    flat: float = NO_INFORMATION,
+    near: float = 0.0,
+) -> Minimum:
+    """Return the minimum of q near a start, at a given scale of the noise.
+
+    Inputs stay at the start along directions that change no residual.
+
+    Parameters
+    ----------
+    goal : Objective
+        What is minimised.
+    start : ndarray, shape (p,)
+        Where to begin.
+    fixed : dict of int to float, optional
+        Free inputs that are held, and where.
+    most : int
+        Predictions allowed.
+    on_step : callable, optional
+        Called with the number of predictions after each.
+    tolerance : float
+        Relative change of q at which the least squares end.
+    flat : float
+        Singular value of the derivatives, over the largest, below which nothing changes along a direction.
+    near : float
+        Square root of the fall of q, by its derivatives at the start, below which the start is returned.
+
+    Returns
+    -------
+    Minimum
+        What was reached; ``converged`` says whether it is the optimum.
+    """
+    # Imported here because it takes longer than the rest of the package.
+    from scipy.optimize import least_squares
+
+    fixed = fixed or {}
+    moving = np.array([i for i in range(len(start)) if i not in fixed], dtype=int)
+    low, high = goal.bounds
+    rows, means = goal.priors
+    n = len(goal.model.data)
+    kept: dict[bytes, tuple[Array, Array, Prediction]] = {}
+    count = 0
+
+    def whole(x: Array) -> Array:
+        theta = np.asarray(start, dtype=float).copy()
+        theta[list(fixed)] = list(fixed.values())
+        theta[moving] = x
+        return theta
+
+    def evaluate(theta: Array) -> tuple[Array, Array, Prediction]:
+        nonlocal count
+        key = theta.tobytes()
+        if key not in kept:
+            count += 1
+            kept.clear()
+            kept[key] = goal.residuals(theta)
+            if on_step is not None:
+                on_step(count)
+        return kept[key]
+
+    def function(x: Array) -> Array:
+        theta = whole(x)
+        try:
+            return np.concatenate([evaluate(theta)[0], rows @ theta - means, np.zeros(len(x))])
+        except (SolveError, InputError):
+            return np.full(n + len(means) + len(x), np.inf)  # the step is then made shorter
+
+    def derivative(x: Array) -> Array:
+        J = np.concatenate([evaluate(whole(x))[1], rows])[:, moving]
+        return np.concatenate([J, _held(J, flat)])
+
+    def loss(z: Array) -> Array:
+        found = np.stack([z, np.ones_like(z), np.zeros_like(z)])
+        data, c = z[:n], CAUCHY**2
+        found[:, :n] = c * np.log1p(data / c), 1 / (1 + data / c), -1 / c / (1 + data / c) ** 2
+        return found
+
+    def reached(x: Array, ended: bool) -> Minimum:
+        theta = whole(x)
+        r, J, prediction = evaluate(theta)
+        part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
+        return replace(part, fall=_fall(part, moving[~part.at_bound[moving]]))
+
+    chosen: Any = loss if goal.robust else "linear"
+    x = np.clip(np.asarray(start, dtype=float)[moving], low[moving] + 1e-9, high[moving] - 1e-9)
+    first = reached(x, True)  # a start that cannot be solved is an error of its own
+    if len(moving) and first.fall >= near**2:
+        found = least_squares(
+            function,
+            x,
+            jac=derivative,
+            bounds=(low[moving], high[moving]),
+            loss=chosen,
+            ftol=tolerance,
+            xtol=PLACE_TOLERANCE,
+            gtol=VALUE_TOLERANCE,
+            max_nfev=most,
+        )
+        return reached(found.x, found.status > 0)
+    return first
+
+
+def _held(J: Array, flat: float) -> Array:
+    """Return rows, shape (p, p), that hold a Gauss-Newton step where J has no information and leave it alone elsewhere.
+
+    Their residuals are zero.  Without them rounding over rounding would move inputs that do not matter.
+    """
+    _, S, V = np.linalg.svd(J, full_matrices=True)
+    S = np.append(S, np.zeros(len(V)))[: len(V)]
+    size = float(S[0]) if S[0] > 0 else 1.0
+    return np.asarray(np.where(S <= flat * S[0], size, 0.0)[:, None] * V)
+
+
+def _fall(at: Minimum, free: Array) -> float:
+    """Return how far q falls along the Gauss-Newton step that is left, by its derivatives."""
+    rows, means = at.objective.priors
+    influence, _ = at.objective.influence(at.residuals)
+    weights = np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals))
+    J = np.concatenate([np.sqrt(weights)[:, None] * at.jacobian, rows])[:, free]
+    gradient = at.jacobian[:, free].T @ influence + rows[:, free].T @ (rows @ at.theta - means)
+    step = np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
+    return max(0.0, float(gradient @ step))
+
+
+def _scaled(at: Minimum) -> Minimum:
+    """Return the same minimum with its residuals in units of their own standard deviation."""
+    noise = noise_of(at)
+    if noise == 0:
+        return at
+    return replace(
+        at,
+        value=at.value / noise**2,
+        fall=at.fall / noise**2,
+        residuals=at.residuals / noise,
+        jacobian=at.jacobian / noise,
+        objective=replace(at.objective, scale=at.objective.scale * noise),
+    )
+
+
+def noise_of(at: Minimum) -> float:
+    """Return the standard deviation of the residuals, by their median where the loss is robust."""
+    n, p = at.jacobian.shape
+    effective = effective_parameters(at)
+    if at.objective.robust:
+        return float(MAD * np.median(np.abs(at.residuals)) * math.sqrt(n / max(n - effective, 1.0)))
+    return float(math.sqrt((at.residuals @ at.residuals) / max(n - effective, 1.0)))
+
+
+def effective_parameters(at: Minimum) -> float:
+    """Return how many free inputs the data determine beside the priors: trace of (J'J + P)^-1 J'J.
+
+    Parameters
+    ----------
+    at : Minimum
+        The fit.
+
+    Returns
+    -------
+    float
+        The number of free inputs without priors, less with them.
+    """
+    rows, _ = at.objective.priors
+    if not len(rows):
+        return float(at.jacobian.shape[1])
+    H = at.jacobian.T @ at.jacobian
+    return float(np.trace(np.linalg.pinv(H + rows.T @ rows, rcond=1e-14) @ H))
+
+
+def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | None = None) -> Minimum:
+    """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known.
+
+    Parameters
+    ----------
+    goal : Objective
+        What is minimised; its scale is where that of the noise begins.
+    start : ndarray, shape (p,)
+        Where to begin.
+    on_step : callable, optional
+        Called with the number of predictions after each.
+
+    Returns
+    -------
+    Minimum
+        With residuals in units of the noise.
+    """
+    found = minimise(goal, start, on_step=on_step)
+    count = found.evaluations
+    if goal.sigma is not None:
+        return found
+    if not goal.robust and not len(goal.priors[0]):
+        return _scaled(found)  # a common factor on all residuals moves nothing
+    for _ in range(MOST_ROUNDS):
+        noise = noise_of(found)
+        if noise == 0 or not math.isfinite(noise) or abs(math.log(noise)) < SETTLED:
+            break
+        goal = replace(goal, scale=goal.scale * noise)
+        found = minimise(goal, found.theta, on_step=on_step)
+        count += found.evaluations
+    else:
+        return replace(found, ended=False, evaluations=count)
+    return replace(found, evaluations=count)
