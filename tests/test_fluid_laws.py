@@ -12,7 +12,7 @@ from scipy.special import ndtr
 import stribeck as sb
 from stribeck.fluids import local_flow
 from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium, medium_width
-from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, nominal_separation
+from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.eyring import Eyring
@@ -358,6 +358,26 @@ def test_shear_flow_factors_change_sign_with_the_rough_surface_and_nearly_meet_w
     assert (both == 0).all()
     assert substrate[3] == pytest.approx(substrate[4], rel=2e-3)
     assert (substrate > 0).all()
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("argument", ["nominal", "mean"])
+@pytest.mark.parametrize(("gamma", "least"), [(1 / 9, 1.0), (1 / 6, 1.0), (1 / 3, 0.75), (1.0, 0.5), (3.0, 0.5), (9.0, 0.5)])
+def test_where_the_fits_end_flow_goes_on_and_a_wider_gap_carries_more(gamma, least, argument):
+    """Taken further the fits give a negative flow, and past a rough cylinder at rest less of it through a wider gap."""
+    factors = PatirCheng(1.0, gamma, 0.0, argument=argument).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
+    end = least if argument == "mean" else mean_width(least)
+    gap = end * np.array([0.3, 0.6, 0.9, 1 - 1e-9, 1 + 1e-9, 1.1, 1.5])
+    (phi, phi_slope), (carried, slope) = factors.pressure(gap), factors.shear(gap)
+    assert (phi > 0).all()
+    assert (np.diff(phi * gap**3) > 0).all()
+    if argument == "nominal":  # the mean gap taken for it may carry a little backwards
+        assert (np.diff(gap + carried) > 0).all()
+    np.testing.assert_allclose((phi[3], carried[3]), (phi[4], carried[4]), rtol=1e-7)
+    smooth = np.delete(gap, [3, 4])
+    for of, found in ((factors.pressure, phi_slope), (factors.shear, slope)):
+        by_difference = (of(smooth + 1e-6)[0] - of(smooth - 1e-6)[0]) / 2e-6
+        np.testing.assert_allclose(np.delete(found, [3, 4]), by_difference, rtol=1e-5, atol=1e-8)
 
 
 @pytest.mark.quick

@@ -20,7 +20,7 @@ from typing import Literal, Self, TypeVar
 import numpy as np
 import scipy
 
-from stribeck._types import Array
+from stribeck._types import Array, Numbers
 from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -28,9 +28,6 @@ __all__ = ["FLOOR", "PatirCheng", "lifted", "nominal_separation", "scaled_roughn
 
 FLOOR = 1e-4
 """Pressure flow factor that is left where the formula ends at zero: without any flow there is no pressure gradient."""
-
-LEAST = 0.5
-"""Smallest nominal separation over the roughness to which Patir and Cheng's fits are made."""
 
 MOST_STEPS = 60
 
@@ -43,15 +40,15 @@ VANISHED = 7.0
 """H from which phi_fs is zero."""
 
 FACTORS = {
-    9: (0.870, 1.5, 1.011, 0.54, 1.07, 0.08, 0.295),
-    6: (0.520, 1.5, 1.290, 0.62, 1.09, 0.08, 0.388),
-    3: (0.225, 1.5, 1.560, 0.85, 1.13, 0.08, 0.556),
-    1: (0.90, 0.56, 1.899, 0.98, 0.92, 0.05, 1.126),
-    1 / 3: (1.18, 0.42, 1.858, 1.01, 0.76, 0.03, 1.561),
-    1 / 6: (1.38, 0.42, 1.962, 1.08, 0.77, 0.03, 1.754),
-    1 / 9: (1.48, 0.42, 2.046, 1.12, 0.78, 0.03, 1.856),
+    9: (0.5, 0.870, 1.5, 1.011, 0.54, 1.07, 0.08, 0.295),
+    6: (0.5, 0.520, 1.5, 1.290, 0.62, 1.09, 0.08, 0.388),
+    3: (0.5, 0.225, 1.5, 1.560, 0.85, 1.13, 0.08, 0.556),
+    1: (0.5, 0.90, 0.56, 1.899, 0.98, 0.92, 0.05, 1.126),
+    1 / 3: (0.75, 1.18, 0.42, 1.858, 1.01, 0.76, 0.03, 1.561),
+    1 / 6: (1.0, 1.38, 0.42, 1.962, 1.08, 0.77, 0.03, 1.754),
+    1 / 9: (1.0, 1.48, 0.42, 2.046, 1.12, 0.78, 0.03, 1.856),
 }
-"""Peklenik number -> C, r of phi_x and A1, a1, a2, a3, A2 of phi_s."""
+"""Peklenik number -> H to which the fits go, C, r of phi_x and A1, a1, a2, a3, A2 of phi_s."""
 
 
 @dataclass(frozen=True, init=False)
@@ -63,7 +60,11 @@ class PatirCheng(FlowFactors):
         \phi_x = \begin{cases} 1 - C e^{-rH} & \gamma \le 1 \\ 1 + C H^{-r} & \gamma > 1 \end{cases} \qquad
         \phi_s = (2 v - 1) \begin{cases} A_1 H^{a_1} e^{-a_2 H + a_3 H^2} & H \le 5 \\ A_2 e^{-H/4} & H > 5 \end{cases}
 
-    with H the nominal separation over the roughness :math:`\sigma`, found from the mean gap.
+    with H the nominal separation over the roughness :math:`\sigma`, found from the mean gap.  The fits go down to
+    :math:`H_0` = 0.5 for :math:`\gamma \ge 1`, 0.75 for 1/3 and 1 below.  Nearer than that
+
+    .. math:: \phi_x = \phi_x(H_0) \begin{cases} e^{k (H - H_0)} & \gamma \le 1 \\ 1 & \gamma > 1 \end{cases}, \quad
+              k = \frac{\phi_x'(H_0)}{\phi_x(H_0)}, \qquad \phi_s = \phi_s(H_0) \, \frac{h_T(H)}{h_T(H_0)}
 
     Parameters
     ----------
@@ -87,9 +88,10 @@ class PatirCheng(FlowFactors):
 
     Notes
     -----
-    Fitted for H >= 0.5; below, a note is written, and the flow falls to 1e-4 of that between smooth surfaces.  The factor of
-    the shear, :math:`\phi_f`, is the mean of 1/h, which the authors cut off at widths of :math:`\sigma/100`: where
-    asperities touch, it holds no more than that choice.
+    Below :math:`H_0` a note is written, and 1e-4 of the flow between smooth surfaces is left at least.  The fits themselves,
+    taken further, give a negative flow across :math:`\gamma < 1`, and past a rough cylinder at rest sliding would carry less
+    through a wider gap: such a film has several states, or none.  The factor of the shear, :math:`\phi_f`, is the mean of
+    1/h, which the authors cut off at widths of :math:`\sigma/100`: where asperities touch, it holds no more than that choice.
 
     Source: [Patir & Cheng 1978] Eq. (15), [Patir & Cheng 1979].
     """
@@ -149,13 +151,14 @@ class PatirCheng(FlowFactors):
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return phi_x and its slope."""
         H, by_gap = self._separation(gap)
-        C, r = FACTORS[self.gamma][:2]
+        least, C, r = FACTORS[self.gamma][:3]
+        fitted = np.maximum(H, least)
         if self.gamma > 1:
-            inside = np.maximum(H, LEAST)
-            power = C * inside**-r
-            return 1 + power, np.where(H > LEAST, -r * power / inside, 0.0) * by_gap
-        fall = C * np.exp(-r * H)
-        phi, slope = lifted(1 - fall, r * fall)
+            part = C * fitted**-r
+            return 1 + part, np.where(H > least, -r * part / fitted, 0.0) * by_gap
+        part = C * np.exp(-r * fitted)
+        below = np.exp(r * part / (1 - part) * np.minimum(H - least, 0.0))
+        phi, slope = lifted((1 - part) * below, r * part * below)
         return phi, slope * by_gap
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
@@ -163,47 +166,45 @@ class PatirCheng(FlowFactors):
         v = 2 * self.substrate_share - 1
         if v == 0:
             return np.zeros_like(gap), np.zeros_like(gap)
-        H, by_gap = self._separation(gap)
-        _, _, _, a_1, a_2, a_3, _ = FACTORS[self.gamma]
-        near = np.clip(H, 1e-9, LINKED)
-        first, second = self._near(near), self._far(H)
-        phi = np.where(H > LINKED, second, np.where(H > 0, first, 0.0))
-        slope = np.where(H > LINKED, -0.25 * second, np.where(H > 0, first * (a_1 / near - a_2 + 2 * a_3 * near), 0.0))
         assert self.sigma is not None
-        return v * self.sigma * phi, v * self.sigma * slope * by_gap
+        H, by_gap = self._separation(gap)
+        least = FACTORS[self.gamma][0]
+        share = self._near(least)[0] / (self.sigma * self._width(least)[0])
+        near, steep = self._near(np.clip(H, least, LINKED))
+        far = self._far(H)
+        phi = np.where(H > LINKED, far, np.where(H > least, near, share * gap))
+        slope = np.where(H > LINKED, -0.25 * far * by_gap, np.where(H > least, steep * by_gap, share))
+        return v * self.sigma * phi, v * self.sigma * slope
 
-    def _near(self, H: Array) -> Array:
-        """Return the fit of phi_s up to :data:`LINKED`, for v = 1."""
-        _, _, A_1, a_1, a_2, a_3, _ = FACTORS[self.gamma]
-        return np.asarray(A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H))
+    def _near(self, H: Numbers) -> tuple[Array, Array]:
+        """Return the fit of phi_s up to :data:`LINKED`, for v = 1, and its slope by H."""
+        _, _, _, A_1, a_1, a_2, a_3, _ = FACTORS[self.gamma]
+        phi = np.asarray(A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H))
+        return phi, phi * (a_1 / H - a_2 + 2 * a_3 * H)
 
-    def _far(self, H: Array) -> Array:
+    def _far(self, H: Numbers) -> Array:
         """Return the fit of phi_s beyond, for v = 1."""
-        return np.asarray(FACTORS[self.gamma][6] * np.exp(-0.25 * H))
+        return np.asarray(FACTORS[self.gamma][-1] * np.exp(-0.25 * H))
 
     def jump(self, gap: Array, slide: float) -> Array | None:
         """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet.
 
-        Nor do their slopes, nor that of phi_x where the fits end: a kink k between nodes w apart puts a quadrature wrong by
-        k w^2/12 at most, as a jump k w/6 does.  Where phi_s begins, as a power of H, it turns by its value at the next node.
+        Nor do their slopes, nor those where the fits end: a kink k between nodes w apart puts a quadrature wrong by k w^2/12
+        at most, as a jump k w/6 does.
         """
-        v = abs(slide * (2 * self.substrate_share - 1))
+        v = abs(slide * (2 * self.substrate_share - 1)) * (self.sigma or 0.0)
         if v == 0 and self.gamma <= 1:
             return None
         H = self._separation(gap)[0]
-        C, r, _, a_1, a_2, a_3, _ = FACTORS[self.gamma]
-        at, apart = np.array(LINKED), np.abs(np.diff(H)) / 6
-        near, far = float(self._near(at)), float(self._far(at))
-        kink = abs(near * (a_1 / LINKED - a_2 + 2 * a_3 * LINKED) + 0.25 * far)
-        height = v * (self.sigma or 0.0) * (abs(far - near) + kink * apart)
+        apart = np.abs(np.diff(H)) / 6
+        least, C, r = FACTORS[self.gamma][:3]
+        (near, steep), (last, falls), far = self._near(LINKED), self._near(least), self._far(LINKED)
+        width, by_H = self._width(least)
+        of_phi_x = gap[..., :-1] * r / least / (1 + least**r / C) if self.gamma > 1 else 0.0
+        linked, ends = ((H[..., 1:] > at) != (H[..., :-1] > at) for at in (LINKED, least))
         found = np.zeros_like(gap)
-        found[..., :-1] = np.where((H[..., 1:] > LINKED) != (H[..., :-1] > LINKED), height, 0.0)
-        begins = (H[..., 1:] > 0) != (H[..., :-1] > 0)
-        first = self._near(np.clip(np.maximum(H[..., 1:], H[..., :-1]), 0.0, LINKED))
-        found[..., :-1] += np.where(begins, v * (self.sigma or 0.0) / 6 * first, 0.0)
-        if self.gamma > 1:
-            ends = (H[..., 1:] > LEAST) != (H[..., :-1] > LEAST)
-            found[..., :-1] += np.where(ends, gap[..., :-1] * r / LEAST / (1 + LEAST**r / C) * apart, 0.0)
+        found[..., :-1] += linked * v * (np.abs(far - near) + np.abs(steep + 0.25 * far) * apart)
+        found[..., :-1] += ends * (v * np.abs(falls - last * by_H / width) + of_phi_x) * apart
         return found
 
     def friction(self, gap: Array) -> FrictionFactors | None:
@@ -219,10 +220,12 @@ class PatirCheng(FlowFactors):
         fs = v * 11.1 * inside**2.31 * np.exp(-2.38 * inside + 0.11 * inside**2) * (H < VANISHED)
         fs_slope = fs * (2.31 / np.maximum(inside, 1e-9) - 2.38 + 0.22 * inside) * by_gap * (H > 0)
         # Both are of eta s over the nominal separation.
-        ratio = width / np.maximum(H, LEAST)
-        ratio_slope = 1 / self.sigma / np.maximum(H, LEAST) - np.where(H > LEAST, ratio / np.maximum(H, LEAST) * by_gap, 0.0)
-        fp = 1 - 1.4 * np.exp(-0.66 * np.maximum(H, LEAST))
-        fp_slope = np.where(H > LEAST, 0.66 * (1 - fp) * by_gap, 0.0)
+        least = FACTORS[self.gamma][0]
+        fitted = np.maximum(H, least)
+        ratio = width / fitted
+        ratio_slope = 1 / self.sigma / fitted - np.where(H > least, ratio / fitted * by_gap, 0.0)
+        fp = 1 - 1.4 * np.exp(-0.66 * fitted)
+        fp_slope = np.where(H > least, 0.66 * (1 - fp) * by_gap, 0.0)
         return FrictionFactors(
             (width * inverse, inverse / self.sigma + width * inverse_slope * by_gap),
             (fs * ratio, fs_slope * ratio + fs * ratio_slope),
@@ -231,12 +234,18 @@ class PatirCheng(FlowFactors):
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether surfaces are closer than the fits go."""
-        H = self._separation(np.atleast_1d(gap.min()))[0][0]
-        if H >= LEAST:
+        H, least = self._separation(np.atleast_1d(gap.min()))[0][0], FACTORS[self.gamma][0]
+        if H >= least:
             return ()
         return (
-            f"the surfaces come as near as {H:.2g} rms roughnesses; Patir and Cheng's flow factors are fits above {LEAST:g}",
+            f"the surfaces come as near as {H:.2g} rms roughnesses; Patir and Cheng's flow factors are fits above {least:g}",
         )
+
+    def _width(self, H: float) -> tuple[float, float]:
+        """Return the mean gap over the roughness at H, and its derivative."""
+        if self.argument == "mean":
+            return H, 1.0
+        return float(mean_width(H)), float(scipy.special.ndtr(H))
 
     def _separation(self, gap: Array) -> tuple[Array, Array]:
         """Return H and its derivative by the mean gap."""
@@ -248,12 +257,16 @@ class PatirCheng(FlowFactors):
         return H, 1 / (self.sigma * scipy.special.ndtr(H))
 
 
+def mean_width(H: Numbers) -> Numbers:
+    """Return the mean width between Gaussian surfaces at a separation of their mean planes, both over the roughness."""
+    return H * scipy.special.ndtr(H) + np.exp(-0.5 * H * H) / math.sqrt(2 * math.pi)
+
+
 def nominal_separation(width: Array) -> Array:
     """Return the separation of the mean planes at a mean width > 0, both over the roughness of Gaussian surfaces."""
     H = np.array(width, dtype=float)
     for _ in range(MOST_STEPS):  # from above the function is convex: Newton's steps cannot overshoot
-        share = scipy.special.ndtr(H)
-        step = (H * share + np.exp(-0.5 * H * H) / math.sqrt(2 * math.pi) - width) / share
+        step = (mean_width(H) - width) / scipy.special.ndtr(H)
         H = np.maximum(H - step, -37.0)
         if np.abs(step).max(initial=0.0) < 1e-14 * 37:
             break
