@@ -30,6 +30,10 @@ ROUGH = 1e-4
 FAR_OFF = 1e-3
 """Error of a guess above which such a state tells whether the current mesh resolves it."""
 
+ON_THE_WAY = 0.2
+"""Part of the tolerance to which a kept mesh must resolve the gap around its minimum: on the way there from the last state it
+may resolve it worse, and halving that way would not help."""
+
 CHECK_EVERY = 25
 """States between two tests of whether a coarser mesh would do."""
 
@@ -131,7 +135,8 @@ class Corrector:
 
     def _is_resolved(self, state: State, spread: float) -> bool:
         centre = -state.exit / state.dilation
-        return gap_is_resolved(state.mesh, state.gap, self.rtol, centre=centre, spread=spread)
+        part = ON_THE_WAY if spread > 0 else 1.0
+        return gap_is_resolved(state.mesh, state.gap, part * self.rtol, centre=centre, spread=spread)
 
     def _kept(self, point: RefinedState) -> RefinedState:
         """Return the state without its inverse, which is kept here for the next one."""

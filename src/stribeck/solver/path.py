@@ -22,7 +22,7 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.quantities.outcome import Outcome
 
-LONGEST_STEP = 4.0
+LONGEST_STEP = 5.0
 SHORTEST_STEP = 1e-3
 
 SHORTER = 0.75
@@ -30,6 +30,9 @@ SHORTER = 0.75
 
 REACH = 1.2
 """Largest step over the radius of convergence."""
+
+FIRST = 0.83
+"""Length of the first step over that of others: a path begins where the radius is large, and it falls from there."""
 
 KNOT_PART = 0.75
 """Part of the tolerance that a solved state must hold: the rest is for the interpolation."""
@@ -403,7 +406,7 @@ def follow(
         while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
             if len(found) >= MOST_INTERVALS:
                 return SolvedPath(problem, _ascending(found), Outcome.STATE_LIMIT)
-            step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
+            step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol) * (1.0 if found else FIRST)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
