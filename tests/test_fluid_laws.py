@@ -300,6 +300,14 @@ def test_dowson_and_higginsons_density_has_its_published_form():
     p = np.array([0.0, 1e8, 4e8])
     law = DowsonHigginson().scaled(FilmUnits(2e8, 1.0, 1.0, 1.0))
     np.testing.assert_allclose(law.ratio(p / 2e8)[0], (0.59e9 + 1.34 * p) / (0.59e9 + p), rtol=1e-14)
+    end = (
+        -0.059e9 / 2e8
+    )  # beyond a tenth of 0.59 GPa of suction the volume goes on as its parabola, and its pole is not reached
+    suction = end * (1 + 1e-3 * np.arange(-2, 4))
+    volume, slope = 1 / law.ratio(suction)[0], law.ratio(suction)[1]
+    np.testing.assert_allclose(np.diff(volume, 2), np.diff(volume, 2)[0], rtol=1e-2)
+    np.testing.assert_allclose((slope * volume**2)[1:-1], -np.gradient(volume, suction)[1:-1], rtol=1e-5)
+    assert (law.ratio(end * np.array([4.0, 10.0, 40.0]))[0] > 0).all()
 
 
 # Rough surfaces

@@ -147,6 +147,15 @@ def test_films_thinner_than_the_fits_of_the_flow_go_are_found(groups, alpha, gam
     assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
 
 
+def test_a_full_film_whose_suction_stretches_the_fluid_is_found():
+    """Through the pole of the density at a suction of 0.53: the state at 1e-2 was another one, at less there was none."""
+    fluid = sb.fluids.Fluid(None, Barus(0.13765962004016813), DowsonHigginson(0.5259830332010442))
+    groups = sb.Groups(42.893325418030074, 8.223965018275886e-08, 3.2e-9)
+    coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-2, 1e-6))
+    assert fine.profile(np.linspace(0, 4, 41)).fluid_pressure.min() < -0.5
+    assert coarse.central_gap == pytest.approx(fine.central_gap, rel=1e-2)
+
+
 def test_sharp_turns_that_no_load_feels_are_in_the_error():
     """Asperities carry all of the load; the flux gap was stated to 5e-9 and wrong by 3e-4, the drag by 2e-5."""
     groups = sb.Groups(3.3257186828927727e-4, 0.037814811807850256, 0.009539751119065921)

@@ -213,7 +213,10 @@ class DowsonHigginson(DensityLaw):
 
     Notes
     -----
-    Source: [Dowson & Higginson 1966], a fit to mineral oils up to about 0.4 GPa.
+    A fit to mineral oils up to about 0.4 GPa.  Under suction it falls to zero at :math:`p = -c/k` and has a pole at -c; from
+    :math:`-c/10` on the volume :math:`\rho_0/\rho` goes on as its parabola there, and a note is written.
+
+    Source: [Dowson & Higginson 1966].
     """
 
     pressure: float
@@ -249,8 +252,12 @@ class DowsonHigginson(DensityLaw):
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""
         c, k = self.pressure, self.limit
-        below = c + pressure
-        return (c + k * pressure) / below, (k - 1) * c / below**2
+        held = np.maximum(pressure, -TENSION * c)
+        beyond, above = held - pressure, c + k * held
+        falls = (k - 1) * c / above**2
+        bends = 2 * k * falls / above
+        volume = (c + held) / above + (falls + 0.5 * bends * beyond) * beyond
+        return 1 / volume, (falls + bends * beyond) / volume**2
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether suction stretches the fluid farther than the law can mean."""
