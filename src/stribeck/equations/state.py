@@ -42,10 +42,6 @@ END_GAIN = 5.0
 END_TAIL = 3.5e-4
 """Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
 
-FINEST_OF_LAYER = 4.5
-"""Half-width in thicknesses of a layer that panels have at most where bending is felt: laid anew they may be a third wider,
-and from 6 on the layer acts as springs alone."""
-
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which pressures on a layer have no effect."""
 
@@ -421,14 +417,6 @@ def mesh_for(
             fields[0] *= BROKEN
         if broken and tolerance < COARSE and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
             fields.append(asked(np.minimum(half_widths / (WIDEST_FAR * np.abs(centres)), half_widths / (2 * scale))))
-        if thickness < math.inf and stretch[0, 0] == 1.0:
-            pressure = np.abs(np.stack([law.pressure(gap), fluid])).sum(axis=0)
-            felt = groups.speed * (np.abs(flat) + np.repeat(half_widths, x.shape[1])) / gap**3
-            wrong = (felt + np.abs(law.slope(gap, law.pressure(gap)))) * pressure
-            stiff = 1 / central_gap + 1 / np.where(law.decay_length > 0, law.decay_length, np.inf)
-            wrong = wrong + pressure * np.exp(-np.abs(flat - centre) / thickness) * stiff
-            wide = half_widths * wrong.reshape(x.shape).max(axis=1) / (tolerance / TAIL_OF_ERROR) ** 2
-            fields.append(asked(np.minimum(wide, half_widths / (FINEST_OF_LAYER * thickness))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
