@@ -172,39 +172,39 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
     fluid = equations.fluid_pressure(y)
     whole = (fluid @ op.weights)[..., None]
     share = _share_balanced(equations, stretch * whole)
-    _of_balance(equations, y, slopes, share * of_moment, published)
-    of_moment = (1 - share) * of_moment
     if slopes is None:
-        published[..., at.pressure] += of_moment * stretch * (stretch * op.moment + x_c * op.weights)
-    else:
-        first = op.moment_of_gradient if d is None else d * op.moment_of_gradient
-        through = of_moment * equations.speed * stretch * stretch
-        through = through * (first if not op.has_exit else first + x_c * op.load_of_gradient)
-        published[..., at.gap] += through * slopes.by_gap
-        published[..., at.flux_gap] += (through * slopes.by_flux).sum(axis=-1, keepdims=True)
+        slopes = slopes_in_film(film, op.integral, h, p, h_star)
+    g = gradient_in_film(film, op.integral, h, p, h_star)
+    _of_balance(equations, y, g, slopes, share * of_moment, published)
+    of_moment = (1 - share) * of_moment
+    of_pressure = of_moment * stretch * (stretch * op.moment + x_c * op.weights)
+    beyond = of_moment * equations.speed * stretch**3 * op.moment_beyond
+    by_gradient = beyond
+    if p is None:
+        first = stretch * op.moment_of_gradient + x_c * op.load_of_gradient if op.has_exit else op.moment_of_gradient
+        by_gradient = beyond + of_moment * equations.speed * stretch**2 * first
+    published[..., at.gap] += by_gradient * slopes.by_gap
+    published[..., at.flux_gap] += (by_gradient * slopes.by_flux).sum(axis=-1, keepdims=True)
+    if slopes.by_pressure is not None:
+        published[..., at.pressure] += of_pressure + beyond * slopes.by_pressure
     if op.has_exit:
         published[..., at.exit] += of_moment * stretch * whole
     if d is not None:
         values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))[..., None]
         lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
-        published[..., at.dilation] += upper[..., at.dilation] + of_moment * (
-            2 * d * (fluid @ op.moment)[..., None] + x_c * whole
-        )
+        moments = of_moment * (2 * d * (fluid @ op.moment)[..., None] + x_c * whole)
+        moments += (3 * beyond * g).sum(axis=-1, keepdims=True) / d
         if p is None:
-            by_fluid = stretch * (stretch * op.moment + x_c * op.weights)
-            g_part = (fluid - op.cavity_pressure) / d
-            published[..., at.dilation] += of_moment * (g_part * by_fluid).sum(axis=-1, keepdims=True)
+            moments += (of_pressure * (fluid - op.cavity_pressure)).sum(axis=-1, keepdims=True) / d
+        published[..., at.dilation] += upper[..., at.dilation] + moments
     return found
 
 
-def _of_balance(equations: Equations, y: Array, slopes: Slopes | None, factor: Array, row: Array) -> None:
+def _of_balance(equations: Equations, y: Array, g: Array, slopes: Slopes, factor: Array, row: Array) -> None:
     """Add to ``row`` the derivatives of the moment of the fluid pressure by the balance of forces, times ``factor``."""
-    op, at, film, law, d = equations.operators, equations.layout, equations.film, equations.law, equations.dilation(y)
-    h, h_star = y[..., at.gap], y[..., at.flux_gap]
-    p = y[..., at.pressure] if film.uses_pressure else None
-    if slopes is None:
-        slopes = slopes_in_film(film, op.integral, h, p, h_star)
-    g, contact = gradient_in_film(film, op.integral, h, p, h_star), law.pressure(h)
+    op, at, law, d = equations.operators, equations.layout, equations.law, equations.dilation(y)
+    h = y[..., at.gap]
+    contact = law.pressure(h)
     stretch = np.ones(1) if d is None else d
     wet = op.integral.weights + op.integral.weights_beyond if op.has_reformation else op.integral.weights
     through = -factor * stretch * equations.speed * wet

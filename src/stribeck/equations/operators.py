@@ -135,17 +135,26 @@ class Operators:
 
     @cached_property
     def moment(self) -> Array:
-        """Row w xi: nodal pressures -> first moment, on the panels in x alone if the film is full."""
-        row, order = self.mesh.weights * self.mesh.nodes, self.mesh.order
-        row[-order:] = 0.0
-        if self.tail is not None:
-            of_density = self.tail.weights / self.tail.nodes @ self.tail.interpolation(order)
-            row[-order:] = of_density * self.mesh.stretch[-order:]
+        """Row w xi: nodal pressures -> first moment on the panels in x."""
+        row = self.mesh.weights * self.mesh.nodes
+        row[-self.mesh.order :] = 0.0
+        return row
+
+    @cached_property
+    def moment_beyond(self) -> Array:
+        """Row: nodal pressure gradients -> first moment of the pressure beyond the panels in x, by parts."""
+        order, edge = self.mesh.order, self.mesh.edges[-1]
+        row = np.zeros(self.mesh.size)
+        if self.tail is None:
+            row[-order:] = 0.5 * (edge**2 - self.mesh.nodes[-order:] ** 2) * self.mesh.weights[-order:]
+        else:
+            leverage = 0.5 * (edge**2 - self.tail.nodes**-2.0) * self.tail.weights
+            row[-order:] = leverage @ self.tail.interpolation(order) * self.mesh.stretch[-order:]
         return row
 
     @cached_property
     def moment_of_gradient(self) -> Array:
-        """Row w xi A: nodal pressure gradients -> first moment of the pressure."""
+        """Row w xi A: nodal pressure gradients -> first moment of the pressure on the panels in x."""
         return np.asarray(self.integral.after(self.moment[None, :])[0])
 
     @cached_property
