@@ -49,10 +49,6 @@ DRAG_OF_LAYER = 0.02
 """Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
 the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
 
-DRAG_OF_ROLLING, ROLLING_SHARE = 1.2e-4, 5.0
-"""The same over the cube root of the central gap in pure rolling, where there is less drag: so many times the central gap to
-the power 2/3 of that in sliding."""
-
 UNSEEN = 0.2
 """Part of the tolerance that errors may take of which the estimate knows nothing."""
 
@@ -439,9 +435,7 @@ def mesh_for(
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
         allowed = UNSEEN * (tolerance / TAIL_OF_ERROR) ** 2
-        film_gap = min(1.0, float(central_gap.max()))
-        rolling = DRAG_OF_ROLLING * film_gap ** (1 / 3) / (1 + abs(film.slide) / (ROLLING_SHARE * film_gap ** (2 / 3)))
-        dragged = reach * (max(DRAG_OF_LAYER * film_gap, rolling) / allowed) ** 0.25
+        dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) / allowed) ** 0.25
         reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(DIED_AWAY * thickness, dragged))
     if tolerance < COARSE:
         reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
