@@ -9,7 +9,8 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE, exact
 
 import stribeck as sb
-from stribeck.regimes.margins import RegimeMargins, physical_bounds, regime_margins
+from stribeck.regimes.margin_limits import physical_bounds
+from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE, pressure_notes
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact

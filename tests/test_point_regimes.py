@@ -9,7 +9,8 @@ import pytest
 import stribeck as sb
 from stribeck.checks.subject import TRACES, Subject, speed_of_film
 from stribeck.checks.table import checks_of
-from stribeck.regimes.margins import SEARCHES, _limits, physical_bounds, regime_margins, scanned_rtol
+from stribeck.regimes.margin_limits import SEARCHES, limits, physical_bounds, scanned_rtol
+from stribeck.regimes.margins import regime_margins
 
 BALL = ball_data.BALL.replace(slide_to_roll=2.0)
 LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
@@ -17,7 +18,7 @@ LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6,
 
 def test_the_limits_of_a_search_are_where_the_groups_of_a_ball_leave_the_box():
     for name, group in (("load", "load"), ("roughness", "relative_roughness")):
-        low, high = _limits(BALL, name)
+        low, high = limits(BALL, name)
         value = getattr(BALL, name)
         ends = [
             BALL.replace(**{name: value * math.exp(x)}).groups for x in (low, high) if physical_bounds(BALL, name)[0] < value
@@ -25,7 +26,7 @@ def test_the_limits_of_a_search_are_where_the_groups_of_a_ball_leave_the_box():
         assert all(1e-8 * (1 - 1e-9) <= each.load <= 1 + 1e-9 for each in ends)
         assert all(1e-6 * (1 - 1e-9) <= each.relative_roughness <= 1e3 * (1 + 1e-9) for each in ends)
         assert getattr(ends[1], group) > getattr(BALL.groups, group)
-    low, high = _limits(BALL.replace(law=LAW), "load")
+    low, high = limits(BALL.replace(law=LAW), "load")
     assert BALL.replace(law=LAW, load=BALL.load * math.exp(high)).groups.load == pytest.approx(
         min(SEARCHES["point"].largest_group, BALL.groups.load * physical_bounds(BALL, "load")[1] / BALL.load), rel=1e-6
     )

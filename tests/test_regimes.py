@@ -15,9 +15,12 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.curves.stribeck_curve import continued
 from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.regimes import margin_scan
 from stribeck.regimes import margins as margins_module
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margins import BOX, Crossing, Margin, RegimeMargins, regime_margins
+from stribeck.regimes.margin_limits import BOX
+from stribeck.regimes.margin_scan import Crossing, Margin
+from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.regimes.sentences import ways_to
 
 CONTACT = sb.LineContact(
@@ -259,8 +262,8 @@ def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
             raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
         return further(curve, end, *rest)
 
-    monkeypatch.setattr("stribeck.regimes.margins.stribeck_curve", fails_far_out)
-    monkeypatch.setattr("stribeck.regimes.margins.continued", continues_less_far)
+    monkeypatch.setattr("stribeck.regimes.margin_scan.stribeck_curve", fails_far_out)
+    monkeypatch.setattr("stribeck.regimes.margin_scan.continued", continues_less_far)
     roughness = regime_margins(CONTACT).margins[2]
     assert roughness.more is None
     assert roughness.searched[1] == CONTACT.roughness
@@ -466,6 +469,6 @@ def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
     assert heavy.groups.load > 1
     speed = regime_margins(heavy, rtol=1e-4).margins[0]
     slowest = speed.searched[0]
-    assert speed.less is None and heavy.speed / 10 > slowest > 10 * heavy.speed / margins_module.REACH
+    assert speed.less is None and heavy.speed / 10 > slowest > 10 * heavy.speed / margin_scan.REACH
     beyond = [sb.solve(heavy.replace(speed=slowest / factor), rtol=1e-4).fluid_load_share for factor in (1, 10, 1000)]
     assert beyond[0] > beyond[1] > beyond[2] > 1.5 * 0.05

@@ -23,7 +23,8 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margins import regime_margins, scanned_rtol
+from stribeck.regimes.margin_limits import scanned_rtol
+from stribeck.regimes.margins import regime_margins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, solve

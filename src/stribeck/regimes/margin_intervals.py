@@ -20,7 +20,8 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.quantities.units import InputError
-from stribeck.regimes.margins import Crossing, RegimeMargins
+from stribeck.regimes.margin_scan import Crossing
+from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.solve import SolveError
 from stribeck.uncertainty.propagate import RTOLS, kept_errors, moving_with
 

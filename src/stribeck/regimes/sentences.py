@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
+from stribeck.regimes.margin_scan import Crossing, Margin
+from stribeck.regimes.margins import RegimeMargins
 
 __all__ = ["ways_to"]
 

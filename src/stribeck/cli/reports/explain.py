@@ -22,7 +22,8 @@ from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margins import RegimeMargins, regime_margins, scanned_rtol
+from stribeck.regimes.margin_limits import scanned_rtol
+from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:

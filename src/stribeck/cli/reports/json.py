@@ -21,7 +21,8 @@ from stribeck.solver.base_solution import BaseSolution, si_films
 if TYPE_CHECKING:
     from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
-    from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
+    from stribeck.regimes.margin_scan import Crossing, Margin
+    from stribeck.regimes.margins import RegimeMargins
 
 __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
 
