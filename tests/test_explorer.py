@@ -1029,6 +1029,26 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     assert found.boundary[0] == 0  # the fluid carries more than a twentieth at the slowest speed
 
 
+def test_rows_of_a_map_that_start_from_the_curve_of_the_contact_are_those_of_their_own(monkeypatch):
+    monkeypatch.setitem(curves.SOLVED_ROWS, "line", curves.SOLVED_ROWS["line"]._replace(step=10))
+    contact = choices.choose(START, "motion", "rolling").contact
+    like = curves.solved_curve(contact, "balanced", lambda _: None).solved
+    asked = []
+    monkeypatch.setattr(
+        curves, "stribeck_curve", lambda *args, **kw: asked.append(kw["like"]) or sb.stribeck_curve(*args, **kw)
+    )
+    *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None, like)
+    assert asked[0] is like and len({*asked}) > 1  # each from its neighbour
+    for roughness, boundary, hydrodynamic in zip(found.roughness, found.boundary, found.hydrodynamic, strict=True):
+        row = contact.replace(roughness=float(roughness))
+        if 1e-7 < boundary < 1.0:
+            assert sb.solve(row.replace(speed=boundary)).fluid_load_share == pytest.approx(0.05, rel=1e-2)
+        if 1e-7 < hydrodynamic < 1.0:
+            friction = sb.solve(row.replace(speed=hydrodynamic)).friction()
+            assert friction.contact / friction.total == pytest.approx(0.1, rel=1e-2)
+    assert np.isfinite(found.boundary).sum() > 2
+
+
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
     found = read_scan("../profile.csv", PROFILE)
     assert found.words.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.74 to 1.84), beta 0.0197 (")

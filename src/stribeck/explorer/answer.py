@@ -230,7 +230,9 @@ class Answerer:
         key = _diagram_key(contact, definition, speeds)
         if key in self._kept and self._kept[key].part == 1.0:
             return
-        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report):
+        curve: Curve | None = self._kept.get(("solved", _key(contact), definition))
+        like = None if curve is None else curve.solved
+        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, like):
             self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
             yield
 
