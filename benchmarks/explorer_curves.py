@@ -1,8 +1,9 @@
 """The explorer beyond the atlas: CPU time from a moved slider to the data of the solved curve, and of the map of regimes.
 
-Line contacts that no atlas holds, each moved by arrow keys of load, roughness and viscosity; the speed moves along
-the curve and costs no other one.  All that the server does for a key is counted: the state with its fields, the curve with its transitions,
-and both charts.  LU is the time of factorising a 300 x 300 matrix meanwhile: on a busy machine it grows as the others do.
+Line contacts that no atlas holds, each moved by arrow keys of load, roughness and viscosity; the speed moves along the curve
+and costs no other one.  All that the server does for a key is counted: the state with its fields, the curve with its
+transitions, and both charts.  LU is the time of factorising a 300 x 300 matrix meanwhile: on a busy machine it grows as the
+others do.
 """
 
 from __future__ import annotations
