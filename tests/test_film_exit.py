@@ -270,3 +270,41 @@ def test_a_film_that_ends_is_found_from_full_ones_before_suction_cut_their_path(
     groups = sb.Groups(1.026949284796445e-12, 1.6285676358360341, 0.03818644482)
     path = first_path(with_parts(groups, cavitation="exit", solid=sb.solids.Layer(4.978420382416584, 0.5)))
     assert path.states[-1].exit == pytest.approx(0.56367, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"cavitation": "exit"},
+        {"cavitation": "exit", "viscosity": sb.fluids.Barus(0.8), "density": sb.fluids.DowsonHigginson(2.0)},
+        {"cavitation": "reform", "cavity_pressure": -1e-3, "viscosity": sb.fluids.Barus(0.8)},
+    ],
+)
+def test_steps_of_films_that_thin_and_end_remove_a_defect_in_every_row(parts):
+    """The row of the exit takes the gradient at low rates, whose derivatives are others than those of G."""
+    rest = dict(parts)
+    fluid = sb.fluids.Fluid(sb.fluids.Carreau(0.5, 0.4), rest.pop("viscosity", None), rest.pop("density", None))
+    state = first_path(with_parts(sb.Groups(1e-3, 0.1, 1e-3), fluid=fluid, slide_to_roll=0.5, **rest)).states[-1]
+    equations, at = state.equations, state.equations.layout
+    inverse, units = equations.inverse(state.y), equations.units(state.y)
+    defect = np.zeros_like(state.y)
+    defect[at.numbers] = 1e-3 * np.arange(1, 1 + at.size - at.numbers.start)
+    step = 1e-6 * units * inverse(defect)
+    change = (equations.residual(state.y + step) - equations.residual(state.y - step)) / 2e-6
+    assert change[at.numbers] == pytest.approx(-defect[at.numbers], rel=1e-3)
+    by_speed = (
+        replace(equations, speed=state.groups.speed * np.exp(1e-5)).residual(state.y)
+        - replace(equations, speed=state.groups.speed * np.exp(-1e-5)).residual(state.y)
+    ) / 2e-5
+    assert equations.parameter_derivative(state.y, "speed")[at.numbers] == pytest.approx(
+        by_speed[at.numbers], rel=1e-5, abs=1e-8
+    )
+
+
+def test_a_rolling_film_whose_gradient_is_a_small_power_of_the_gap_is_solved():
+    """With the condition G = 0 at the exit Newton's iteration went to and fro on the last panels; values are those of 1e-9."""
+    fluid = sb.fluids.Carreau(0.3, 0.25)
+    state = sb.solve(sb.Groups(1e-3, 1e-3, 0.0), fluid=fluid, slide_to_roll=0.0, cavitation="exit")
+    assert state.exit_position == pytest.approx(1.0018496419, rel=1e-6)
+    assert state.minimum_gap == pytest.approx(4.9363116961e-4, rel=1e-6)
+    assert state.flux_gap == pytest.approx(6.6325771484e-4, rel=1e-6)

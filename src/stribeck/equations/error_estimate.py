@@ -307,7 +307,9 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     residual[1:, :, balance] = size * LOAD
     residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ integral.weights)
     if op.has_exit:
-        _of_ends(states, residual, integral, slopes, size)
+        ending = equations.ending
+        at_end = slopes if ending is film else gradient_in_film(ending, integral, gap, fluid, h_star)
+        _of_ends(states, residual, integral, slopes, at_end, size)
     residual[:, :, at.pressure] = 0.0
     if known is not None and lowered is not None:
         residual[0, :, at.pressure] = known - lowered
@@ -346,16 +348,22 @@ def _settled(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], 
     return settled
 
 
-def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, size: float) -> None:
-    """Write the rows of the ends of the film: the defect on finer nodes, the interpolation error at the exit, and rounding."""
+def _of_ends(
+    states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, at_end: Array, size: float
+) -> None:
+    """Write the rows of the ends of the film: the defect on finer nodes, the interpolation error at the exit, and rounding.
+
+    ``slopes`` is G at the finer nodes, ``at_end`` the gradient that vanishes at the exit, see :attr:`Equations.ending`.
+    """
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
     of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
     h = y[:, at.gap][:, left]
-    steep = np.abs(states.slopes.by_gap[:, left.stop - 1] * h[:, -1])
+    of_exit = equations.slopes_of_ends(y, states.slopes)[1].by_gap
+    steep = np.abs(of_exit[:, left.stop - 1] * h[:, -1])
     missed = interpolation_error(np.log(h / coarse.far[left]))
-    at_edge = slopes[:, of_fine] @ reference(mesh.order).left_end[::-1]
+    at_edge = at_end[:, of_fine] @ reference(mesh.order).left_end[::-1]
     residual[0][:, at.exit] = (scale * (np.abs(at_edge) + steep * missed))[:, None]
     residual[1:, :, at.exit] = (size * scale * steep)[:, None]
     dilation = equations.dilation(y)

@@ -13,9 +13,11 @@ s is a fixed length that makes the last row of order one.  If the gradient G dep
 is an unknown too, with the rows ``p_f - lambda A G``; Newton's step eliminates it.
 
 With a free exit the film ends at x_c, and x is measured from there: D, A and w do not depend on x_c, which enters by the
-parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there.  A film that
-ends at the pressure p_cav of the cavity and begins anew behind it has one more unknown still, the length of the cavity, which
-dilates the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and minus that.
+parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there; where the
+fluid thins, G at low rates, which vanishes with it: G itself may be a small power of the gap, which no polynomial follows.
+A film that ends at the pressure p_cav of the cavity and begins anew behind it has one more unknown still, the length of the
+cavity, which dilates the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and
+minus that.
 
 Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
 """
@@ -69,6 +71,12 @@ def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | N
         scattered(by_flux, wet, h),
         None if by_speed is None else scattered(by_speed, wet, h),
     )
+
+
+def by_pressure_of(slopes: Slopes) -> Array:
+    """Return the derivative by pressure of a film that has one."""
+    assert slopes.by_pressure is not None
+    return slopes.by_pressure
 
 
 def scattered(values: Array, where: Indices, like: Array) -> Array:
@@ -127,6 +135,20 @@ class Equations:
         """The film at this speed."""
         film = self.operators.model.film
         return film.at(self.speed) if film.uses_speed else film
+
+    @cached_property
+    def ending(self) -> Film:
+        """The film whose gradient vanishes at the exit: that of low rates, which does so with G, but smoothly."""
+        return getattr(self.film, "at_low_rates", self.film)
+
+    def slopes_of_ends(self, y: Array, slopes: Slopes) -> tuple[Slopes, ...]:
+        """Return the derivatives of the gradients that the rows of the ends take, ``slopes`` being those of G."""
+        if self.ending is self.film or not self.operators.has_exit:
+            return (slopes,) * len(self.operators.ends)
+        at = self.layout
+        p_f = y[..., at.pressure] if self.film.uses_pressure else None
+        at_exit = slopes_in_film(self.ending, self.operators.integral, y[..., at.gap], p_f, y[..., at.flux_gap])
+        return (slopes, at_exit, slopes)[: len(self.operators.ends)]
 
     def dilation(self, y: Array) -> Array | None:
         """Return the dilation of the frame, a column of stacked states; None where the film does not begin anew."""
@@ -196,7 +218,8 @@ class Equations:
         if op.has_exit:
             x_c = y[..., at.exit]
             r[..., at.gap] -= x_c * ((op.mesh.nodes if d is None else d * op.mesh.nodes) + 0.5 * x_c)
-            r[..., at.exit] = self.flux_scale * (g @ op.at_exit)[..., None]
+            ends = g if self.ending is film else gradient_in_film(self.ending, op.integral, h, p_f, h_star)
+            r[..., at.exit] = self.flux_scale * (ends @ op.at_exit)[..., None]
         if d is not None:
             in_cavity = self.cavity_pressure(y) / self.speed
             r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
@@ -238,9 +261,8 @@ class Equations:
         at, integral = self.layout, self.operators.integral
         if not self.film.uses_pressure or self.operators.has_reformation:
             return False
-        by_pressure = slopes_in_film(self.film, integral, y[..., at.gap], y[..., at.pressure], y[..., at.flux_gap]).by_pressure
-        assert by_pressure is not None
-        return bool(np.max(np.abs(self.speed * integral(by_pressure))) > MOST_GROWTH)
+        slopes = slopes_in_film(self.film, integral, y[..., at.gap], y[..., at.pressure], y[..., at.flux_gap])
+        return bool(np.max(np.abs(self.speed * integral(by_pressure_of(slopes)))) > MOST_GROWTH)
 
     def jacobian(self, y: Array, units: Array | None = None, volterra: Volterra | None = None) -> Array:
         """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``.
@@ -262,7 +284,9 @@ class Equations:
         u, v = (np.ones(n), np.ones(numbers)) if units is None else (units[at.gap], units[at.numbers])
         p_slope = self.law.slope(h, self.law.pressure(h)) * u
         p_f = y[at.pressure] if film.uses_pressure else None
-        by_h, by_p, by_flux, _ = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap])
+        slopes = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap])
+        of_ends = self.slopes_of_ends(y, slopes)
+        by_h, by_p, by_flux, _ = slopes
         g_h, g_flux = by_h * u, by_flux * v[1]
         d = None if dilation is None else float(dilation[0])
         speed = self.speed if d is None else self.speed * d
@@ -274,7 +298,8 @@ class Equations:
         matrix[offset, :n] = scaled.weights * p_slope
         of_pressure = None
         if by_p is not None:
-            rows = [scaled.deflection, scaled.weights[None], *(end[None] * by_p for end in scaled.ends)]
+            ends = (end[None] * by_pressure_of(of) for end, of in zip(scaled.ends, of_ends, strict=True))
+            rows = [scaled.deflection, scaled.weights[None], *ends]
             volterra = Volterra(op.integral, speed * by_p) if volterra is None else volterra
             of_pressure = volterra.after(np.concatenate(rows))
         if self.is_sliding:
@@ -289,12 +314,13 @@ class Equations:
             matrix[offset, flux] = speed * (load @ g_flux)
         np.einsum("ii->i", block)[...] += u
         matrix[:n, offset] = -v[0]
-        rows_of_ends = [
-            end if of_pressure is None else end + speed * of_pressure[n + 1 + k] for k, end in enumerate(scaled.ends)
-        ]
-        for k, row in enumerate(rows_of_ends):
-            matrix[n + 1 + k, :n] = row * g_h * self.flux_scale
-            matrix[n + 1 + k, flux] = self.flux_scale * (row @ g_flux)
+        for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
+            row, by_flux = end * (of.by_gap * u), end @ (of.by_flux * v[1])
+            if of_pressure is not None:
+                through = speed * of_pressure[n + 1 + k]
+                row, by_flux = row + through * g_h, by_flux + through @ g_flux
+            matrix[n + 1 + k, :n] = row * self.flux_scale
+            matrix[n + 1 + k, flux] = self.flux_scale * by_flux
         if op.has_exit:
             matrix[:n, n + 2] = -v[2] * self.positions(y)
         if d is not None:
@@ -311,7 +337,7 @@ class Equations:
         pressure = contact + fluid
         scaled = op.dilated(d, of_gradient=False)
         of_fluid = self.fluid_by_dilation(g, d, by_pressure)
-        through_pressure = 0.0 if by_pressure is None else by_pressure * of_fluid
+        of_ends = self.slopes_of_ends(y, slopes_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap]))
         found = np.empty(n + 4)
         by_kernel = op.by_kernel(pressure, d) + op.kernel(d, derivative=True) @ pressure
         found[:n] = -self.positions(y) * op.mesh.nodes - by_kernel - scaled.deflection @ of_fluid
@@ -319,8 +345,9 @@ class Equations:
         found[n] = op.weights @ pressure + scaled.weights @ of_fluid
         first, _, second = op.ends
         explicit = (first @ g, 0.0, second @ g)
-        for k, end in enumerate(scaled.ends):
-            found[n + 1 + k] = self.flux_scale * (explicit[k] + np.sum(end * through_pressure))
+        for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
+            through = 0.0 if of.by_pressure is None else end @ (of.by_pressure * of_fluid)
+            found[n + 1 + k] = self.flux_scale * (explicit[k] + through)
         return found
 
     def fluid_by_dilation(self, g: Array, d: float, by_pressure: Array | None) -> Array:
@@ -348,12 +375,12 @@ class Equations:
             p_f = y[at.pressure] if film.uses_pressure else None
             speed = self.speed if d is None else self.speed * d
             g = speed * gradient_in_film(film, op.integral, h, p_f, y[at.flux_gap])
-            by_speed = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap]).by_speed
+            slopes = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap])
             blocks = (at.flux_gap, at.exit, at.dilation)
-            if by_speed is not None:
-                g = g + speed * by_speed
-                for block, end in zip(blocks, scaled.ends, strict=False):
-                    found[block] = self.flux_scale * (by_speed @ end)
+            if slopes.by_speed is not None:
+                g = g + speed * slopes.by_speed
+                for block, end, of in zip(blocks, scaled.ends, self.slopes_of_ends(y, slopes), strict=False):
+                    found[block] = 0.0 if of.by_speed is None else self.flux_scale * (of.by_speed @ end)
             if d is not None:
                 in_cavity = self.flux_scale * op.model.cavity_pressure / self.speed
                 found[at.flux_gap] += in_cavity
@@ -406,8 +433,8 @@ class _Coupled:
     def __init__(self, equations: Equations, y: Array) -> None:
         op, at, film = equations.operators, equations.layout, equations.film
         h, n, units = y[at.gap], op.mesh.size, equations.units(y)
-        by_gap, by_pressure, by_flux, _ = slopes_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap])
-        assert by_pressure is not None
+        slopes = slopes_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap])
+        by_gap, by_pressure, by_flux = slopes.by_gap, by_pressure_of(slopes), slopes.by_flux
         matrix = np.zeros((at.size, at.size), order="F")
         gap, pressure, offset, flux = at.gap, at.pressure, at.offset.start, at.flux_gap.start
         contact = equations.law.slope(h, equations.law.pressure(h))
@@ -419,10 +446,10 @@ class _Coupled:
         matrix[pressure, pressure] = np.eye(n) - equations.speed * running * by_pressure
         matrix[pressure, flux] = -equations.speed * (running @ by_flux)
         matrix[offset, gap], matrix[offset, pressure] = op.weights * contact, op.weights
-        for k, end in enumerate(op.ends):
+        for k, (end, of) in enumerate(zip(op.ends, equations.slopes_of_ends(y, slopes), strict=True)):
             row = equations.flux_scale * end
-            matrix[flux + k, gap], matrix[flux + k, pressure] = row * by_gap, row * by_pressure
-            matrix[flux + k, flux] = row @ by_flux
+            matrix[flux + k, gap], matrix[flux + k, pressure] = row * of.by_gap, row * by_pressure_of(of)
+            matrix[flux + k, flux] = row @ of.by_flux
         if op.has_exit:
             matrix[gap, at.exit.start] = -equations.positions(y)
         matrix *= units
@@ -457,8 +484,8 @@ class _Eliminated:
         d = None if dilation is None else float(dilation[0])
         self.units = equations.units(y)
         self.slopes = slopes_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
-        assert self.slopes.by_pressure is not None
-        self.by_pressure = self.slopes.by_pressure
+        self.by_pressure = by_pressure_of(self.slopes)
+        self.of_ends = equations.slopes_of_ends(y, self.slopes)
         self.speed = equations.speed if d is None else equations.speed * d
         self.scaled = op.dilated(d, of_gradient=False)
         self.volterra = Volterra(op.integral, np.asarray(self.speed * self.by_pressure))
@@ -487,9 +514,8 @@ class _Eliminated:
         reduced = np.concatenate([residuals[..., at.gap], residuals[..., at.numbers]], axis=-1)
         reduced[..., :n] += q @ self.scaled.deflection.T
         reduced[..., n] -= q @ self.scaled.weights
-        of_gradient = equations.flux_scale * self.by_pressure * q
-        for k, end in enumerate(self.scaled.ends):
-            reduced[..., n + 1 + k] -= of_gradient @ end
+        for k, (end, of) in enumerate(zip(self.scaled.ends, self.of_ends, strict=True)):
+            reduced[..., n + 1 + k] -= (equations.flux_scale * by_pressure_of(of) * q) @ end
         step = self.reduced(reduced)
         found = np.empty_like(residuals)
         found[..., at.gap], found[..., at.numbers] = step[..., :n], step[..., n:]

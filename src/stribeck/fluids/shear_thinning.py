@@ -24,6 +24,7 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, kept, same
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
+from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
 __all__ = ["ShearThinning"]
@@ -112,6 +113,11 @@ class ShearThinning:
         found = replace(self, speed=speed)
         object.__setattr__(found, "_known", self._known)
         return found
+
+    @property
+    def at_low_rates(self) -> Newtonian:
+        """The film without shear thinning: its G vanishes at the same gap."""
+        return Newtonian(self.viscosity, self.density, slide=self.slide)
 
     def milder(self, part: float) -> Self:
         """Return the film with milder laws."""

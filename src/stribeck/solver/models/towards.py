@@ -47,6 +47,9 @@ FINER = (12, 1e-5)
 """Nodes per panel and tolerance of the mesh if coarse ones fail."""
 MOST_STEPS = 100
 
+FAR_FROM_GUESS = 1.0
+"""Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too."""
+
 LOOKED_AT = 4001
 """Points at which the end of the full film is searched."""
 
@@ -395,7 +398,10 @@ def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way
                 film = film_at(film, part) if film != plain.film else film
                 solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
             here = replace(groups, model=replace(plain, film=film, solid=solid))
-            return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
+            state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
+            if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
+                return state
+            return _coarse(here, state, order, tolerance)
 
         found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
