@@ -1082,7 +1082,7 @@ def test_a_refused_value_is_told_in_the_unit_of_its_field():
 
 
 def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
-    from stribeck.explorer.tab import without_rtol
+    from stribeck.explorer.following import without_rtol
 
     for outcome in sb.Outcome:
         assert "rtol" not in without_rtol(outcome.value)

@@ -150,14 +150,14 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
     from nicegui.client import Client
     from starlette.requests import Request
 
-    from stribeck.explorer import server, tab
+    from stribeck.explorer import opening, server, tab
 
     scope = {"type": "http", "method": "GET", "path": "/", "headers": [], "query_string": b"", "server": ("127.0.0.1", 80)}
 
     async def open_many():
         core.loop = asyncio.get_running_loop()
         start = server.example()
-        opened, shown = await tab.opening([], start)
+        opened, shown = await opening.opening([], start)
         tasks = []
         for _ in range(tab.MOST_WAITING + 3):
             client = Client(ui.page("/"), request=Request(dict(scope)))
@@ -176,12 +176,12 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
 
 
 def test_a_page_opens_with_the_pinned_curves_of_its_address():
-    from stribeck.explorer import server, tab
+    from stribeck.explorer import opening, server
     from stribeck.explorer.asked import url
 
     start = server.example()
     query = [("pin", dict(parse_qsl(url.encode(start, [url.Pin("kept", start.contact, "balanced")])))["pin"])]
-    opened, shown = asyncio.run(tab.opening(query, start))
+    opened, shown = asyncio.run(opening.opening(query, start))
     assert opened.problems == {}
     assert [name for name, _, _ in shown.pins] == ["kept"]
 
@@ -190,12 +190,12 @@ def test_a_tab_that_is_closed_is_collected():
     from nicegui import core, ui
     from nicegui.client import Client
 
-    from stribeck.explorer import server, tab
+    from stribeck.explorer import opening, server, tab
 
     async def open_and_close():
         core.loop = asyncio.get_running_loop()
         start = server.example()
-        opened, shown = await tab.opening([], start)
+        opened, shown = await opening.opening([], start)
         client = Client(ui.page("/"))
         with client:
             made = tab.Tab(opened, start, shown)

@@ -25,6 +25,7 @@ from stribeck.curves.regime import Regime, regime_of
 from stribeck.explorer.asked.carried import facts_of
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.curves import (
+    SOLVED_ROWS,
     Curve,
     Diagram,
     Report,
@@ -235,6 +236,11 @@ class Answerer:
         for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, like):
             self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
             yield
+
+    @staticmethod
+    def map_is_quick(inputs: Inputs) -> bool:
+        """Return whether a diagram is there within a second, off the atlas too."""
+        return SOLVED_ROWS[inputs.table.geometry].is_quick
 
     def settle_checks(self, inputs: Inputs, report: Report) -> bool:
         """Make the checks that need the curve, or another one; return whether they change the line above the numbers."""

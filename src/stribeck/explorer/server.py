@@ -125,7 +125,8 @@ def build(start: Inputs, port: int, token: str) -> None:
     from starlette.requests import Request
     from starlette.responses import Response
 
-    from stribeck.explorer.tab import TABS, Tab, opening
+    from stribeck.explorer.opening import opening
+    from stribeck.explorer.tab import TABS, Tab
 
     app.add_middleware(Guard, token=token, port=port)
     style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))

@@ -1,62 +1,33 @@
-"""One open page: it takes the changes of the user, asks for the answer, and gives it to the page.
-
-A tab keeps one answer on its way. What changes meanwhile is asked next, so that the last value wins and a slow machine shows
-fewer pictures instead of late ones.
-"""
+"""One open page: what the user does on it."""
 
 from __future__ import annotations
 
-import asyncio
-import re
-import threading
 import weakref
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import replace
-from html import escape
 from pathlib import Path, PurePath
 from typing import Any
 
-from nicegui import background_tasks, events, ui
+from nicegui import events, ui
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
-from stribeck.explorer import table
-from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.asked import choices, inputs, url
-from stribeck.explorer.asked.history import History
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts.palette import LIGHT
-from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.downloads import View
-from stribeck.explorer.measured import Measured, fit_measured, speeds_of
-from stribeck.explorer.page import UPDATING, Page
+from stribeck.explorer.following import Following, Superseded, without_rtol
+from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import ENDINGS, Scan, with_scan
+from stribeck.explorer.serving.pools import FILES, SLOW, run
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
-from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solve import SolveError
 
-__all__ = ["TABS", "Tab", "opening"]
-
-MOMENT = 0.15
-"""Seconds of waiting for an answer after which the old one is marked."""
-
-REST = 0.4
-"""Seconds after the last change from which what takes longer is done."""
-
-LIVE = ThreadPoolExecutor(2, "explorer")
-SLOW = ThreadPoolExecutor(1, "explorer-slow")
-FILES = ThreadPoolExecutor(2, "explorer-files")
-"""Threads of what follows the slider, of what comes when it rests, and of files that are read."""
-
-MOST_OPENED = 4
-OPENED: dict[str, Answer] = {}
-OPENED_LOCK = threading.Lock()
-"""Answers to the last inputs with which pages opened."""
+__all__ = ["TABS", "Tab"]
 
 MOST_WAITING = 50
 WAITING: list[Tab] = []
@@ -68,67 +39,7 @@ TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
 MOST_MEASURED = 3
 
 
-def without_rtol(sentence: str) -> str:
-    """Return a sentence about a failure without advice on the tolerance, which the page does not offer."""
-    return re.sub(r"[;,]? *(?:ask for|or) [^.;]*rtol[^.;]*", "", sentence)
-
-
-class Superseded(Exception):  # noqa: N818
-    """The inputs changed while something slow was computed for them."""
-
-
-def answer_of(now: Inputs) -> Answer:
-    """Return the answer to the inputs with which a page opens; many pages open with the same ones."""
-    key = url.encode(now)
-    with OPENED_LOCK:
-        found = OPENED.get(key)
-        if found is None:
-            found = OPENED[key] = Answerer()(now)
-            while len(OPENED) > MOST_OPENED:
-                del OPENED[next(iter(OPENED))]
-        return found
-
-
-def curves_of(model: Answerer, pins: Sequence[Pin], answer: Answer) -> list[tuple[str, Curve, float]]:
-    """Return the pinned curves as far as they are known, over the speeds of the axis of an answer."""
-    found = []
-    for pin in pins:
-        curve = model.curve(pin.contact, pin.definition, answer.speeds)
-        if curve is not None:
-            found.append((pin.name, curve, hersey_scale(pin.contact)))
-    return found
-
-
-async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, View]:
-    """Return what an address asks for and its answer, computed beside the event loop.
-
-    Parameters
-    ----------
-    items : list of (str, str)
-        Keys and values of the address.
-    start : Inputs
-        What the command was started with.
-
-    Returns
-    -------
-    Opened, View
-        The inputs, and their answer with the pinned curves; that of the start where they cannot be solved.
-    """
-
-    def prepare() -> tuple[url.Opened, View]:
-        opened = url.decode(items, start)
-        try:
-            answer = answer_of(opened.inputs)
-            return opened, View(answer, curves_of(Answerer(), opened.pins, answer))
-        except (InputError, SolveError) as problem:
-            told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
-            return told, View(answer_of(start))
-
-    opened, shown = await Tab.run(LIVE, prepare)
-    return opened, shown
-
-
-class Tab:
+class Tab(Following):
     """One open page.
 
     Parameters
@@ -142,23 +53,12 @@ class Tab:
     """
 
     def __init__(self, opened: url.Opened, start: Inputs, shown: View) -> None:
-        self.inputs, self.pins = opened.inputs, list(opened.pins)
+        super().__init__(opened, shown)
         self.start = start
-        self.measured: list[Measured] = []
-        self.model = Answerer(shown.answer)
-        self.states: list[Any] = list(shown.states)
-        self.said = ""
-        self.asked = False
-        self.working = False
-        self.resting: asyncio.Task[Any] | None = None
-        self.closed = False
-        self.answer, self.pinned = shown.answer, list(shown.pins)
-        self.page = Page(self.inputs)
         TABS[self.page.client.id] = self
         self.connect()
         self.page.draw_all(self.inputs, self.seen())
         self.problems = opened.problems
-        self.history = History(self.inputs)
         self.page.show_ways(self.history.ways)
 
     def connect(self) -> None:
@@ -185,8 +85,6 @@ class Tab:
         for name, way in (("undo", -1), ("redo", 1)):
             page.history[name].on("click", lambda way=way: self.step(way))
         page.keyboard.on_key(self.on_key)
-
-    # --- what the user does ---
 
     def slide(self, name: str, place: Any) -> None:
         """Take the place of a slider."""
@@ -289,7 +187,7 @@ class Tab:
 
     async def take_example(self, path: Path) -> None:
         """Show an example."""
-        found = await self.run(FILES, lambda: inputs.from_case(load_case(path)))
+        found = await run(FILES, lambda: inputs.from_case(load_case(path)))
         with self.page.client:
             self.begin(found)
 
@@ -304,7 +202,7 @@ class Tab:
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         self.page.say(f"Reading {name} ...")
         try:
-            found = await self.run(FILES, read_file, kind, name, content, self.inputs.contact)
+            found = await run(FILES, read_file, kind, name, content, self.inputs.contact)
         except InputError as problem:
             self.page.say("")
             self.page.complain(str(problem))
@@ -339,7 +237,7 @@ class Tab:
                 raise Superseded
 
         try:
-            fitted = await self.run(SLOW, fit_measured, now, last, step)
+            fitted = await run(SLOW, fit_measured, now, last, step)
         except Superseded:
             self.page.say("The fit was given up, as the inputs changed.", bad=True)
         except (InputError, SolveError) as problem:
@@ -352,7 +250,7 @@ class Tab:
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
         try:
-            found: bytes = await self.run(SLOW, files.content, kind, self.seen())
+            found: bytes = await run(SLOW, files.content, kind, self.seen())
         except (InputError, SolveError, MissingExtraError) as problem:
             self.page.complain(str(problem))
             return None
@@ -364,149 +262,6 @@ class Tab:
         tidy_soon()
         if self.resting is not None:
             self.resting.cancel()
-
-    # --- the answer ---
-
-    def ask(self) -> None:
-        """Ask for the answer to the present inputs; only one is on its way."""
-        self.asked = True
-        if not self.working:
-            self.working = True
-            background_tasks.create(self.work(), name="explorer answers")
-
-    async def work(self) -> None:
-        """Answer until nothing is asked any more, the last inputs last."""
-        try:
-            while self.asked and not self.closed:
-                self.asked = False
-                now = self.inputs
-                try:
-                    await self.answered(now)
-                except (InputError, SolveError) as problem:
-                    self.page.say(f"{without_rtol(str(problem))} The last picture is kept.", bad=True)
-                except Exception as problem:  # a page that silently no longer follows would be worse
-                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
-                else:
-                    self.page.say(self.said)
-                    self.said = ""
-                try:
-                    await self.page.draw(self.inputs, self.seen())
-                except Exception as problem:
-                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
-        finally:
-            self.working = False
-        self.rest()
-
-    @staticmethod
-    async def run(pool: ThreadPoolExecutor, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Return what a function gives, computed in a thread."""
-        return await asyncio.get_running_loop().run_in_executor(pool, function, *arguments)
-
-    async def answered(self, now: Inputs) -> None:
-        """Compute the answer; where that takes longer than a moment, mark what is shown."""
-        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)))
-        done, _ = await asyncio.wait({work}, timeout=MOMENT)
-        if not done:
-            self.page.show_working(now)
-        self.answer, self.pinned, self.states = await work
-
-    def compute(self, now: Inputs, pins: Sequence[Pin], measured: Sequence[float] = ()) -> tuple[Answer, list[Any], list[Any]]:
-        """Return the answer, the pinned curves as far as they are known over the speeds of its axis, and their states."""
-        answer = self.model(now, measured)
-        states = [(pin.name, self.model.state_of_pin(pin.contact), pin.definition) for pin in pins]
-        return answer, curves_of(self.model, pins, answer), states
-
-    def seen(self) -> View:
-        """Return the answer, and the curves that are shown with it."""
-        return View(self.answer, self.pinned, tuple(self.measured), self.states)
-
-    async def refresh(self, now: Inputs) -> None:
-        """Show what has been solved since for the inputs that are shown."""
-        if self.inputs is now and not self.working and not self.closed:
-            self.answer, self.pinned, self.states = await self.run(
-                LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)
-            )
-            if self.inputs is now:
-                await self.page.draw(now, self.seen())
-
-    # --- when the sliders rest ---
-
-    def rest(self) -> None:
-        """Wait for a while without change, then do what takes longer."""
-        if self.closed:
-            return
-        if self.resting is not None:
-            self.resting.cancel()
-        self.resting = background_tasks.create(self.settle(), name="explorer rests")
-
-    async def settle(self) -> None:
-        """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
-        now = self.inputs
-        go_on = self.watcher(now)
-
-        def report(part: float) -> None:
-            go_on()
-            self.page.progress = f"{UPDATING} {100 * part:.0f} %"
-
-        self.page.progress = ""
-        with self.page.client:
-            try:
-                curve = asyncio.ensure_future(self.run(SLOW, self.model.settle, now, report))
-                curve.add_done_callback(lambda task: task.cancelled() or task.exception())
-                began = asyncio.get_running_loop().time()
-                done, _ = await asyncio.wait({curve}, timeout=REST)
-                if done and curve.result():
-                    await self.refresh(now)
-                await asyncio.sleep(max(0.0, began + REST - asyncio.get_running_loop().time()))
-                self.page.show_address(f"?{url.encode(now, self.pins)}")
-                self.history.rest(now)
-                self.page.show_ways(self.history.ways)
-                if not done:
-                    while not curve.done():
-                        if self.page.progress:  # it is being solved, and does not only wait for another page
-                            self.page.show_progress()
-                        await asyncio.wait({curve}, timeout=REST)
-                    if curve.result():
-                        await self.refresh(now)
-                self.page.progress = self.model.why_no_curve(now)
-                if self.page.progress:
-                    self.page.show_progress()
-                found = await self.run(SLOW, self.ways, now, go_on)
-                if self.inputs is now:
-                    self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
-                if await self.run(SLOW, self.model.settle_checks, now, go_on):
-                    await self.refresh(now)
-                rows = self.model.diagrams(now, go_on)
-                while await self.run(SLOW, next, rows, False) is not False:
-                    await self.refresh(now)
-            except Superseded:
-                return
-            except Exception as problem:  # else what is being updated would say so for ever
-                self.page.say(f"Internal error ({problem!r}).", bad=True)
-
-    @property
-    def is_seen(self) -> bool:
-        """Whether a browser shows the page; what it left is given up at once, and done anew if it comes back."""
-        return not self.closed and self.page.client.has_socket_connection
-
-    def watcher(self, now: Inputs) -> Callable[..., None]:
-        """Return what slow work calls again and again: it ends where the inputs have changed."""
-
-        def go_on(*_: Any) -> None:
-            if self.inputs is not now or not self.is_seen:
-                raise Superseded
-
-        return go_on
-
-    @staticmethod
-    def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
-        """Return the margins of a contact, or the reason why there are none."""
-        try:
-            if now.table.geometry == "point":
-                return '<p class="note">Margins of a ball take ten seconds to a minute; run stribeck regimes.</p>'
-            return regime_margins(now.contact, definition=now.definition, on_point=go_on)
-        except (InputError, SolveError) as problem:
-            return f'<p class="note">{escape(without_rtol(str(problem)))}</p>'
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""
