@@ -2,21 +2,26 @@
 
 import dataclasses
 import html
+import math
 import re
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import EXAMPLES, call, case_text
+from fit_data import measured
 
 import stribeck as sb
 from stribeck.cases import model_parts
 from stribeck.cases.law import LAWS
+from stribeck.data_sheet.picture import draw_report
 from stribeck.data_sheet.report import page_of
 from stribeck.fluids import presets
 from stribeck.quantities.facts import FACTS
 from stribeck.quantities.given.conversions import CONVERSIONS
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.units import to_si
 
 
 @pytest.mark.quick
@@ -36,6 +41,7 @@ def test_a_new_case_has_every_key_and_is_read_as_it_stands(tmp_path, capsys, geo
     for row in table.rows:
         if not row.derived:
             assert re.search(rf"# {row.label[0].upper()}{re.escape(row.label[1:])} \[", text), row.name
+    assert text.count("slide_to_roll = ") == 1
     assert call(capsys, "new", path).code == 2  # kept
     assert call(capsys, "new", "--geometry", geometry).out == text
 
@@ -100,8 +106,34 @@ def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
     _, said = content
     before = said.solution.friction().total
     assert 1 <= len(said.levers) <= 2
+    inputs = {row.label: (name, row.dimension) for name, row in INPUT_TABLES["line"].quantities.items()}
     for lever in said.levers:
-        assert float(lever.friction.split()[0]) == pytest.approx(0.8 * before, rel=0.15)
+        after, change = re.fullmatch(r"(\S+) \((.*) %\)", lever.friction).groups()
+        assert float(after) == pytest.approx(0.8 * before, rel=0.15)
+        assert float(change) == pytest.approx(100 * (float(after) / before - 1), abs=1)
+        sign, factor, value = re.fullmatch(r"([x/]) (\S+) \(to (.*)\)", lever.change).groups()
+        name, dimension = inputs[lever.label]
+        assert float(factor) > 1
+        changed = getattr(said.solution.contact, name) * float(factor) ** {"x": 1, "/": -1}[sign]
+        assert to_si(float(value) if dimension == "number" else value, dimension, name) == pytest.approx(changed, rel=0.01)
+
+
+@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
+def test_the_picture_of_a_report_has_films_in_micrometres_and_measured_points_at_their_speeds(content, abscissa):
+    _, said = content
+    contact, speeds = said.solution.contact, [1e-3, 1e-2, 0.1]
+    per_speed = {"speed": 1, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}[abscissa]
+    data = measured([speed * per_speed for speed in speeds], [0.5, 0.3, 0.1], abscissa=abscissa)
+    left, right = draw_report(dataclasses.replace(said, data=data)).axes
+    [points] = [each.lines[0] for each in left.containers if each.get_label() == "measured"]
+    assert points.get_xdata() == pytest.approx(speeds) and points.get_ydata() == pytest.approx([0.5, 0.3, 0.1])
+    lines = {line.get_label(): line for line in right.lines}
+    for name, value, _ in said.films[:2]:
+        x, y = lines[name].get_data()
+        film = math.exp(np.interp(math.log(contact.speed), np.log(x), np.log(y)))
+        assert 1e-6 * film == pytest.approx(to_si(value, "length", name), rel=0.02)
+    roughness = next(line for label, line in lines.items() if label.startswith("roughness"))
+    assert 1e-6 * roughness.get_ydata()[0] == pytest.approx(contact.roughness)
 
 
 def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
