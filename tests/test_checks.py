@@ -10,7 +10,7 @@ from fit_data import TRUE
 
 import stribeck as sb
 from stribeck.checks.subject import Subject, speed_of_film
-from stribeck.checks.table import ROWS, checks_of
+from stribeck.checks.table import ROWS, checks_of, checks_of_curve
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.surfaces import SelfAffine, persson_law
@@ -110,7 +110,8 @@ def test_an_input_far_from_all_contacts_is_named_with_its_usual_range():
     assert "roughness 10 mm, usually 1 nm to 100 µm" in found.sentence and "dry friction" not in found.sentence
     small = checks_of(Subject(TRUE.replace(modulus="27 Pa")), "contact")["inputs"]
     assert small.verdict == "doubtful" and "modulus 27 Pa, usually" in small.sentence
-    assert verdicts(TRUE.replace(speed=0.0, roughness=0.0))["inputs"] == "fine"
+    usual = checks_of(Subject(TRUE.replace(speed=0.0, roughness=0.0)), "contact")["inputs"]
+    assert (usual.verdict, usual.value) == ("fine", 1)
     for name in ("wiper_blade", "contact_lens", "lip_seal"):
         assert verdicts(sb.load_case(EXAMPLES / f"{name}.toml").contact)["inputs"] == "fine", name
 
@@ -211,6 +212,14 @@ def test_a_curve_without_minimum_and_transition_leaves_the_tail_unchecked_and_sa
     curve = sb.stribeck_curve(contact, speed=("1 nm/s", "2 nm/s"), points=3, rtol=1e-3)
     found = checks_of(Subject(contact, traced=curve))
     assert any(said.startswith("tail of the contact law: friction has no minimum") for said in found.unchecked)
+
+
+def test_the_checks_of_a_curve_know_the_facts_and_those_over_loads_the_largest():
+    curve = sb.stribeck_curve(TRUE, load=("10 N/m", "100 N/m"), points=3, rtol=1e-3)
+    found, without = checks_of_curve(curve, {"layer_thickness": 2e-3}), checks_of_curve(curve)
+    assert found["Hertz pressure"].value == pytest.approx(TRUE.replace(load=100.0).hertz.pressure)
+    names = [{each.name for each in checks.checks} for checks in (found, without)]
+    assert names[0] - names[1] == {"layer a/thickness"}
 
 
 def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
