@@ -156,6 +156,15 @@ def test_a_full_film_whose_suction_stretches_the_fluid_is_found():
     assert coarse.central_gap == pytest.approx(fine.central_gap, rel=1e-2)
 
 
+def test_a_film_that_ends_at_ambient_pressure_does_not_suck_before():
+    """Newton's iteration took it past its end, to 1.03: a full film in all but name, stated to 4e-2."""
+    factors = sb.fluids.PatirCheng(3.19897437661839, 1.0, 1.0)
+    groups = sb.Groups(1.0739603703488622e-12, 0.587776523955391, 0.000516662179901327)
+    found = sb.solve(groups, flow_factors=factors, cavitation="exit", rtol=1e-4)
+    assert found.exit_position < 0.5
+    assert found.fluid_pressure.min() > -1e-3 * found.fluid_pressure.max()
+
+
 def test_sharp_turns_that_no_load_feels_are_in_the_error():
     """Asperities carry all of the load; the flux gap was stated to 5e-9 and wrong by 3e-4, the drag by 2e-5."""
     groups = sb.Groups(3.3257186828927727e-4, 0.037814811807850256, 0.009539751119065921)

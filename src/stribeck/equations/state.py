@@ -89,6 +89,9 @@ SAME_FRAME = 1.5
 BETWEEN = 3
 """Places over nodes at which the lowest pressure is sought."""
 
+MOST_SUCTION = 0.5
+"""Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike."""
+
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
 
@@ -192,8 +195,20 @@ class State:
 
     @property
     def outcome(self) -> Outcome:
-        """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
-        return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
+        """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated.
+
+        A film that ends at ambient pressure and sucks before has been taken past its end: it is none.
+        """
+        found = Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
+        return Outcome.STALLED if found.ok and self._sucks else found
+
+    @cached_property
+    def _sucks(self) -> bool:
+        """Whether a film that ends at ambient pressure sucks before."""
+        operators = self.equations.operators
+        if not operators.has_exit or operators.has_reformation:
+            return False
+        return bool(-self.fluid_pressure.min() > MOST_SUCTION * self.fluid_pressure.max())
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""

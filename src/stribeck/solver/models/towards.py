@@ -259,14 +259,14 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     article : callable
         The path from cold to groups with the model of the article.
     """
-    yield _changed(groups, article, WAYS[:1])
     model = groups.model
-    if model.film != Newtonian() or not isinstance(model.solid, HalfPlane):  # else nothing is changed, by any way
-        yield _changed(groups, article, WAYS[1:])
+    changes = model.film != Newtonian() or not isinstance(model.solid, HalfPlane)
+    for way in WAYS if changes else WAYS[:1]:
+        yield _changed(groups, article, way)
 
 
-def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way]) -> Path[State]:
-    """Return the path from the state of the article's model by the first of some ways to change the fluid that arrives."""
+def _changed(groups: Groups, article: Callable[[Groups], Path[State]], way: Way) -> Path[State]:
+    """Return the path from the state of the article's model by one way to change the fluid."""
     model, solid = groups.model, groups.model.solid
     path, state = _newtonian(groups, article, solid)
     if state is None and not isinstance(solid, HalfPlane):
@@ -276,7 +276,7 @@ def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Seq
         return replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
     if model.film == Newtonian() and model.solid == solid:
         return extended(path, state)
-    return _blended(groups, path, state, ways)
+    return _blended(groups, path, state, way)
 
 
 def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
@@ -379,35 +379,26 @@ def _seen_from_exit(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way]) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups, by the first way that arrives."""
+def _blended(groups: Groups, path: Path[State], start: State, way: Way) -> Path[State]:
+    """Return the path on which fluid and solid change into those of the groups in some way."""
     own, plain = groups.model, start.groups.model
-    found = path
-    for film_at, order, tolerance in ways:
+    film_at, order, tolerance = way
 
-        def correct(
-            part: float,
-            history: Sequence[tuple[float, State]],
-            film_at: Callable[[Film, float], Film] = film_at,
-            order: int = order,
-            tolerance: float = tolerance,
-        ) -> State | None:
-            film: Film = own.film
-            solid: Solid = own.solid
-            if part < 1.0:
-                film = film_at(film, part) if film != plain.film else film
-                solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
-            here = replace(groups, model=replace(plain, film=film, solid=solid))
-            state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
-            if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
-                return state
-            return _coarse(here, state, order, tolerance)
+    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
+        film: Film = own.film
+        solid: Solid = own.solid
+        if part < 1.0:
+            film = film_at(film, part) if film != plain.film else film
+            solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
+        here = replace(groups, model=replace(plain, film=film, solid=solid))
+        state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
+        if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
+            return state
+        return _coarse(here, state, order, tolerance)
 
-        found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
-        if found.outcome.ok:
-            again = settled(found.states[-1].groups, found.states[-1])
-            return found if again is None else extended(found, again)
-    return found
+    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
+    again = settled(found.states[-1].groups, found.states[-1]) if found.outcome.ok else None
+    return found if again is None else extended(found, again)
 
 
 def _within(correct: Correct, work: Work) -> Correct:
