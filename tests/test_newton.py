@@ -177,6 +177,26 @@ def test_a_damped_step_is_never_the_last():
     assert root.outcome is Outcome.STEP_LIMIT
 
 
+def test_a_small_power_is_solved_by_monotone_steps():
+    """Full steps go to and fro farther and farther."""
+
+    def residual(x):
+        return np.sign(x) * np.abs(x) ** 0.22 - 0.3
+
+    def jacobian(x):
+        return np.diag(0.22 * np.abs(x) ** -0.78)
+
+    assert not find(residual, jacobian, [1.0], chord=0.25).outcome.ok
+    root = find(residual, jacobian, [1.0], chord=0.25, monotone=True)
+    assert root.outcome.ok
+    assert root.x[0] == pytest.approx(0.3 ** (1 / 0.22), rel=1e-8)
+
+
+def test_monotone_steps_that_no_part_shortens_stall():
+    root = find(lambda x: x**2 + 1, lambda x: np.diag(2 * x), [0.1], monotone=True)
+    assert root.outcome is Outcome.STALLED
+
+
 def test_a_step_to_where_the_residual_is_not_finite_is_halved():
     root = find(np.log, lambda x: np.diag(1.0 / x), [50.0])
     assert root.outcome.ok

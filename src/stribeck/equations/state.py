@@ -27,6 +27,9 @@ from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, h
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
+WANDERING = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
+"""Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins."""
+
 CHORD = 0.25
 """Contraction of the steps above which a kept factorisation is given up."""
 
@@ -514,7 +517,10 @@ def solve_state(
     """
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)
-    root = root_find(equations, start, StepControl(tolerance, max_steps, CHORD), kept)
+    control = StepControl(tolerance, max_steps, CHORD)
+    root = root_find(equations, start, control, kept)
+    if root.outcome in WANDERING and is_thinning(equations.film):
+        root = root_find(equations, start, replace(control, monotone=True))
     gap = equations.layout.gap
     with np.errstate(all="ignore"):  # a root that was not found need not be finite
         error = float(np.abs(start[gap] / root.x[gap] - 1).max())

@@ -33,6 +33,9 @@ HALVINGS = 12  # trials to get back to where the residual is finite
 LAST_CHORD = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
 FIRST_CHORD = 0.02  # the caller's inverse is taken to be good for a first step of this size
 ROUNDING_SIZE = 1e-5  # steps that stop contracting below this size are rounding, above it they wander
+SHORTER = 0.25  # a part t of a monotone step must leave a step shorter by this part of t
+LEAST_MONOTONE = 2.0**-11  # the least part of a monotone step
+FASTER = 4.0  # growth of the part of a monotone step, from one to the next
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
 
@@ -90,11 +93,15 @@ class StepControl:
     chord : float or None
         Take a step with the last inverse if it is at most this fraction of the step before it, in (0, 1);
         0.1 is a good value. None takes such a step only to end the iteration.
+    monotone : bool
+        Halve each Newton step until the step with its inverse behind it is shorter in the mean: where F is a small power
+        of an unknown, full steps go to and fro.
     """
 
     tolerance: float = 1e-10
     max_steps: int = 50
     chord: float | None = None
+    monotone: bool = False
 
     def __post_init__(self) -> None:
         """Refuse values outside their range."""
@@ -288,6 +295,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
     steps = factorisations = stale = 0
     s = before = math.nan  # sizes of this step and of the step before it
     smallest = math.inf
+    longest = 1.0
     reusable = chord is not None and inverse is not None
 
     def root(outcome: Outcome) -> Root:
@@ -327,7 +335,15 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
 
             if not t >= SMALLEST_FRACTION:
                 return root(Outcome.STALLED)
-            trial = _finite_trial(problem.residual, x, dx, min(t, 1.0))
+            trial = _finite_trial(problem.residual, x, dx, min(t, longest, 1.0))
+            if control.monotone and inverse is not None and not chord_step and s_new > ROUNDING_SIZE:
+                units = problem.units(x)
+                wanted = _mean(dx / units)
+                while trial is not None and not _mean(inverse(trial[1])) <= (1 - SHORTER * trial[2]) * wanted:
+                    if not trial[2] >= 2 * LEAST_MONOTONE:
+                        return root(Outcome.STALLED)
+                    trial = _finite_trial(problem.residual, x, dx, 0.5 * trial[2])
+                longest = 1.0 if trial is None else FASTER * trial[2]
             if trial is None:
                 return root(Outcome.NOT_FINITE)
             x, r, t = trial
@@ -345,6 +361,11 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
                     if stale >= STALE_STEPS and smallest <= ROUNDING_SIZE:
                         return root(Outcome.ROUNDING)
         return root(Outcome.STEP_LIMIT)
+
+
+def _mean(step: Array) -> float:
+    """Return the root of the mean square."""
+    return float(np.sqrt(np.mean(step * step)))
 
 
 def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: float) -> tuple[Array, Array, float] | None:

@@ -9,7 +9,8 @@ the half-plane if need be, in one step if Newton's iteration converges, else dow
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
 
-Films that begin anew behind a cavity come after these, see :mod:`stribeck.solver.cavities.opening`.
+of which the Newtonian part falls exponentially, as films of fluids that thin much do with it.  Films that begin anew behind a
+cavity come after these, see :mod:`stribeck.solver.cavities.opening`.
 """
 
 from __future__ import annotations
@@ -73,6 +74,10 @@ MOST_WORK, UNIT_SIZE = 3000.0, 300.0
 
 MOST_WORK_TO_END = 6000.0
 """The same for all paths of loads together on which the film is to end."""
+
+
+FADING = 8.0
+"""Decay of the Newtonian part of a blend: fluids that thin a thousand times have films that fall as a power of it."""
 
 
 @dataclass
@@ -238,7 +243,7 @@ class BlendedSolid:
 
 
 def _blend(film: Film, part: float) -> Film:
-    return cast(Film, BlendedFilm(film, part))
+    return cast(Film, BlendedFilm(film, 1 - (1 - part) * math.exp(-FADING * part)))
 
 
 def _milder(film: Film, part: float) -> Film:
