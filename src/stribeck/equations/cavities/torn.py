@@ -60,8 +60,9 @@ ROOM = 1.2
 AT_ONCE = 128
 """Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again."""
 
-BALANCED = 5e-3
-"""Part of the load by which what both pressures carry may miss it, over the tolerance of the gap."""
+BALANCED, STRICT = 5e-3, 1e-6
+"""Part of the load by which what both pressures carry may miss it, over the tolerance of the gap; and the tolerance above
+which it may be larger by their ratio, as such a state is there for comparison only."""
 
 UNSETTLED = 2.0
 """Error that is left over the size of the last step, where torn nodes changed with it."""
@@ -69,11 +70,15 @@ UNSETTLED = 2.0
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
+MOST_POLISHED, ROUGHEST = 3, 0.3
+"""Corrections by the last Jacobian of a state that is near but for its load, and the most that GMRES may leave of them."""
+
 FARTHEST, SWEPT = 10, 0.1
 """Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one."""
 
-WORN = 4.0
-"""Steps of GMRES for a digit from which the next step makes its own preconditioner."""
+WORN, STALE = 4.0, 2.0
+"""Steps of GMRES for a digit from which the next step makes its own preconditioner; and from which a neighbour's capacitance
+matrix is factorised anew."""
 
 
 class Passing:
@@ -163,8 +168,12 @@ class TornLinear(Linear):
 
     def __init__(self, equations: TornEquations, y: Unknowns, torn: Flags) -> None:
         super().__init__(equations, y)
-        self.stiffness, self.torn, self.least = stiffness(self), torn, equations.least
-        self.spread, self.passing = equations.spread, equations.passing(torn)
+        self.stiffness, self.least, self.spread = stiffness(self), equations.least, equations.spread
+        self.tear(torn)
+
+    def tear(self, torn: Flags) -> None:
+        """Take other nodes for torn."""
+        self.torn, self.passing = torn, Passing(self.spread, torn)
 
     def product(self, x: Array) -> Array:
         """Return the change of the rows at the nodes and of the load."""
@@ -270,6 +279,28 @@ class _Factors:
 
     columns: Indices
     factors: tuple[Array, npt.NDArray[np.int32]] | None
+    borders: dict[int, Array] = field(default_factory=dict)
+    """Solutions for nodes that border the matrix, by their place among the kept ones: they come again from step to step."""
+
+    def beside(self, kept: Capacitance, linear: TornLinear, added: Indices) -> Array:
+        """Return the unit residuals that undo the film pressures under those at further nodes."""
+        new = np.array([node for node in added.tolist() if node not in self.borders], dtype=np.intp)
+        if new.size:
+            self.borders.update(zip(new.tolist(), self.solve(-kept.block(linear, self.columns, new)).T, strict=True))
+        return self._columns(added)
+
+    def without(self, removed: Indices) -> Array:
+        """Return the unit residuals under film pressures of one at some of the nodes."""
+        new = np.array([node for node in removed.tolist() if node not in self.borders], dtype=np.intp)
+        if new.size:
+            units = (self.columns[:, None] == new).astype(np.float32)
+            self.borders.update(zip(new.tolist(), self.solve(units).T, strict=True))
+        return self._columns(removed)
+
+    def _columns(self, nodes: Indices) -> Array:
+        if not nodes.size:
+            return np.zeros((self.columns.size, 0), dtype=np.float32)
+        return np.stack([self.borders[node] for node in nodes.tolist()], axis=1)
 
     def solve(self, right: Array) -> Array:
         """Return the unit residuals that remove film pressures at these nodes."""
@@ -292,9 +323,7 @@ class _Preconditioner:
         self.corner: tuple[Array, npt.NDArray[np.int32]] | None = None
         if added.size + removed.size:
             self.place = np.flatnonzero(np.isin(base.columns, removed))
-            units = np.zeros((base.columns.size, removed.size), dtype=np.float32)
-            units[self.place, np.arange(removed.size)] = 1.0
-            self.border = base.solve(np.hstack([-kept.block(linear, base.columns, added), units]))
+            self.border = np.hstack([base.beside(kept, linear, added), base.without(removed)])
             self.rows = kept.block(linear, added, self.columns)
             corner = self._bordered(self.border)
             corner[: added.size, : added.size] += self.rows[:, base.columns.size :]
@@ -386,31 +415,24 @@ def iterate_cavitated(
     law, least = equations.law, equations.least
     torn = start.fluid <= least
     y = Unknowns(start.gap, np.where(torn, least, start.fluid), start.offset)
-
-    def now_torn(stiff: Array, passing: Passing) -> Flags:
-        gas = passing.gas(equations.flow(y.gap, y.fluid, y.offset)) * passing.weights
-        found = np.asarray(gas / stiff > y.fluid - least)
-        return swept(gas, found, torn) if size <= SWEPT and equations.spread is None else found
-
     krylov = factorisations = steps = 0
     left, size, same, near = math.inf, math.inf, False, False
-    if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
-        torn = now_torn(stiffness(Linear(equations, y)), equations.passing(torn))
+    before = None if kept is None else kept.last
 
-    def complementary() -> Unknowns:
-        return Unknowns(y.gap, np.where(torn, least, np.maximum(y.fluid, just_above(least))), y.offset)
+    def now_torn(linear: TornLinear, flow: Array) -> Flags:
+        gas = linear.passing.gas(flow) * linear.passing.weights
+        found = np.asarray(gas / linear.stiffness > y.fluid - least)
+        return swept(gas, found, linear.torn) if size <= SWEPT and equations.spread is None else found
 
     def ended(outcome: Outcome) -> Iterated:
-        return Iterated(complementary(), outcome, steps, krylov, factorisations, left, kept)
+        return Iterated(complementary(y, torn, least), outcome, steps, krylov, factorisations, left, kept)
 
     with np.errstate(all="ignore"):
+        residual, linear = equations.residual(y), TornLinear(equations, y, torn)
+        if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
+            torn = now_torn(linear, residual[1])
+            linear.tear(torn)
         while steps < max_steps:
-            if near:
-                y = complementary()
-            residual = equations.residual(y)
-            if near and abs(residual[2]) <= BALANCED * tolerance * LOAD:
-                break
-            linear = TornLinear(equations, y, torn)
             right = linear.right(residual)
             if not np.isfinite(right).all():
                 return ended(Outcome.NOT_FINITE)
@@ -420,7 +442,8 @@ def iterate_cavitated(
             wanted = LOOSE
             if same:
                 wanted = min(LOOSE, max(LINEAR * min(1.0, size / LOOSE), 0.3 * tolerance / size))
-            solved = gmres(linear.product, kept.of(linear), right, wanted, MOST_KRYLOV)
+            precondition = kept.of(linear)
+            solved = gmres(linear.product, precondition, right, wanted, MOST_KRYLOV)
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
@@ -435,17 +458,51 @@ def iterate_cavitated(
             steps += 1
             if solved.steps > -WORN * math.log10(wanted):
                 kept = None
+            elif kept.last is before and solved.steps > -STALE * math.log10(wanted):
+                kept.last = None
             size = size if part == 1.0 else max(size, 1.0)
-            now = now_torn(linear.stiffness, linear.passing)
+            residual = equations.residual(y)
+            now = now_torn(linear, residual[1])
             same = bool((now == torn).all())
             torn = now
-            if part < 1.0:
-                near = False
-                continue
             # Where a few nodes still break or heal the next step is smaller than this one.
             rest = solved.left if same else UNSETTLED
             left = 3.0 * size * size + rest * size
             # At slow speed the film pressure is small: a step may be small for the gap and not for the pressure.
             missed = rest * float(np.abs(step.fluid).max() / max(y.fluid.max(), np.finfo(float).tiny))
-            near = left <= tolerance and missed <= FLUID * tolerance
+            near = part == 1.0 and left <= tolerance and missed <= FLUID * tolerance
+            if near:
+                least_load = BALANCED * tolerance * max(1.0, tolerance / STRICT) * LOAD
+                y, residual, more = balanced(linear, precondition, complementary(y, torn, least), least_load)
+                krylov += more
+                if abs(residual[2]) <= least_load:
+                    return ended(Outcome.CONVERGED)
+                if kept is not None:  # GMRES sees no load with what it was given
+                    kept.last = None
+            linear = TornLinear(equations, y, torn)
         return ended(Outcome.CONVERGED if near else Outcome.STEP_LIMIT)
+
+
+def complementary(y: Unknowns, torn: Flags, least: float) -> Unknowns:
+    """Return unknowns whose film has the least pressure where it is torn, and only there."""
+    return Unknowns(y.gap, np.where(torn, least, np.maximum(y.fluid, just_above(least))), y.offset)
+
+
+def balanced(
+    linear: TornLinear, precondition: _Preconditioner, y: Unknowns, unbalanced: float
+) -> tuple[Unknowns, tuple[Array, Array, float], int]:
+    """Return complementary unknowns near a solution that carry the load but for ``unbalanced``, their residual, and the steps.
+
+    Corrections are those of the last Jacobian, as torn nodes stay the same; a few at most.
+    """
+    equations, torn, steps = linear.equations, y.fluid <= linear.least, 0
+    residual = equations.residual(y)
+    for _ in range(MOST_POLISHED):
+        if not abs(residual[2]) > unbalanced:
+            break
+        wanted = max(LINEAR, min(ROUGHEST, 0.3 * unbalanced / abs(residual[2])))
+        solved = gmres(linear.product, precondition, linear.sources(residual, 0.0), wanted, MOST_KRYLOV)
+        steps += solved.steps
+        y = complementary(y.moved(linear.changes(solved.x, residual[0]), 1.0), torn, linear.least)
+        residual = equations.residual(y)
+    return y, residual, steps

@@ -18,7 +18,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Indices
 from stribeck.numerics.fourier_panels import PolarMesh
 
-POINTS = 12
+POINTS, WEIGHTS = legendre.leggauss(12)
 """Gauss points of an integral over the angles of the wake on one ring."""
 
 
@@ -88,12 +88,11 @@ def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[
     line = rupture_line(mesh, gap, fluid)
     if line is None:
         return found
-    t, w = legendre.leggauss(POINTS)
-    angle = 0.5 * line.angles[:, None] * (1.0 + t)
-    orders = np.arange(mesh.modes)
+    angle = 0.5 * line.angles[:, None] * (1.0 + POINTS)
     coefficients = mesh.to_modes @ np.log(gap[:, line.rings])
-    h = np.exp(np.einsum("mr,mrk->rk", coefficients, np.cos(orders[:, None, None] * angle)))
+    waves = np.cos(angle[:, :, None] * np.arange(mesh.modes))
+    h = np.exp(np.matmul(waves, coefficients.T[:, :, None])[:, :, 0])
     r = mesh.radii[line.rings]
     wet = np.minimum(1.0, line.gap_at(r[:, None] * np.sin(angle)) / h)
-    found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ w * line.angles * r  # both halves of the plane
+    found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ WEIGHTS * line.angles * r  # both halves of the plane
     return found

@@ -40,7 +40,7 @@ two higher: on many angles the nodes of the radius leave most of the error."""
 ROUGH_FRICTION = 10.0
 """Stated error of friction over the tolerance above which the first of these do not serve: it falls slower than others."""
 
-WASTE, WASTE_ANEW, REGULAR = 0.25, 0.44, 30
+WASTE, WASTE_ANEW, REGULAR = 0.25, 0.35, 30
 """Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
 needs other meshes anyway, when it may move to the first, or if that pair has this many angles, with which errors fall
 regularly."""
@@ -63,10 +63,9 @@ NO_GAIN, WIDE = 0.7, 0.2
 """Error over that on fewer angles from which panels are halved that the line of rupture crosses in the contact, as it lies
 too far between their nodes; and the width from which they are [a]."""
 
-TORN_AHEAD, COARSER = 0.5, -1.0
-"""Speed over that of the state for which panels are made along a path to slower ones, where they have to be made anew; and the
-binary logarithm of the width of the smallest panel, over the one for the state, down to which they go on serving: between the
-nodes the line of rupture leaves more of the error."""
+COARSER = -1.0
+"""Binary logarithm of the width of the smallest panel, over the one for the state, down to which panels go on serving along a
+path to slower ones: between the nodes the line of rupture leaves more of the error."""
 
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
@@ -228,14 +227,13 @@ def follow_cavitated(
     def predicted(name: str, mesh: PolarMesh) -> Unknowns:
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
-    ahead = TORN_AHEAD * speed if speed < neighbour.fine.equations.speed else speed
     serves, rung = fits(now, speed, law, COARSER), _rung(neighbour)
     lowest, fewer = 1 if serves else _first_rung(rtol, now.model), LADDER[rung - 1][1]
     part = WASTE if serves and fewer < REGULAR else WASTE_ANEW
     is_waste = rung > lowest and _within(neighbour, part * rtol, fewer)
     if not serves or is_waste:
         fine = neighbour.fine
-        base = now if fits(now, ahead, law) else _base(ahead, law, fine, now.model)
+        base = now if fits(now, speed, law) else _base(speed, law, fine, now.model)
         start = predicted("fine", fine.mesh) if line else fine.unknowns
         found = _pair(base, LADDER[rung - is_waste], speed, law, start, fine.mesh)
         return found if isinstance(found, Pair) else None
