@@ -142,8 +142,9 @@ class RunningIntegral:
     def after(self, operator: Array) -> Array:
         """Return ``operator @ A``, shape (rows, size), in Fortran order."""
         columns = np.ascontiguousarray(operator.T).reshape(self.mesh.panels, self.mesh.order, -1)
-        result = np.matmul(self.blocks.transpose(0, 2, 1), columns).reshape(self.mesh.size, -1)
-        result += self._arrived.T @ columns.sum(axis=1)
+        result = self._arrived.T @ columns.sum(axis=1)
+        for own, block, column in zip(result.reshape(columns.shape), self.blocks, columns, strict=True):
+            own += block.T @ column  # panel by panel: another matrix of this size costs more than the products
         return np.asarray(result.T)
 
 

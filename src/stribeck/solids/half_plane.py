@@ -186,9 +186,12 @@ def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
     # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
     kernel = np.empty((panels, order, panels, order))
     columns = kernel.reshape(mesh.size, mesh.size)
-    distance = np.abs(inner[:, None] - mesh.nodes)
+    # In the memory of the operator: new memory for each step costs more than the steps.
+    distance = np.subtract.outer(inner, mesh.nodes, out=columns[:-order])
+    np.abs(distance, out=distance)
     distance[distance == 0] = 1.0
-    np.multiply(np.log(distance, out=distance), mesh.weights[:-order, None], out=columns[:-order])
+    np.log(distance, out=distance)
+    distance *= mesh.weights[:-order, None]
     target, source, places = near_panels(mesh)
     half = mesh.half_widths[source]
     near = (
