@@ -17,12 +17,15 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.equations.sensitivity import GROUPS
 from stribeck.quantities.inputs import InputTable
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, format_si, show, to_si
 from stribeck.solver.solve import as_groups
 
-__all__ = ["Coordinate", "Over", "check_inside", "given_values", "read_problem"]
+__all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values", "read_problem"]
 
 Over = Literal["speed", "load", "roughness"]
+
+POINTS_RANGE = (2, 100_000)
+"""Fewest and most points of a curve."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,13 @@ class Coordinate:
         """Return whether the model is the same at all values: in Hertz units it may vary with the load."""
         ends = [self.groups_at(math.log(value)).model for value in (values[0], values[-1])]
         return ends[0] == ends[1]
+
+    def where(self, *values: float) -> str:
+        """Return values in words, such as ``"speed 1 mm/s to 1 m/s"``."""
+        if isinstance(self.base, Groups):
+            return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
+        dimension = self.base.INPUTS.quantities[self.over].dimension
+        return f"{self.over} {' to '.join(format_si(value, dimension) for value in values)}"
 
     @property
     def direction(self) -> Array:
@@ -157,3 +167,11 @@ def check_inside(coordinate: Coordinate, values: Array) -> None:
     for value in (values[0], values[-1]):
         if coordinate.groups_at(math.log(value)).is_hertzian:
             raise InputError("speed and roughness are both zero; the dry smooth contact has no curve; use solve.")
+
+
+def check_points(points: int) -> None:
+    """Refuse a number of points that is none or out of range."""
+    low, high = POINTS_RANGE
+    if isinstance(points, bool) or not isinstance(points, int) or not low <= points <= high:
+        allowed = f"a whole number from {low} to {high}: a curve has at least {low}"
+        raise InputError(f"points = {show(points)}; it must be {allowed}.")

@@ -10,8 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.friction import Definition
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurvePoint, solved_at, within
+from stribeck.curves.regime import Transition, excess
+from stribeck.equations.observables import ROW
+from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.line_path import POSITION
@@ -36,6 +40,9 @@ STEP = 1e-20
 
 WIDTH = 1e-3
 """Step along the coordinate for other derivatives."""
+
+TINY = 1e-300
+"""Added to a friction that may vanish."""
 
 MOST_POLISHES = 4
 """Most states solved for one landmark: each squares the error."""
@@ -81,7 +88,7 @@ def places_of(path: SolvedPath) -> Array:
 
 
 class Landmarks:
-    """The search for landmarks on one path."""
+    """The search for landmarks on one path, whose friction is ``rubbing`` times the load share of asperities, and viscous."""
 
     def __init__(self, path: SolvedPath, coordinate: Coordinate, rtol: float) -> None:
         self.path, self.coordinate, self.rtol = path, coordinate, rtol
@@ -89,7 +96,31 @@ class Landmarks:
         self.places = places_of(path)
         self.rows = path.smooth(self.places)
 
-    def lowest(
+    def place(self, mark: Transition, rubbing: float, beta: float, definition: Definition, accepted: float) -> Place | None:
+        """Return where a transition or the minimum lies, for coefficients of the friction; None where the path holds none."""
+        viscous = ROW[f"viscous_{definition}"]
+
+        def parts(rows: Array) -> tuple[Array, Array]:
+            return rubbing * rows[:, ROW["contact_load_share"]], beta * rows[:, viscous]
+
+        def slope(point: RefinedState) -> float:
+            assert point.state is not None
+            return float(friction_slopes(point.state, rubbing, beta, definition) @ self.coordinate.direction)
+
+        def above(rows: Array) -> Array:
+            contact, other = parts(rows)
+            return np.asarray(excess(mark, rows[:, ROW["fluid_load_share"]], contact / (contact + other + TINY)))
+
+        def above_at(point: RefinedState) -> float:
+            assert point.values is not None
+            return float(above(point.values.array()[None])[0])
+
+        if mark is not Transition.MINIMUM:
+            return self._first(above, above_at, accepted)
+        # At rest the friction is that of the dry contact along the whole curve.
+        return self._lowest(lambda rows: np.add(*parts(rows)), slope, accepted) if self.moves else None
+
+    def _lowest(
         self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float], accepted: float
     ) -> Place | None:
         """Return the minimum of a function of the observables inside the path, or None.
@@ -113,8 +144,8 @@ class Landmarks:
 
         return self._polished(slope, float(places[i - 1]), float(places[i + 1]), slope_of, doubt, accepted)
 
-    def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float], accepted: float) -> Place | None:
-        """Return the first zero of a function of the observables, ascending, or None; ``accepted`` as for :meth:`lowest`."""
+    def _first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float], accepted: float) -> Place | None:
+        """Return the first zero of a function of the observables, ascending, or None; ``accepted`` as for :meth:`_lowest`."""
         places, values = self._known(function)
         crossings = np.nonzero(np.diff(np.sign(values)))[0]
         if not len(crossings):

@@ -18,12 +18,10 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
-from stribeck.curves.coordinate import Coordinate, Over, given_values
+from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
-from stribeck.curves.regime import Regime, Transition, check_transition, excess, ranges_of, regimes_along
-from stribeck.equations.observables import ROW, Observables
-from stribeck.equations.sensitivity import friction_slopes
+from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
@@ -32,7 +30,6 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.path import SolvedPath
-from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate
 
@@ -43,20 +40,6 @@ __all__ = ["StribeckCurve"]
 
 SLACK = 1e-12
 """Rounding of the ends of a curve."""
-
-TINY = 1e-300
-"""Added to a friction that may vanish."""
-
-POINTS_RANGE = (2, 100_000)
-"""Fewest and most points of a curve."""
-
-
-def check_points(points: int) -> None:
-    """Refuse a number of points that is none or out of range."""
-    low, high = POINTS_RANGE
-    if isinstance(points, bool) or not isinstance(points, int) or not low <= points <= high:
-        allowed = f"a whole number from {low} to {high}: a curve has at least {low}"
-        raise InputError(f"points = {show(points)}; it must be {allowed}.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -194,8 +177,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         low, high = (float(end) for end in np.exp(path.coordinates[[0, -1]]))
         if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
             raise InputError(
-                f"{self.over} = {show(value)} is outside the curve, which runs from {self._where(low)} to "
-                f"{self._where(high).removeprefix(self.over + ' ')}; compute a curve that contains it."
+                f"{self.over} = {show(value)} is outside the curve, which runs from {self._path.where(low)} to "
+                f"{self._path.where(high).removeprefix(self.over + ' ')}; compute a curve that contains it."
             )
         return self._values(values if np.ndim(values) else float(values), np.log(np.atleast_1d(values)))
 
@@ -365,28 +348,16 @@ class StribeckCurve(Exported, Shown, ByValue):
             return ()
         state = self.minimum.solution
         share = state.friction(self.boundary_friction, self.beta, self.definition).contact_share
-        note = minimum_note(state.groups, state.contact, state.observables, share, self._where(self.minimum.value))
+        note = minimum_note(state.groups, state.contact, state.observables, share, self._path.where(self.minimum.value))
         return (note,) if note else ()
 
-    def _where(self, *values: float) -> str:
-        """Return values of the coordinate in words, such as ``"speed 1 mm/s to 1 m/s"``."""
-        if self.contact is None:
-            return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
-        dimension = self.contact.INPUTS.quantities[self.over].dimension
-        return f"{self.over} {' to '.join(format_si(value, dimension) for value in values)}"
-
     def _note(self, points: list[tuple[float, str]]) -> str:
-        where = self._where(points[0][0], points[-1][0])
+        where = self._path.where(points[0][0], points[-1][0])
         return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
 
     @cached_property
     def _landmarks(self) -> Landmarks:
         return Landmarks(self._solved_path, self._path, self.rtol)
-
-    def _parts(self, rows: Array) -> tuple[Array, Array]:
-        """Return the two parts of the friction for rows of observables."""
-        rubbing = self._sliding * self.boundary_friction
-        return rubbing * rows[:, ROW["contact_load_share"]], self.beta * rows[:, ROW[f"viscous_{self.definition}"]]
 
     @property
     def minimum(self) -> Landmark | None:
@@ -418,8 +389,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         accepted = min(self.rtol, STATES_RTOL) if rtol is None else rtol
         check_rtol(accepted)
         if (mark, accepted) not in self._found:
-            find = self._lowest if mark is Transition.MINIMUM else self._crossing_of
-            place = find(mark, accepted)
+            rubbing = self._sliding * self.boundary_friction
+            place = self._landmarks.place(mark, rubbing, self.beta, self.definition, accepted)
             self._found[mark, accepted] = None if place is None else self._landmark(mark, place)
         return self._found[mark, accepted]
 
@@ -430,25 +401,6 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _landmark(self, name: Transition, place: Place) -> Landmark:
         friction = place.solution.friction(self.boundary_friction, self.beta, self.definition).total
         return Landmark(name, math.exp(place.coordinate), friction, place.solution, place.error)
-
-    def _lowest(self, _: Transition, accepted: float) -> Place | None:
-        if not self._landmarks.moves:  # at rest the friction is that of the dry contact along the whole curve
-            return None
-
-        def slope(point: RefinedState) -> float:
-            assert point.state is not None
-            rubbing = self._sliding * self.boundary_friction
-            slopes = friction_slopes(point.state, rubbing, self.beta, self.definition)
-            return float(slopes @ self._path.direction)
-
-        return self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope, accepted)
-
-    def _crossing_of(self, name: Transition, accepted: float) -> Place | None:
-        def above(rows: Array) -> Array:
-            contact, viscous = self._parts(rows)
-            return np.asarray(excess(name, rows[:, ROW["fluid_load_share"]], contact / (contact + viscous + TINY)))
-
-        return self._landmarks.first(above, lambda point: float(above(_values(point).array()[None])[0]), accepted)
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
@@ -502,17 +454,12 @@ class StribeckCurve(Exported, Shown, ByValue):
         points = f"{len(self)} points" if len(self) == self.requested else f"{len(self)} of {self.requested} points"
         rows = [
             ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
-            *((mark.name, f"{mark.friction:.4g} at {self._where(mark.value)}") for mark in self.transitions),
+            *((mark.name, f"{mark.friction:.4g} at {self._path.where(mark.value)}") for mark in self.transitions),
             ("regimes", ", ".join(dict.fromkeys(self.regimes))),
             ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
             ("contact law", self.solutions[0].law),
             ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})"),
         ]
-        ends = self._where(float(self.values[0]), float(self.values[-1]))
+        ends = self._path.where(float(self.values[0]), float(self.values[-1]))
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{points}, {ends}{outcome}", rows, self.notes)
-
-
-def _values(point: RefinedState) -> Observables:
-    assert point.values is not None
-    return point.values

@@ -16,11 +16,11 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import check_solid, with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
-from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
+from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
 from stribeck.curves.function import Progress
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
-from stribeck.curves.result import SLACK, StribeckCurve, check_points
+from stribeck.curves.result import SLACK, StribeckCurve
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.contact_values import refuse_former
