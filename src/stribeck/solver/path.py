@@ -2,8 +2,8 @@ r"""A path of states along one coordinate, the logarithm of the quantity that va
 
 A few states are solved and expanded into Taylor series; between two of them each observable is the polynomial with the
 coefficients of both.  A step is as long as their radius of convergence allows.  If the polynomial of all orders differs from
-that without the highest by more than the tolerance, a state is solved in between.  The stated error of an observable is the
-larger of those at both ends, plus this difference.
+that without the highest by more than half the tolerance, a state is solved in between.  The stated error of an observable is
+the larger of those at both ends, plus twice this difference.
 
 Only a :class:`Problem` knows what the states are.
 """
@@ -51,6 +51,9 @@ READ_AT = 24
 
 TAIL = 3.0
 """Error of a polynomial over the largest of its last three coefficients."""
+
+BEYOND = 2.0
+"""Interpolation error over the change of the polynomial by its highest order: the orders beyond it count about as much."""
 
 LOST = 1e3
 """Value over its interpolation error below which a share is interpolated by its logarithm."""
@@ -183,7 +186,7 @@ class Interval:
     @cached_property
     def missed(self) -> Array:
         """Error of the interpolated observables by their highest orders, over ``(tau (1 - tau))**K``."""
-        return missed_by(self.order, self.ends[:, : self.left.series.shape[1]], rate(self.left, self.right))
+        return BEYOND * missed_by(self.order, self.ends[:, : self.left.series.shape[1]], rate(self.left, self.right))
 
     @cached_property
     def at_ends(self) -> Array:
