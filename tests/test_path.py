@@ -81,6 +81,16 @@ def test_everything_between_the_solved_states_is_within_its_stated_error(rtol):
     assert (found <= errors + max(ROUNDING, 1e-3 * rtol)).all()
 
 
+def test_polynomials_of_few_orders_on_long_intervals_err_by_hardly_more_than_they_state():
+    problem, parts, worst = Known(order=4), np.linspace(0.05, 0.95, 21), []
+    for start in np.arange(-6, 1.01, 0.25):
+        for length in (0.8, 1.2, 1.6, 2.0):
+            interval = Interval(problem, problem.solve(start, []), problem.solve(start + length, []))
+            (found, errors), true = interval.at(parts), values(start + parts * length)
+            worst.append((np.abs(found - true) / problem.scales(true, parts) / (errors + ROUNDING)).max())
+    assert max(worst) < 1.5 and np.mean(np.array(worst) > 1) < 0.02
+
+
 def test_a_smaller_tolerance_takes_more_states():
     counts = [len(follow(Known(), 3.0, -9.0, rtol).expansions) for rtol in (1e-3, 1e-6, 1e-9)]
     assert counts == sorted(set(counts))
