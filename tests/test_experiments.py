@@ -78,12 +78,13 @@ def test_the_command_prints_a_table_and_draws(tmp_path, capsys):
         "2",
         "--speeds",
         "1 mm/s",
-        "0.1 m/s",
+        "0.1",  # in SI units
     )
     answer = call(capsys, *tokens, "--plot", picture)
     assert (answer.code, answer.err) == (0, "")
     assert "standard errors after it" in answer.out and picture.stat().st_size > 5000
-    assert len(json.loads(call(capsys, *tokens, "--json").out)["runs"]) == 2
+    runs = json.loads(call(capsys, *tokens, "--json").out)["runs"]
+    assert len(runs) == 2 and {run["speed"] for run in runs} <= {1e-3, 0.1}
     assert "CASE is missing" in call(capsys, "next", "measured.csv").err
     assert "DATA is missing" in call(capsys, "compare").err
 

@@ -97,7 +97,7 @@ def model_parts(
     given = {
         "slide_to_roll": as_number("slide_to_roll", slide_to_roll),
         "cavitation": cavitation,
-        "cavity_pressure": None if cavity_pressure is None else _bare_or_text(cavity_pressure),
+        "cavity_pressure": None if cavity_pressure is None else bare_or_text(cavity_pressure),
         "flow_factors": flow_factors,
     }
     return {name: value for name, value in given.items() if value is not None}
@@ -151,7 +151,7 @@ def curve_arguments(
         found |= {"problem": case.contact, "definition": case.definition}
         span = settings.range if varied == settings.over else None
         if ends is not None:
-            span = curve_range([_bare_or_text(end) for end in ends], varied)
+            span = curve_range([bare_or_text(end) for end in ends], varied)
     else:
         fixed = [name for name in AXES if name != varied]
         found |= {name: as_group(name, text) for name, text in zip(fixed, groups or (), strict=True)}
@@ -174,7 +174,7 @@ def _axis(text: str) -> Axis:
     raise InputError(f"over = {show(text)} must be 'speed', 'load' or 'roughness'.")
 
 
-def _bare_or_text(text: str) -> float | str:
+def bare_or_text(text: str) -> float | str:
     """Return a bare number, which is in SI units, as number; what has a unit as it is."""
     try:
         return float(text)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, check_pictures, data_and_case
+from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, bare_or_text, check_pictures, data_and_case
 from stribeck.cli.exits import say, stdout_console
 from stribeck.cli.progress import interruptible
 
@@ -44,11 +44,11 @@ def next_command(
     count
         Number of runs; default 3.
     speeds
-        Speeds that can be set; default from a third of the slowest to three times the fastest.
+        Speeds that can be set, with units or in SI; default from a third of the slowest to three times the fastest.
     loads
-        Loads that can be set; default a third, once and three times that of the first curve.
+        Loads that can be set, with units or in SI; default a third, once and three times that of the first curve.
     viscosities
-        Viscosities at hand; default those of the curves.
+        Viscosities at hand, with units or in SI; default those of the curves.
     plot
         Draw the gain over the speed to this file (.png, .svg or .pdf).
     json
@@ -59,11 +59,13 @@ def next_command(
     data, loaded = data_and_case("next", data, case)
     number = 3 if count is None else as_whole("count", count)
     pictures = check_pictures(plot, force)
+    given = {"speeds": speeds, "loads": loads, "viscosities": viscosities}
+    choices: dict[str, Any] = {
+        name: None if texts is None else [bare_or_text(text) for text in texts] for name, texts in given.items()
+    }
     with interruptible() as progress:
         found = sb.fit(data, loaded, intervals=False, on_step=lambda what, n: progress(n, n + 1, what))
-        plan = sb.next_runs(
-            found, number, speeds=speeds, loads=loads, viscosities=viscosities, on_step=lambda n, m: progress(n, m, "states")
-        )
+        plan = sb.next_runs(found, number, **choices, on_step=lambda n, m: progress(n, m, "states"))
     for picture in pictures:
         plan.plot(picture, force=force)
     if json:

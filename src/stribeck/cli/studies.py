@@ -304,5 +304,5 @@ def explore_command(
 
     number = None if port is None else as_whole("port", port)
     with suppress(KeyboardInterrupt):  # which is how it ends
-        serve(case, number, browser, host or "127.0.0.1")
+        serve(case, number, browser, "127.0.0.1" if host is None else host)
     return 0

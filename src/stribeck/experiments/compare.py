@@ -264,7 +264,7 @@ def _models(models: str | Mapping[str, Mapping[str, Any]], contact: Contact, row
         return dict(models)
     if models not in KINDS:
         known = " or ".join(map(repr, KINDS))
-        raise InputError(f"models = {show(models)} must be {known}, or a mapping from names to models.")
+        raise InputError(f"models = {show(models)} must be {known}, or in Python a mapping from names to models.")
     return KINDS[models](contact, rows)
 
 

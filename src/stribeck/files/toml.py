@@ -85,7 +85,9 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
         if _depth(table) > _DEEPEST:
             raise ValueError(f"tables or lists are nested more than {_DEEPEST} deep")
     except UnicodeDecodeError as problem:
-        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file.") from None
+        raise InputError(
+            f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file, saved as UTF-8."
+        ) from None
     except (ValueError, RecursionError) as problem:
         said = " ".join(str(problem).split())
         advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))
