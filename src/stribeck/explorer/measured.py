@@ -128,7 +128,7 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
     name : str
         Name of the file, for sentences.
     content : bytes
-        A table as :func:`stribeck.measurements.read_measurements` reads it.
+        A table as :func:`stribeck.fits.measurements.read_measurements` reads it.
     contact : Contact
         Whose viscosity and load hold where the file has viscosity times speed or the Hersey number, and does not give them.
 
