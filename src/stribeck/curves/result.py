@@ -23,7 +23,6 @@ from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, 
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
 from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
-from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
