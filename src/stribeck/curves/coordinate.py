@@ -16,8 +16,9 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.equations.sensitivity import GROUPS
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import InputTable
-from stribeck.quantities.units import InputError, format_si, show, to_si
+from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 
 __all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values", "read_problem"]
