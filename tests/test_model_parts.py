@@ -225,6 +225,15 @@ def test_a_thin_film_that_is_compressed_is_found():
     np.testing.assert_allclose(middle.fluid_pressure, np.sqrt(1 - np.array([0.0, 0.25, 0.25])), rtol=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("coefficient", "cavitation", "highest"), [(4.74106, "none", 1.545), (4.96020, "none", 1.745), (5.0, "exit", 1.365)]
+)
+def test_the_spike_of_a_thick_film_rises_as_in_finite_differences(coefficient, cavitation, highest):
+    """In a full film by 500 of them that double towards the spike; the film that ends was not found."""
+    found = sb.solve(sb.Groups(0.27, 0.01, 0.0), fluid=Barus(coefficient), cavitation=cavitation, rtol=1e-4)
+    assert found.fluid_pressure.max() == pytest.approx(highest, rel=1e-2)
+
+
 @pytest.mark.parametrize(("fluid", "said"), [(sb.fluids.Roelands(4.5, 9.6, 2.7e-4), "spike"), (Barus(1.0), "")])
 def test_a_failure_of_a_stiff_fluid_names_the_spike(fluid, said):
     told = spiked(with_parts(sb.Groups(0.27, 1.5e-4, 2e-7), fluid=fluid))

@@ -322,7 +322,8 @@ def spiked(groups: Groups) -> str:
         return ""
     return (
         f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
-        "hard elastohydrodynamics, which this solver does not follow. Thinner films, at lower speed, have none."
+        "hard elastohydrodynamics, and without bound above 4.4 in a full film or above 5.2 in one that ends, earlier in a "
+        "fluid that stiffens faster than exponentially. Thinner films, at lower speed, have none."
     )
 
 
