@@ -22,6 +22,7 @@ Source: the plane-strain solution of a bonded layer, [Johnson 1985] section 5.8;
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -226,26 +227,23 @@ def transfer(x: Array, poisson_ratio: float) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _table(poisson_ratio: float) -> Array:
-    """Chebyshev coefficients of the smooth kernel over ``0 <= xi <= REACH``."""
+def _on_cells(poisson_ratio: float) -> Cells:
+    """Return the smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     half = 0.5 * LARGEST_WAVE / WAVE_PANELS
     q = (half * (1 + 2 * np.arange(WAVE_PANELS)[:, None] + nodes)).ravel()
     weights = np.tile(half * weights, WAVE_PANELS)
-    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
     excess = transfer(q, poisson_ratio) - 1
-    values = ((excess * np.cos(np.outer(xi, q)) + np.exp(-q)) / q) @ weights / np.pi
-    found = chebyshev.chebfit(2 * xi / REACH - 1, values, TABLE - 1)
-    return np.asarray(found)
+    return smooth_on_cells(lambda xi: ((excess * np.cos(np.outer(xi, q)) + np.exp(-q)) / q) @ weights / np.pi)
 
 
-@lru_cache(maxsize=16)
-def _on_cells(poisson_ratio: float) -> Cells:
-    """Return the smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
-    of_table = _table(poisson_ratio)
+def smooth_on_cells(function: Callable[[Array], Array]) -> Cells:
+    """Return a smooth function over ``0 <= xi <= REACH`` on cells, by its Chebyshev series."""
+    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
+    series = chebyshev.chebfit(2 * xi / REACH - 1, function(xi), TABLE - 1)
 
     def smooth(xi: Array) -> Array:
-        return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, of_table), dtype=float)
+        return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, series), dtype=float)
 
     return Cells.of(smooth, 0.0, REACH, CELLS, DEGREES)
 

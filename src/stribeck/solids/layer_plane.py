@@ -18,16 +18,16 @@ from functools import lru_cache
 
 import numpy as np
 import scipy
-from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
+from stribeck.numerics.cells import Cells
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflection_by_mode
-from stribeck.solids.layer import LARGEST_WAVE, REACH, TABLE, Layer, transfer
+from stribeck.solids.layer import LARGEST_WAVE, REACH, Layer, smooth_on_cells, transfer
 
 __all__ = ["layer_by_mode", "smooth_kernel"]
 
-WIDEST_PANEL = 3.0
+WIDEST_PANEL = 6.0
 """Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
 
 ANGLES_PER_MODE = 4
@@ -35,27 +35,24 @@ ANGLES_PER_MODE = 4
 
 
 @lru_cache(maxsize=16)
-def _table(poisson_ratio: float) -> Array:
-    """Chebyshev coefficients of k_s over ``0 <= xi <= REACH``."""
+def _on_cells(poisson_ratio: float) -> Cells:
+    """Return k_s over ``0 <= xi <= REACH``, quick to evaluate."""
     nodes, weights = np.polynomial.legendre.leggauss(1200)
     q, weights = 0.5 * LARGEST_WAVE * (1 + nodes), 0.5 * LARGEST_WAVE * weights
-    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
-    values = scipy.special.j0(np.outer(xi, q)) @ (weights * (transfer(q, poisson_ratio) - 1))
-    return np.asarray(chebyshev.chebfit(2 * xi / REACH - 1, values, TABLE - 1))
+    weights = weights * (transfer(q, poisson_ratio) - 1)
+    return smooth_on_cells(lambda xi: np.asarray(scipy.special.j0(np.outer(xi, q)) @ weights))
 
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
     """Return k_s at distances of xi thicknesses."""
-    near = np.minimum(xi, REACH)
-    inside = chebyshev.chebval(2 * near / REACH - 1, _table(poisson_ratio))
-    return np.where(xi < REACH, inside, -1.0 / np.maximum(xi, REACH))
+    return np.where(xi < REACH, _on_cells(poisson_ratio)(xi), -1.0 / np.maximum(xi, REACH))
 
 
 def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
     r"""Return the matrices from the nodal pressures of each angular mode to its deflection, shape (modes, rings, rings).
 
-    Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than three thicknesses, far
-    out, the layer acts as springs side by side, :math:`\tfrac4\pi d (1 - 2 \nu)/(2 (1 - \nu)^2)` [u_Hz per p_Hz].
+    Panels on which pressure acts must not be much wider than the layer is thick: on those wider than twelve thicknesses,
+    far out, the layer acts as springs side by side, :math:`\tfrac4\pi d (1 - 2 \nu)/(2 (1 - \nu)^2)` [u_Hz per p_Hz].
     """
     d, nu, r = layer.thickness, layer.poisson_ratio, mesh.radii
     found = deflection_by_mode(mesh)
