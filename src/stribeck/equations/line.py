@@ -423,7 +423,7 @@ class Equations:
         gaps = dy[..., at.gap] / y[..., at.gap]
         unit = y[..., at.flux_gap] if self.operators.is_article else self._flux_unit(y)
         fluxes = dy[..., at.flux_gap] / unit
-        others = (np.abs(dy[..., block]).max(initial=0.0) for block in (at.pressure, at.exit, at.dilation))
+        others = [np.abs(dy[..., block]).max() for block in (at.pressure, at.exit, at.dilation) if block.start < block.stop]
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
 
 
