@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.contacts.with_parts import with_parts
 from stribeck.curves import landmarks
 from stribeck.curves.function import solved_at
 from stribeck.curves.regime import Transition
@@ -228,6 +229,15 @@ def test_other_films_are_functions_with_fewer_orders(parts):
     here = curve.at("12 mm/s")
     for name in ("central_gap", "minimum_gap", "flux_gap", "viscous_balanced"):
         assert here.values[name] == pytest.approx(getattr(alone, name), rel=2e-6)
+
+
+def test_films_thicker_than_the_asperities_are_high_take_few_states():
+    base = with_parts(sb.Groups(1e-3, 0.1, 1e-4), slide_to_roll=1.0)
+    curve = sb.stribeck_curve(base, roughness=(1e-6, 1e-4), points=2, rtol=1e-4)
+    assert curve.states < 20
+    assert curve.at(3e-5).central_gap == pytest.approx(
+        sb.solve(replace(base, roughness=3e-5), rtol=1e-6).central_gap, rel=1e-6
+    )
 
 
 def test_a_curve_does_not_refine_a_vanishing_difference():

@@ -23,7 +23,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
-from stribeck.numerics.series import beyond, interval, radius
+from stribeck.numerics.series import ROUNDING, beyond, interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
@@ -62,6 +62,10 @@ without a plateau at low rates: the cusp where the rate is zero moves through th
 
 SHORTEST_REACH = 0.02
 """Shortest such distance: the shorter it is, the more rounding counts."""
+
+UNSEEN_PART = 1e-4
+"""Change within that distance over the tolerance below which a coefficient tells nothing of the radius: where asperities
+hardly touch, those of their pressure converge on a hundredth of the interval on which they begin to count."""
 
 MOST_TRIALS = 4
 """Most expansions of a state with a new distance."""
@@ -283,7 +287,8 @@ class LineProblem:
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
         """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
-        return min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
+        rounding = max(ROUNDING, UNSEEN_PART * self.rtol)
+        return min(radius(each, reach, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
         """Return the series of a film that is sampled, and an estimate of its radius, on which the samples depend."""
