@@ -61,6 +61,8 @@ class SolvedRows(NamedTuple):
         Points of a row.
     rtol : float
         Tolerance of its states.
+    room : float
+        Factor by which rows go on beyond the ends of the axis, so that lines can leave it between two rows.
     is_quick : bool
         Whether it comes before margins and checks, which need not wait for it long.
     """
@@ -68,11 +70,12 @@ class SolvedRows(NamedTuple):
     step: int
     points: int
     rtol: float
+    room: float = 1.0
     is_quick: bool = False
 
 
-SOLVED_ROWS = {"line": SolvedRows(5, 25, 1e-3, is_quick=True), "point": SolvedRows(5, 9, 1e-3)}
-"""By geometry.  The lines between rows half a decade apart miss the speeds by up to 4 %, less than a pixel."""
+SOLVED_ROWS = {"line": SolvedRows(5, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(5, 9, 1e-3)}
+"""By geometry.  Straight lines between rows half a decade apart miss the speeds by up to 4 %, less than a pixel."""
 
 Report = Callable[[float], object]
 """Called with the finished part; an exception that it raises ends the work."""
@@ -324,7 +327,10 @@ def solved_diagram(
     Diagram
         With nan in the rows that are still missing.
     """
-    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)[:: SOLVED_ROWS[contact.INPUTS.geometry].step]
+    step = SOLVED_ROWS[contact.INPUTS.geometry].step
+    shown = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
+    roughness = shown[::step]
+    shown = shown[: step * (len(roughness) - 1) + 1]
     lines = np.full((3, len(roughness)), math.nan)
     own = contact.roughness or roughness[0]
     order = sorted(range(len(roughness)), key=lambda i: abs(math.log(roughness[i] / own)))
@@ -336,7 +342,9 @@ def solved_diagram(
             lines[:, i], solved[here] = _row(contact.replace(roughness=here), definition, speeds, report, near)
         except (SolveError, InputError):
             pass  # its row stays empty
-        yield Diagram(roughness, lines[0].copy(), lines[1].copy(), lines[2].copy(), part=(number + 1) / len(order))
+        with np.errstate(divide="ignore", invalid="ignore"):  # a line may be at zero, at infinity, or missing
+            between = np.exp([np.interp(np.log(shown), np.log(roughness), np.log(line)) for line in lines])
+        yield Diagram(shown, between[0], between[1], between[2], part=(number + 1) / len(order))
 
 
 def _row(
@@ -344,9 +352,10 @@ def _row(
 ) -> tuple[tuple[float, float, float], StribeckCurve]:
     """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve."""
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
+    low, high = speeds[0] / solved.room, speeds[1] * solved.room
     found = stribeck_curve(
         contact,
-        speed=speeds,
+        speed=(low, high),
         points=solved.points,
         rtol=solved.rtol,
         definition=definition,
@@ -355,7 +364,7 @@ def _row(
     )
     marks = {mark.name: mark.speed for mark in _marks_of(found)}
     slow = found.regimes[0]
-    ends = found.values[-1] >= 0.99 * speeds[1]
+    ends = found.values[-1] >= 0.99 * high
     beyond = math.inf if ends else math.nan
     boundary = marks.get("boundary", 0.0 if slow != "boundary" else beyond)
     hydrodynamic = marks.get("hydrodynamic", 0.0 if slow == "hydrodynamic" else beyond)
