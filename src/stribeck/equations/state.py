@@ -30,6 +30,9 @@ from stribeck.solids.solid import Lengths
 WANDERING = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
 """Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins."""
 
+FULL_STEPS = 25
+"""Steps after which it is: most films take less than 20, and what takes longer goes to and fro."""
+
 CHORD = 0.25
 """Contraction of the steps above which a kept factorisation is given up."""
 
@@ -517,10 +520,13 @@ def solve_state(
     """
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)
-    control = StepControl(tolerance, max_steps, CHORD)
-    root = root_find(equations, start, control, kept)
-    if root.outcome in WANDERING and is_thinning(equations.film):
+    thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD)
+    full = replace(control, max_steps=min(max_steps, FULL_STEPS)) if thins else control
+    root = root_find(equations, start, full, kept)
+    if thins and root.outcome in WANDERING:
+        spent = root.steps
         root = root_find(equations, start, replace(control, monotone=True))
+        root = replace(root, steps=spent + root.steps)
     gap = equations.layout.gap
     with np.errstate(all="ignore"):  # a root that was not found need not be finite
         error = float(np.abs(start[gap] / root.x[gap] - 1).max())
