@@ -5,6 +5,7 @@ import math
 import pytest
 
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point import refinement, start
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes
@@ -28,14 +29,24 @@ def agree(one, other):
         assert abs(one.values[name] - value) <= 2 * (one.absolute_errors[name] + other.absolute_errors[name]), name
 
 
-def test_where_panels_no_longer_fit_the_state_of_a_neighbour_is_carried_to_new_ones(state, monkeypatch):
+def test_where_panels_no_longer_fit_the_state_of_a_neighbour_is_carried_to_new_ones(monkeypatch):
+    state, there = solve_cold(ball(1.4e-2), RTOL), ball(7e-3)
     monkeypatch.setattr("stribeck.solver.point.solve.first_state", None)  # no cold start
-    there = ball(1e-3)
     found = solve_from(state, there, RTOL)
     assert found.outcome.ok
     assert found.mesh.edges.size != state.mesh.edges.size
     monkeypatch.undo()
     agree(found, solve_cold(there, RTOL))
+
+
+def test_from_a_neighbour_that_is_far_a_state_costs_no_more_than_a_cold_one(state, monkeypatch):
+    # That of a smooth ball at a tenth of the speed took ten times as long from there.
+    there = ball(1e-3)
+    cold, warm = solve_cold(there, RTOL), solve_from(state, there, RTOL)
+    assert (warm.newton_steps, warm.krylov_steps) == (cold.newton_steps, cold.krylov_steps)
+    # If the cold start fails the neighbour is still asked.
+    monkeypatch.setattr("stribeck.solver.point.solve.first_state", lambda *_: Outcome.STALLED)
+    agree(solve_from(state, there, RTOL), cold)
 
 
 def test_a_mesh_far_finer_than_a_tolerance_needs_is_left(state):

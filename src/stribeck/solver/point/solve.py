@@ -17,7 +17,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
-from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
+from stribeck.equations.point.mesh_choice import MeshTooLargeError, fits, layout, operators_of, resolution
 from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES, has_far_film
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
@@ -42,6 +42,10 @@ AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)
 
 THINNEST = 0.2
 """Thickness of layers over the Hertz radius from which balls are solved on them."""
+
+FAR = 1.5
+"""Ratio of the widths of the edge, that of a state and that of its neighbour, from which other panels make a cold start
+cheaper than one from the neighbour; it takes up to 5 times as long then."""
 
 SMALLEST_ESTIMATE = 0.01
 """Smallest error that is stated, over the tolerance."""
@@ -106,7 +110,8 @@ def solve_from(
     Returns
     -------
     PointState
-        A failure is returned in its outcome, not raised; if the path from the neighbour fails, a cold start is tried first.
+        A failure is returned in its outcome, not raised.  Where the neighbour is so far that its mesh does not serve, a cold
+        start is tried first; else where the path from it fails.
 
     Raises
     ------
@@ -120,6 +125,11 @@ def solve_from(
     speed, law, model = float(groups.speed), contact_law(groups), as_solved(groups.model)
     if pair.fine.resolution.model != model and is_alike(pair.fine.resolution.model, model):
         pair = pair.named(model)
+    cold = None
+    if predicted is None and _is_far(pair, speed, law):
+        cold = solve_cold(groups, rtol)
+        if cold.outcome.ok:
+            return cold
     if pair.fine.resolution.model == model:
         ending = ENDINGS[model.cavitation]
         pairs = [(weight, state.work.named(model)) for weight, state in line if isinstance(state.work, Pair)]
@@ -132,7 +142,14 @@ def solve_from(
             return _state(groups, rtol, found)
         if found is not None:
             return _state(groups, rtol, ending.refine(speed, law, found.fine, rtol, model, found))
-    return solve_cold(groups, rtol)
+    return solve_cold(groups, rtol) if cold is None else cold
+
+
+def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
+    """Return whether a neighbour is so far that its panels do not serve, and a cold start is cheaper."""
+    fine, model = neighbour.fine, neighbour.fine.resolution.model
+    here, there = layout(speed, law, model)[0], layout(fine.equations.speed, fine.equations.law, model)[0]
+    return max(here, there) > FAR * min(here, there) and not fits(fine.resolution, speed, law)
 
 
 class Ending(NamedTuple):
