@@ -7,10 +7,11 @@ the half-plane if need be, in one step if Newton's iteration converges, else dow
 .. math::
 
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
-    D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
+    D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid} .
 
-of which the Newtonian part falls exponentially, as films of fluids that thin much do with it.  Films that begin anew behind a
-cavity come after these, see :mod:`stribeck.solver.cavities.opening`.
+In a fluid that thins the Newtonian part falls exponentially, as films that thin much do with it; not where roughness hinders
+the flow, whose films would lose it at once.  Films that begin anew behind a cavity come after these, see
+:mod:`stribeck.solver.cavities.opening`.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
-from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.equations.state import State, is_thinning, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
@@ -77,7 +78,7 @@ MOST_WORK_TO_END = 6000.0
 
 
 FADING = 8.0
-"""Decay of the Newtonian part of a blend: fluids that thin a thousand times have films that fall as a power of it."""
+"""Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it."""
 
 
 @dataclass
@@ -243,7 +244,8 @@ class BlendedSolid:
 
 
 def _blend(film: Film, part: float) -> Film:
-    return cast(Film, BlendedFilm(film, 1 - (1 - part) * math.exp(-FADING * part)))
+    plain = (1 - part) * (math.exp(-FADING * part) if is_thinning(film) else 1.0)
+    return cast(Film, BlendedFilm(film, 1 - plain))
 
 
 def _milder(film: Film, part: float) -> Film:
