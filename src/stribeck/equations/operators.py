@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
+from stribeck.solids.solid import Solid
 
 LOAD = 0.5 * np.pi
 """Load in Hertz units: the integral of the pressure."""
@@ -33,6 +34,9 @@ LOAD = 0.5 * np.pi
 CELL, IN_CELL = 0.05, 4
 """Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
 number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation."""
+
+KEPT = 4
+"""Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one."""
 
 
 class Dilated(NamedTuple):
@@ -219,24 +223,23 @@ class Operators:
         if isinstance(self.model.solid, HalfPlane):
             return np.zeros((1, self.mesh.size)) if derivative else self.deflection
         cell = round(math.log(d) / CELL)
-        if cell not in self.kernels:
-            while len(self.kernels) > 1:  # Newton's iteration goes to and fro between two at most
-                del self.kernels[next(iter(self.kernels))]
-            self.kernels[cell] = np.stack([self._kernel_at(math.exp(CELL * (cell + t))) for t in _IN_CELL])
         at = math.log(d) / CELL - cell
         weights = _OF_CELL @ (np.arange(IN_CELL) * at ** np.maximum(np.arange(IN_CELL) - 1, 0) / CELL) if derivative else None
         weights = _OF_CELL @ at ** np.arange(IN_CELL) if weights is None else weights
-        return np.asarray(np.tensordot(weights, self.kernels[cell], 1))
+        return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
 
-    @cached_property
-    def kernels(self) -> dict[int, Array]:
-        """D at the dilations of a cell, by the number of the cell: the last two that were asked for."""
-        return {}
 
-    def _kernel_at(self, d: float) -> Array:
-        """Return D of that dilation: the deflection in x over d, but for the logarithm of d."""
-        mesh = replace(self.mesh, edges=d * self.mesh.edges, restart=d * self.mesh.restart)
-        return np.asarray(self.model.solid.deflection(mesh) / d + math.log(d) / math.pi * self.weights)
+@lru_cache(maxsize=KEPT)
+def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
+    """Return D at the dilations of a cell, each the deflection in x over d but for the logarithm of d.
+
+    Kept for the last alone: they fill more memory than all else of a mesh.
+    """
+    found = []
+    for d in np.exp(CELL * (cell + _IN_CELL)).tolist():
+        dilated = replace(mesh, edges=d * mesh.edges, restart=d * mesh.restart)
+        found.append(solid.deflection(dilated) / d + math.log(d) / math.pi * mesh.weights)
+    return np.stack(found)
 
 
 _IN_CELL = 0.5 * np.cos(np.pi * (np.arange(IN_CELL) + 0.5) / IN_CELL)

@@ -53,5 +53,8 @@ class Solid(Protocol):
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes, shape (size, size), in Fortran order."""
 
+    def __hash__(self) -> int:
+        """Return the same for the same body: operators are kept by it."""
+
     def far_gap(self, x: Array) -> Array:
         """Return the gap far away but for the offset and a smooth function of ``1/x`` [u_Hz]."""

@@ -358,7 +358,7 @@ def around_state(
     for row, model in enumerate(models):
         operators = Operators(equations.operators.mesh, model)
         if model.solid == equations.operators.model.solid:
-            vars(operators).update(deflection=equations.operators.deflection, kernels=equations.operators.kernels)
+            vars(operators).update(deflection=equations.operators.deflection)
         here: dict[str, Any] = {name: float(value[row, 0]) for name, value in changes.items()}
         each.append(Equations(operators, float(speed[row, 0]), replace(law, **here), equations.flux_scale))
     return each, load
