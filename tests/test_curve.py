@@ -359,7 +359,8 @@ def test_an_interrupted_curve_keeps_the_points_it_has():
     assert part.outcome is sb.Outcome.INTERRUPTED
     assert (len(part), part.requested) == (3, 7)
     assert part.values.tolist() == whole.values[-3:].tolist()
-    assert part.friction.tolist() == whole.friction[-3:].tolist()
+    # As many points of an interval as are asked for are one matrix product, which rounds by its shape.
+    np.testing.assert_allclose(part.friction, whole.friction[-3:], rtol=1e-14)
 
 
 def test_ctrl_c_while_the_range_is_looked_for_is_not_taken_for_its_end(monkeypatch):
