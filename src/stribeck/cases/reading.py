@@ -213,25 +213,7 @@ def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def group_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the groups and coefficients in a checked file, and ``law``, of which tables give nothing but the shape.
-
-    Parameters
-    ----------
-    checked : dict
-        The tables ``groups``, ``surface``, ``asperities`` and ``table``.
-    folder : pathlib.Path
-        Where files that they name lie.
-
-    Returns
-    -------
-    dict
-        Those that are given, and ``law``.
-
-    Raises
-    ------
-    InputError
-        Where the law or its tables are wrong.
-    """
+    """Return the groups and coefficients in a checked file, and ``law``, of which tables give nothing but the shape."""
     inputs = {name: value for name, value in checked["groups"].items() if value is not None}
     tables = {name: checked[name] for name in ("surface", "asperities", "table")}
     return inputs | {"law": law_of_file(inputs.pop("law"), {}, tables, folder).shape}

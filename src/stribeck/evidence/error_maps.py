@@ -21,7 +21,7 @@ from stribeck.contacts.scaling import SCALINGS
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.evidence import ball
 from stribeck.evidence.formulas import FIELDS, LOCATED, MEASURED, OF_STATE, RTOL, field_error, state_of
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.datasets import import_xarray
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
@@ -257,17 +257,13 @@ def _ball_row(base: Groups, speeds: Array) -> list[tuple[int, PointState]]:
 def _dataset(
     formula: Formula[Any], options: dict[str, Any], axes: dict[str, Array], error: Array, valid: Flags, estimate: float
 ) -> xarray.Dataset:
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a map of errors", "data", "xarray") from None
     shape = tuple(map(len, axes.values()))
     given = ", ".join(f"{name}={value!r}" for name, value in options.items())
     field = formula.predicts in FIELDS
     label = f"error of {formula.name} relative to the solver" + (
         ", largest over x relative to the largest value" if field else ""
     )
-    return xarray.Dataset(
+    made: xarray.Dataset = import_xarray("a map of errors").Dataset(
         {
             "error": (tuple(axes), error.reshape(shape), {"units": "1", "long_name": label}),
             "valid": (
@@ -289,3 +285,4 @@ def _dataset(
             "source": f"stribeck {version('stribeck')}",
         },
     )
+    return made

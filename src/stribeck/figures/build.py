@@ -21,7 +21,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, Report, figure_names, load_figure
-from stribeck.files.datasets import NETCDF, write_netcdf
+from stribeck.files.datasets import NETCDF, import_xarray, write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
@@ -194,11 +194,8 @@ def dataset(variables: Mapping[str, Column], coords: Mapping[str, Column], **att
     MissingExtraError
         If xarray is not installed.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("the data of a figure", "data", "xarray") from None
-    return xarray.Dataset(dict(variables), dict(coords), attributes)
+    made: xarray.Dataset = import_xarray("the data of a figure").Dataset(dict(variables), dict(coords), attributes)
+    return made
 
 
 @dataclass(frozen=True)

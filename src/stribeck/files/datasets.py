@@ -18,8 +18,7 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     import xarray
 
-
-__all__ = ["CSV", "DATA", "NETCDF", "listed", "new_dataset", "write_csv", "write_data", "write_netcdf"]
+__all__ = ["CSV", "DATA", "NETCDF", "import_xarray", "listed", "new_dataset", "write_csv", "write_data", "write_netcdf"]
 
 Column = tuple[str | Sequence[str], Any, str, str]
 """Dimensions, values, unit and long name of a variable."""
@@ -28,6 +27,15 @@ NETCDF = (".nc",)
 CSV = (".csv",)
 DATA = (*NETCDF, *CSV)
 """Endings of the data files."""
+
+
+def import_xarray(what: str = "a dataset") -> Any:
+    """Return the library xarray, or say which extra ``what`` needs."""
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError(what, "data", "xarray") from None
+    return xarray
 
 
 def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], attributes: Mapping[str, Any]) -> xarray.Dataset:
@@ -50,10 +58,6 @@ def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], att
     MissingExtraError
         If xarray is not installed.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a dataset", "data", "xarray") from None
 
     def described(table: Mapping[str, Column]) -> dict[str, Any]:
         return {
@@ -61,7 +65,8 @@ def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], att
         }
 
     source = {"source": f"stribeck {version('stribeck')}"}
-    return xarray.Dataset(described(columns), described(coords), source | dict(attributes))
+    made: xarray.Dataset = import_xarray().Dataset(described(columns), described(coords), source | dict(attributes))
+    return made
 
 
 def listed(values: Sequence[Any]) -> Any:

@@ -53,27 +53,7 @@ def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") ->
 
 
 def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
-    """Return the tables of the content of a TOML file.
-
-    Parameters
-    ----------
-    content : bytes
-        The content.
-    path : pathlib.Path
-        Where it comes from, for sentences.
-    kind, needed : str
-        As in :func:`read_toml`.
-
-    Returns
-    -------
-    dict
-        What the file says, at least one entry.
-
-    Raises
-    ------
-    InputError
-        If it is too large, empty or no TOML.
-    """
+    """Return the tables of the content of a TOML file that comes from ``path``, as :func:`read_toml` does."""
     if len(content) > LARGEST_TOML:
         raise InputError(f"{path} has more than {LARGEST_TOML} bytes; a {kind} is a short TOML file.")
     try:

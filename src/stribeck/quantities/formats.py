@@ -48,16 +48,6 @@ def format_si(value: float, dimension: str, digits: int = 3) -> str:
 def format_bound(error: float) -> str:
     """Return a bound by a positive error with one digit, rounded up.
 
-    Parameters
-    ----------
-    error : float
-        The error.
-
-    Returns
-    -------
-    str
-        The text.
-
     Examples
     --------
     >>> format_bound(3.2e-8)
@@ -73,16 +63,6 @@ def format_bound(error: float) -> str:
 def format_factor(factor: float) -> str:
     """Return a factor with three digits, written out up to a million.
 
-    Parameters
-    ----------
-    factor : float
-        The factor.
-
-    Returns
-    -------
-    str
-        The text.
-
     Examples
     --------
     >>> format_factor(5.527), format_factor(189600.0)
@@ -92,19 +72,7 @@ def format_factor(factor: float) -> str:
 
 
 def format_percent(part: float, digits: int = 2) -> str:
-    """Return a part of a whole in per cent.
-
-    Parameters
-    ----------
-    part : float
-        The part, 1 for the whole.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        The text.
+    """Return a part of a whole (1) in per cent, with ``digits`` significant digits.
 
     Examples
     --------
@@ -119,19 +87,7 @@ LEAST_SHARE = 1e-4
 
 
 def format_share(part: float, error: float) -> str:
-    """Return a share in per cent, or a bound where it is below its error or a ten-thousandth.
-
-    Parameters
-    ----------
-    part : float
-        The share, 0 to 1; exactly zero is none at all.
-    error : float
-        Its absolute error.
-
-    Returns
-    -------
-    str
-        The text.
+    """Return a share, 0 to 1, in per cent, or a bound where it is below its absolute error or a ten-thousandth.
 
     Examples
     --------

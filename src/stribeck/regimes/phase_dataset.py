@@ -11,7 +11,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.line import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.datasets import import_xarray
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS, OBSERVABLES
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
@@ -19,7 +19,7 @@ from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["diagram_dataset", "import_xarray"]
+__all__ = ["diagram_dataset"]
 
 FLAGS = {
     "regime": ("lubrication regime", {-1: "unknown", **dict(enumerate(REGIMES))}),
@@ -46,15 +46,6 @@ LABELS = {
     "formula_roughness_without_minimum": "the same by the law of mixed friction",
 }
 """Long names of the numbers."""
-
-
-def import_xarray() -> Any:
-    """Return xarray, or say how to install it."""
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a dataset", "data", "xarray") from None
-    return xarray
 
 
 def diagram_dataset(diagram: Diagram) -> xarray.Dataset:

@@ -116,7 +116,8 @@ def phase_diagram(
     )
     if merging and not diagram.kind.has_formulas:
         raise InputError("merging = True is for cylinders, geometry 'line'; leave it out for a ball.")
-    from stribeck.regimes.phase_dataset import diagram_dataset, import_xarray
+    from stribeck.files.datasets import import_xarray
+    from stribeck.regimes.phase_dataset import diagram_dataset
 
     import_xarray()
     total = diagram.regime.size

@@ -11,8 +11,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.regime import regime_of
+from stribeck.files.datasets import new_dataset
 from stribeck.files.results import Exported
-from stribeck.files.writing import MissingExtraError, PathLike
+from stribeck.files.writing import PathLike
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.sweeps.rows import Rows, read_rows
@@ -93,10 +94,6 @@ class Sweep(Exported, Shown, ByValue):
         MissingExtraError
             If xarray is not installed.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise MissingExtraError("a dataset", "data", "xarray") from None
         names = self.about["inputs"]["columns"]
         inputs = read_inputs(self.path, (len(self), len(names)))
         columns = {**_columns(self.about["inputs"], inputs), **_columns(self.about["values"], self.rows.values)}
@@ -106,10 +103,10 @@ class Sweep(Exported, Shown, ByValue):
         columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the balanced friction")
         columns["outcome"] = (np.array(ends, dtype=object), unit, label)
         columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "notes on the validity of the state")
-        return xarray.Dataset(
-            {name: ("state", values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
-            coords={"state": ("state", np.arange(len(self)), {"units": "1", "long_name": "number of the state"})},
-            attrs={
+        return new_dataset(
+            {name: ("state", *column) for name, column in columns.items()},
+            {"state": ("state", np.arange(len(self)), "1", "number of the state")},
+            {
                 "title": self.about["title"] or "Sweep of lubricated rough contacts",
                 "source": f"stribeck {self.about['version']}",
                 "complete": int(self.finished == len(self)),

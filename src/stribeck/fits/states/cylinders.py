@@ -101,17 +101,7 @@ def _along(
 def kept_parts(definition: Definition, rtol: float) -> PartsOf:
     """Return the function that solves states each from the nearest one of those before, for searches that come near again.
 
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of each state.
-
-    Returns
-    -------
-    callable
-        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
+    Its arguments and what it returns are those of :func:`solved_parts`.
     """
     pools: dict[Any, list[_Kept]] = {}
     along, row = solved_parts(definition, rtol), NAMES.index(f"viscous_{definition}")
