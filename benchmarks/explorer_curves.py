@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import lapack
 
-from stribeck.cases.case import load_case
+from stribeck.cases.reading import load_case
 from stribeck.explorer.answer import Answerer
 from stribeck.explorer.asked import inputs
 from stribeck.explorer.asked.choices import choose
