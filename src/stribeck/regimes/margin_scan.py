@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -165,6 +165,9 @@ class Scan:
 
     def _curve(self, start: Contact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
         """Return the states between two values of an input; None where the solver does not reach them all."""
+        part = self._part_known(name, min(near, far), max(near, far), points)
+        if part is not None:
+            return part
         try:
             if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
                 curve = continued(self.known[near], far, points, self._report, near)
@@ -184,6 +187,20 @@ class Scan:
         else:
             self.known |= dict.fromkeys(curve.values.tolist(), curve)
         return curve
+
+    def _part_known(self, name: Over, low: float, high: float, points: int) -> StribeckCurve | None:
+        """Return the states between two values as the curve gives them with which the search began, if that holds both."""
+        whole, contact = self.like, self.contact
+        if whole is None or not whole.is_function or whole.over != name or not whole.rtol <= self.rtol:
+            return None
+        of_friction = (whole.definition, whole.boundary_friction, whole.beta)
+        if of_friction != (self.definition, contact.boundary_friction, contact.beta):
+            return None
+        path, (first, last) = whole._solved_path, np.log([low, high]).tolist()
+        if not path.coordinates[0] <= first < last <= path.coordinates[-1]:
+            return None
+        inside = (one for one in path.intervals if one.right.coordinate > first and one.left.coordinate < last)
+        return whole._along(replace(path, intervals=tuple(inside)), np.geomspace(low, high, points), points)
 
     def _report(self, done: int, points: int) -> None:
         if self.on_point is not None:
