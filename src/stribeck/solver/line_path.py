@@ -103,6 +103,9 @@ OFFSET_FLOOR = 5e-3
 SIMILAR = 0.5
 """Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
 
+WILD = 12.0
+"""Change of the logarithm of the least or the widest gap within a step above which polynomials predict nothing."""
+
 DOUBTFUL = 0.4
 """Uncertainty of a prediction above which Newton's iteration does not start from it."""
 
@@ -206,6 +209,8 @@ class LineProblem:
             gap = guess.y[guess.equations.layout.gap]
             if not (np.isfinite(gap).all() and gap.min() > 0 and guess.dilation > 0):
                 return Outcome.NOT_FINITE
+            if any(abs(np.log(of(gap) / of(one.point.state.gap))) > WILD for of in (np.min, np.max) for one in near):
+                return Outcome.PATH_LOST
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
             refined = self.corrector.solve(guess, groups, SPREAD * spread)
         else:
