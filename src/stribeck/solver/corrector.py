@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -29,6 +30,10 @@ ROUGH = 1e-4
 
 FAR_OFF = 1e-3
 """Error of a guess above which such a state tells whether the current mesh resolves it."""
+
+LEFT = 12
+"""Meshes left last that keep their operators, with which what lies between states is judged: those of all meshes of a curve of
+hundreds of states take gigabytes."""
 
 ON_THE_WAY = 0.2
 """Part of the tolerance to which a kept mesh must resolve the gap around its minimum: on the way there from the last state it
@@ -71,6 +76,7 @@ class Corrector:
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
         self.since_check = 0
+        self.left: deque[tuple[Operators, FineOperators | None]] = deque()
         self.tolerances = self._widest
 
     def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
@@ -179,9 +185,14 @@ class Corrector:
             self.inverse = None
 
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
-        """Take another mesh; the states on the last one keep of its operators what is not for Jacobians alone."""
+        """Take another mesh; of the operators of those that were left, the largest are made anew if they are asked for."""
         if self.operators is not None:
             vars(self.operators).pop("deflection_of_gradient", None)
+            self.left.append((self.operators, self.fine))
+        if len(self.left) > LEFT:
+            for operators_left in filter(None, self.left.popleft()):
+                for name in ("deflection", "_of_highest"):
+                    vars(operators_left).pop(name, None)
         self.operators, self.fine = operators, fine
 
     def _adopt(self, point: RefinedState) -> RefinedState:
