@@ -11,8 +11,8 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.cavities.of_length import solve_of_length
-from stribeck.equations.line import Operators
+from stribeck.equations.cavities.of_length import OfLength, solve_of_length
+from stribeck.equations.line import Operators, _Coupled, _Eliminated
 from stribeck.equations.observables import gradients, observables
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.sensitivity import log_derivatives
@@ -308,3 +308,27 @@ def test_a_rolling_film_whose_gradient_is_a_small_power_of_the_gap_is_solved():
     assert state.exit_position == pytest.approx(1.0018496419, rel=1e-6)
     assert state.minimum_gap == pytest.approx(4.9363116961e-4, rel=1e-6)
     assert state.flux_gap == pytest.approx(6.6325771484e-4, rel=1e-6)
+
+
+@pytest.mark.parametrize("length_is_given", [False, True])
+def test_a_newton_step_is_the_same_with_the_pressure_eliminated_or_not(length_is_given):
+    fluid = sb.fluids.Fluid(viscosity=sb.fluids.Barus(0.4), density=sb.fluids.DowsonHigginson(1.9))
+    parts = {"cavitation": "reform", "cavity_pressure": -0.05, "fluid": fluid}
+    state = solved_point(with_parts(sb.Groups(1e-2, 0.1, 1e-3), **parts), 1e-6).state
+    equations = state.equations
+    assert equations.operators.has_reformation
+    if length_is_given:
+        equations = OfLength(equations.operators, equations.speed, equations.law, equations.flux_scale, state.dilation)
+    residuals = np.random.default_rng(1).standard_normal(state.y.size)
+    whole, eliminated = (inverse(equations, state.y)(residuals) for inverse in (_Coupled, _Eliminated))
+    np.testing.assert_allclose(whole, eliminated, rtol=0, atol=1e-6 * np.abs(eliminated).max())
+
+
+def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
+    fluid = sb.fluids.Fluid(viscosity=sb.fluids.Barus(0.4), density=sb.fluids.DowsonHigginson(1.9))
+    groups, parts = sb.Groups(1.5e-7, 4e-4, 0.0), {"cavitation": "reform", "cavity_pressure": -1e-3, "fluid": fluid}
+    state, closer = (sb.solve(groups, **parts, rtol=rtol) for rtol in (1e-5, 1e-6))
+    exit_only = sb.solve(groups, cavitation="exit", fluid=fluid)
+    assert state.exit_position > exit_only.exit_position
+    assert state.minimum_gap == pytest.approx(exit_only.minimum_gap, rel=0.01)
+    assert state.reformation_position == pytest.approx(closer.reformation_position, rel=1e-5)

@@ -256,10 +256,10 @@ class Equations:
     def is_stiff(self, y: Array) -> bool:
         """Return whether a pressure that is integrated from one end grows too much: where a thin film is compressed.
 
-        There the flux and the density fix the gap, and the gap the pressure; a film that begins anew is left to the integral.
+        There the flux and the density fix the gap, and the gap the pressure.
         """
         at, integral = self.layout, self.operators.integral
-        if not self.film.uses_pressure or self.operators.has_reformation:
+        if not self.film.uses_pressure:
             return False
         slopes = slopes_in_film(self.film, integral, y[..., at.gap], y[..., at.pressure], y[..., at.flux_gap])
         return bool(np.max(np.abs(self.speed * integral(by_pressure_of(slopes)))) > MOST_GROWTH)
@@ -330,24 +330,31 @@ class Equations:
     def by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
         """Return the derivative of the residual with respect to the dilation, the fluid pressure eliminated."""
         op, at = self.operators, self.layout
-        n = op.mesh.size
         p_f = y[at.pressure] if by_pressure is not None else None
         g = gradient_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap])
-        contact, fluid = self.pressures(y)
-        pressure = contact + fluid
         scaled = op.dilated(d, of_gradient=False)
         of_fluid = self.fluid_by_dilation(g, d, by_pressure)
         of_ends = self.slopes_of_ends(y, slopes_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap]))
+        found, n = self.by_dilation_alone(y, d, g), op.mesh.size
+        found[:n] -= scaled.deflection @ of_fluid
+        found[n] += scaled.weights @ of_fluid
+        for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
+            if of.by_pressure is not None:
+                found[n + 1 + k] += self.flux_scale * (end @ (of.by_pressure * of_fluid))
+        return found
+
+    def by_dilation_alone(self, y: Array, d: float, g: Array) -> Array:
+        """Return the same at a fixed fluid pressure, without the rows of the pressure; g is the gradient of the pressure."""
+        op, n = self.operators, self.operators.mesh.size
+        contact, fluid = self.pressures(y)
+        pressure = contact + fluid
+        first, _, second = op.ends
         found = np.empty(n + 4)
         by_kernel = op.by_kernel(pressure, d) + op.kernel(d, derivative=True) @ pressure
-        found[:n] = -self.positions(y) * op.mesh.nodes - by_kernel - scaled.deflection @ of_fluid
+        found[:n] = -self.positions(y) * op.mesh.nodes - by_kernel
         found[:n] += (np.log(d) + 1) / np.pi * (op.weights @ pressure)
-        found[n] = op.weights @ pressure + scaled.weights @ of_fluid
-        first, _, second = op.ends
-        explicit = (first @ g, 0.0, second @ g)
-        for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
-            through = 0.0 if of.by_pressure is None else end @ (of.by_pressure * of_fluid)
-            found[n + 1 + k] = self.flux_scale * (explicit[k] + through)
+        found[n] = op.weights @ pressure
+        found[n + 1 :] = self.flux_scale * (first @ g), 0.0, self.flux_scale * (second @ g)
         return found
 
     def fluid_by_dilation(self, g: Array, d: float, by_pressure: Array | None) -> Array:
@@ -431,27 +438,34 @@ class _Coupled:
     """The inverse of the Jacobian with the fluid pressure among the unknowns, by LU factors of all of it."""
 
     def __init__(self, equations: Equations, y: Array) -> None:
-        op, at, film = equations.operators, equations.layout, equations.film
+        op, at, film, dilation = equations.operators, equations.layout, equations.film, equations.dilation(y)
+        d = None if dilation is None else float(dilation[0])
         h, n, units = y[at.gap], op.mesh.size, equations.units(y)
+        scaled, speed = op.dilated(d, of_gradient=False), equations.speed if d is None else equations.speed * d
         slopes = slopes_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap])
         by_gap, by_pressure, by_flux = slopes.by_gap, by_pressure_of(slopes), slopes.by_flux
         matrix = np.zeros((at.size, at.size), order="F")
         gap, pressure, offset, flux = at.gap, at.pressure, at.offset.start, at.flux_gap.start
         contact = equations.law.slope(h, equations.law.pressure(h))
         running = op.integral.after(np.eye(n))
-        matrix[gap, gap] = np.eye(n) - op.deflection * contact
-        matrix[gap, pressure] = -op.deflection
+        matrix[gap, gap] = np.eye(n) - scaled.deflection * contact
+        matrix[gap, pressure] = -scaled.deflection
         matrix[gap, offset] = -1.0
-        matrix[pressure, gap] = -equations.speed * running * by_gap
-        matrix[pressure, pressure] = np.eye(n) - equations.speed * running * by_pressure
-        matrix[pressure, flux] = -equations.speed * (running @ by_flux)
-        matrix[offset, gap], matrix[offset, pressure] = op.weights * contact, op.weights
-        for k, (end, of) in enumerate(zip(op.ends, equations.slopes_of_ends(y, slopes), strict=True)):
+        matrix[pressure, gap] = -speed * running * by_gap
+        matrix[pressure, pressure] = np.eye(n) - speed * running * by_pressure
+        matrix[pressure, flux] = -speed * (running @ by_flux)
+        matrix[offset, gap], matrix[offset, pressure] = scaled.weights * contact, scaled.weights
+        for k, (end, of) in enumerate(zip(scaled.ends, equations.slopes_of_ends(y, slopes), strict=True)):
             row = equations.flux_scale * end
             matrix[flux + k, gap], matrix[flux + k, pressure] = row * of.by_gap, row * by_pressure_of(of)
             matrix[flux + k, flux] = row @ of.by_flux
         if op.has_exit:
             matrix[gap, at.exit.start] = -equations.positions(y)
+        if d is not None:
+            g, column = gradient_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap]), at.dilation.start
+            explicit = equations.by_dilation_alone(y, d, g)
+            matrix[gap, column], matrix[offset:, column] = explicit[:n], explicit[n:]
+            matrix[pressure, column] = -equations.fluid_by_dilation(g, d, None)
         matrix *= units
         self.factors = LU.of(matrix, overwrite=True)
 
