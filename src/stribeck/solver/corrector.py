@@ -31,9 +31,9 @@ ROUGH = 1e-4
 FAR_OFF = 1e-3
 """Error of a guess above which such a state tells whether the current mesh resolves it."""
 
-LEFT = 12
-"""Meshes left last that keep their operators, with which what lies between states is judged: those of all meshes of a curve of
-hundreds of states take gigabytes."""
+LEFT = 2e7
+"""Entries of the operators of meshes left last that are kept, as what lies between states is judged with them: those of all
+meshes of a curve of hundreds of states take gigabytes."""
 
 ON_THE_WAY = 0.2
 """Part of the tolerance to which a kept mesh must resolve the gap around its minimum: on the way there from the last state it
@@ -189,7 +189,7 @@ class Corrector:
         if self.operators is not None:
             vars(self.operators).pop("deflection_of_gradient", None)
             self.left.append((self.operators, self.fine))
-        if len(self.left) > LEFT:
+        while sum(each.mesh.size**2 for each, _ in self.left) > LEFT:
             for operators_left in filter(None, self.left.popleft()):
                 for name in ("deflection", "_of_highest"):
                     vars(operators_left).pop(name, None)
