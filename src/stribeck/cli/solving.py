@@ -97,12 +97,15 @@ def solve_command(
         from stribeck.curves.plot import plot_profile
 
         plot_profile(solution, picture, force=force, title=title)
-    from stribeck.checks.table import checks_of_solution
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-
-    checks = checks_of_solution(solution, loaded.facts if loaded else None)
     from stribeck.cli.reports.words import conversions_json, print_conversions
+
+    checks = None
+    if loaded:
+        from stribeck.checks.table import checks_of_solution
+
+        checks = checks_of_solution(solution, loaded.facts)
 
     if json:
         print(report_json.dump(report_json.solution_json(solution, mu, b, checks) | conversions_json(loaded)))
