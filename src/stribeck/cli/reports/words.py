@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
@@ -25,6 +24,7 @@ from stribeck.solver.base_solution import BaseSolution
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from stribeck.cases.case import Case
     from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
 
