@@ -136,5 +136,5 @@ def test_without_a_browser_the_explorer_is_not_timed(load_benchmark, run, monkey
 def test_the_explorer_is_timed(run, monkeypatch):
     for name in [name for name in os.environ if name.startswith(("PYTEST", "NICEGUI"))]:
         monkeypatch.delenv(name)  # the server would take itself for a part of the tests
-    tables = check(run("explorer_latency", "--number", "3"))
+    tables = check(run("explorer_latency", "--number", "1"))
     assert [len(rows) for _, _, *rows in tables] == [5, 5, 5]  # sliders of a cylinder, its solved curves, sliders of a ball
