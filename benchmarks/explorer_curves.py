@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from scipy.linalg import lapack
+from curve_speed import factorisation
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer.answer import Answerer
@@ -53,18 +53,6 @@ def contacts() -> dict[str, Inputs]:
     """Return the contacts by name."""
     found = {name: choose(example(), *chosen) for name, chosen in CHOSEN.items()}
     return found | {"nitrile seal, Persson": inputs.from_case(load_case(NITRILE))}
-
-
-def factorisation() -> float:
-    """Return the time of one LU factorisation of a 300 x 300 matrix, the median of nine."""
-    matrix = np.asfortranarray(np.random.default_rng(300).random((300, 300)))
-    times = []
-    for _ in range(9):
-        copy = matrix.copy(order="F")
-        start = time.process_time()
-        lapack.dgetrf(copy, overwrite_a=True)
-        times.append(time.process_time() - start)
-    return statistics.median(times)
 
 
 def go_on(*_: object) -> None:
