@@ -332,3 +332,15 @@ def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
     assert state.exit_position > exit_only.exit_position
     assert state.minimum_gap == pytest.approx(exit_only.minimum_gap, rel=0.01)
     assert state.reformation_position == pytest.approx(closer.reformation_position, rel=1e-5)
+
+
+@pytest.mark.parametrize(("entries", "kept"), [(0, False), (2e7, True)])
+def test_a_mesh_that_is_left_gives_up_its_operators_beyond_the_memory_for_them(monkeypatch, entries, kept):
+    monkeypatch.setattr("stribeck.solver.corrector.LEFT", entries)
+    first, second = (solved_point(sb.Groups(speed, 0.1, 1e-3), 1e-5) for speed in (1e-4, 1e-2))
+    follower, operators = Corrector(lambda s: first.groups, 1e-5), first.state.equations.operators
+    before = operators.deflection
+    follower.move_to(operators, first.fine)
+    follower.move_to(second.state.equations.operators, second.fine)
+    assert ("deflection" in vars(operators)) is kept
+    np.testing.assert_array_equal(operators.deflection, before)
