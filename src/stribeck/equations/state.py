@@ -67,7 +67,7 @@ BROKEN = 30.0
 FAR_OFF = 512.0
 """Distance, over the scale of the mesh, up to which panels resolve such a power."""
 
-NEAR_MINIMUM, AS_IT_MOVES = 0.1, 100.0
+NEAR_MINIMUM, AS_IT_MOVES = 0.05, 30.0
 """Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
 along the path is steeper there than the gap."""
 

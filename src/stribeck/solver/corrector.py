@@ -35,7 +35,7 @@ LEFT = 2e7
 """Entries of the operators of meshes left last that are kept, as what lies between states is judged with them: those of all
 meshes of a curve of hundreds of states take gigabytes."""
 
-ON_THE_WAY = 0.2
+ON_THE_WAY = 0.4
 """Part of the tolerance to which a kept mesh must resolve the gap around its minimum: on the way there from the last state it
 may resolve it worse, and halving that way would not help."""
 

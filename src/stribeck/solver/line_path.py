@@ -41,7 +41,7 @@ from stribeck.solver.expansion import (
 from stribeck.solver.path import KNOT_PART, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
-EXACT_ORDER, ORDER = (16, 18), (10, 12)
+EXACT_ORDER, ORDER = (18, 20), (14, 16)
 """Highest orders of series for tolerances of 1e-7 and below: for films of the article if the contact law has an exact series,
 and if it is a polynomial near each separation."""
 
@@ -70,7 +70,7 @@ hardly touch, those of their pressure converge on a hundredth of the interval on
 MOST_TRIALS = 4
 """Most expansions of a state with a new distance."""
 
-GAP_PART = 0.1
+GAP_PART = 0.2
 """Part of the usual tolerance to which a mesh resolves the gap where it is read off, for neighbouring states too."""
 
 SPREAD = 1.0
@@ -91,7 +91,7 @@ BY_CHANCE = 0.25
 KEPT = 3
 """Inverses kept at a time: of both ends of an interval and of a state between."""
 
-RESOLVED = 0.3
+RESOLVED = 0.6
 """Error of the minimum gap on the finer of two meshes, over the tolerance, above which the other is read too."""
 
 NEGLIGIBLE = 0.1
@@ -106,7 +106,7 @@ SIMILAR = 0.5
 WILD = 12.0
 """Change of the logarithm of the least or the widest gap within a step above which polynomials predict nothing."""
 
-DOUBTFUL = 0.4
+DOUBTFUL = 0.8
 """Uncertainty of a prediction above which Newton's iteration does not start from it."""
 
 POSITION = len(ALL_NAMES)

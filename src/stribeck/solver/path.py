@@ -22,7 +22,7 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.quantities.outcome import Outcome
 
-LONGEST_STEP = 5.0
+LONGEST_STEP = 7.0
 SHORTEST_STEP = 1e-3
 
 SHORTER = 0.75
