@@ -82,7 +82,7 @@ def test_a_law_that_does_little_changes_a_state_in_proportion():
 @pytest.mark.quick
 def test_rough_flow_lifts_the_ball_and_goes_with_the_roughness():
     rough = with_part("flow_factors", PatirCheng(2.0))
-    assert rough.contact_load_share == pytest.approx(0.97184663, abs=2e-6)
+    assert rough.contact_load_share == pytest.approx(0.9698562, abs=2e-6)
     assert rough.identity_error < 1e-7
 
 

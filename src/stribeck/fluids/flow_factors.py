@@ -5,8 +5,9 @@ nominal separation, the distance d of the mean planes, which goes on falling whe
 
 .. math:: \frac{h_T}{\sigma} = H \Phi(H) + \varphi(H), \qquad H = \frac d\sigma, \qquad \frac{dh_T}{dd} = \Phi(H)
 
-with the normal distribution :math:`\Phi` and its density :math:`\varphi`.  At :math:`h_T = \sigma` the two differ by an eighth
-and the flow by a fifth.
+with the normal distribution :math:`\Phi` and its density :math:`\varphi`.  Their flow, :math:`\phi_x d^3`, has the third power
+of the separation too: at :math:`h_T = 1.083 \sigma` the separation is :math:`\sigma`, and the flow is 0.486 of :math:`d^3` but
+0.382 of :math:`h_T^3`.
 
 Source: [Patir & Cheng 1978] and [Patir & Cheng 1979] for the fits.
 """
@@ -60,11 +61,13 @@ class PatirCheng(FlowFactors):
         \phi_x = \begin{cases} 1 - C e^{-rH} & \gamma \le 1 \\ 1 + C H^{-r} & \gamma > 1 \end{cases} \qquad
         \phi_s = (2 v - 1) \begin{cases} A_1 H^{a_1} e^{-a_2 H + a_3 H^2} & H \le 5 \\ A_2 e^{-H/4} & H > 5 \end{cases}
 
-    with H the nominal separation over the roughness :math:`\sigma`, found from the mean gap.  The fits go down to
-    :math:`H_0` = 0.5 for :math:`\gamma \ge 1`, 0.75 for 1/3 and 1 below.  Nearer than that
+    with H the nominal separation over the roughness :math:`\sigma`, found from the mean gap.  The flow under a pressure
+    gradient goes as :math:`\phi_x (\sigma H)^3`: over that between smooth surfaces at the mean gap it is
+    :math:`\phi = \phi_x (\sigma H/h_T)^3`.  The fits go down to :math:`H_0` = 0.5 for :math:`\gamma \ge 1`, 0.75 for 1/3 and 1
+    below.  Nearer than that
 
-    .. math:: \phi_x = \phi_x(H_0) \begin{cases} e^{k (H - H_0)} & \gamma \le 1 \\ 1 & \gamma > 1 \end{cases}, \quad
-              k = \frac{\phi_x'(H_0)}{\phi_x(H_0)}, \qquad \phi_s = \phi_s(H_0) \, \frac{h_T(H)}{h_T(H_0)}
+    .. math:: \phi = \phi(H_0) \, e^{k (H - H_0)}, \quad k = \frac{\phi'(H_0)}{\phi(H_0)}, \qquad
+              \phi_s = \phi_s(H_0) \, \frac{h_T(H)}{h_T(H_0)}
 
     Parameters
     ----------
@@ -79,7 +82,7 @@ class PatirCheng(FlowFactors):
     friction_factors : bool
         Whether the drag has its factors too, fitted for isotropic surfaces (gamma = 1) only.
     argument : {"nominal", "mean"}
-        What H is: the nominal separation, as in the simulations, or the mean gap itself, as in many programs.
+        What :math:`\sigma H` is: the nominal separation, as in the simulations, or the mean gap itself, as in many programs.
 
     Raises
     ------
@@ -149,16 +152,20 @@ class PatirCheng(FlowFactors):
         return with_sigma(self, max(part, 1e-9) * (self.sigma or 0.0))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
-        """Return phi_x and its slope."""
+        """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
         H, by_gap = self._separation(gap)
         least, C, r = FACTORS[self.gamma][:3]
         fitted = np.maximum(H, least)
         if self.gamma > 1:
-            part = C * fitted**-r
-            return 1 + part, np.where(H > least, -r * part / fitted, 0.0) * by_gap
-        part = C * np.exp(-r * fitted)
-        below = np.exp(r * part / (1 - part) * np.minimum(H - least, 0.0))
-        phi, slope = lifted((1 - part) * below, r * part * below)
+            phi_x = 1 + C * fitted**-r
+            steep = -r * (phi_x - 1) / fitted
+        else:
+            phi_x = 1 - C * np.exp(-r * fitted)
+            steep = r * (1 - phi_x)
+        width, by_H = self._width(fitted)
+        rate = steep / phi_x + 3 * (1 / fitted - by_H / width)
+        phi = phi_x * (fitted / width) ** 3 * np.exp(rate * np.minimum(H - least, 0.0))
+        phi, slope = lifted(phi, rate * phi)
         return phi, slope * by_gap
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
@@ -193,18 +200,17 @@ class PatirCheng(FlowFactors):
         at most, as a jump k w/6 does.
         """
         v = abs(slide * (2 * self.substrate_share - 1)) * (self.sigma or 0.0)
-        if v == 0 and self.gamma <= 1:
+        if v == 0:
             return None
         H = self._separation(gap)[0]
         apart = np.abs(np.diff(H)) / 6
-        least, C, r = FACTORS[self.gamma][:3]
+        least = FACTORS[self.gamma][0]
         (near, steep), (last, falls), far = self._near(LINKED), self._near(least), self._far(LINKED)
         width, by_H = self._width(least)
-        of_phi_x = gap[..., :-1] * r / least / (1 + least**r / C) if self.gamma > 1 else 0.0
         linked, ends = ((H[..., 1:] > at) != (H[..., :-1] > at) for at in (LINKED, least))
         found = np.zeros_like(gap)
         found[..., :-1] += linked * v * (np.abs(far - near) + np.abs(steep + 0.25 * far) * apart)
-        found[..., :-1] += ends * (v * np.abs(falls - last * by_H / width) + of_phi_x) * apart
+        found[..., :-1] += ends * v * np.abs(falls - last * by_H / width) * apart
         return found
 
     def friction(self, gap: Array) -> FrictionFactors | None:
@@ -241,11 +247,11 @@ class PatirCheng(FlowFactors):
             f"the surfaces come as near as {H:.2g} rms roughnesses; Patir and Cheng's flow factors are fits above {least:g}",
         )
 
-    def _width(self, H: float) -> tuple[float, float]:
+    def _width(self, H: Numbers) -> tuple[Numbers, Numbers]:
         """Return the mean gap over the roughness at H, and its derivative."""
         if self.argument == "mean":
             return H, 1.0
-        return float(mean_width(H)), float(scipy.special.ndtr(H))
+        return mean_width(H), scipy.special.ndtr(H)
 
     def _separation(self, gap: Array) -> tuple[Array, Array]:
         """Return H and its derivative by the mean gap."""
