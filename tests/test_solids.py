@@ -242,3 +242,14 @@ def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():
     thinner, thin = path.states[-1], next(state for state in path.states if state.groups.speed < 1e-8)
     speeds = math.log(thin.groups.speed / thinner.groups.speed)
     assert math.log(thin.gap.min() / thinner.gap.min()) / speeds == pytest.approx(0.6, abs=0.01)
+
+
+@pytest.mark.quick
+def test_series_that_shrink_a_cavity_to_nothing_find_no_number_and_no_exception():
+    """The dilation of a sample of a cavity on a layer can be negative; a curve had ended in a domain error of math."""
+    operators = Operators(Mesh(np.array([-4.0, -1.0, 0.0, 1.0, 4.0]), 4), Model(solid=Layer(1.0, 0.5)))
+    pressure = np.ones((4, operators.mesh.size))
+    with np.errstate(invalid="ignore"):
+        found = operators.deflected(pressure, np.array([[0.5], [-0.1], [math.nan], [math.inf]]))
+    np.testing.assert_allclose(found[:1], operators.deflected(pressure[:1], np.array([[0.5]])), rtol=1e-12)
+    assert np.isnan(found[1:]).all()

@@ -209,13 +209,13 @@ class Operators:
         return d * self.by_kernel(pressure, d) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]
 
     def by_kernel(self, pressure: Array, d: Numbers) -> Array:
-        """Return D p in a frame dilated by d, for rows of pressure and as many dilations."""
+        """Return D p in a frame dilated by d, for rows of pressure and as many dilations; nan where there is no such frame."""
         if isinstance(self.model.solid, HalfPlane):
             return np.asarray(pressure @ self.deflection.T)
         dilations = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
-        found = np.empty((*pressure.shape[:-1], self.mesh.size))
-        for row in np.ndindex(dilations.shape):
-            found[row] = self.kernel(float(dilations[row])) @ pressure[row]
+        found = np.full((*pressure.shape[:-1], self.mesh.size), np.nan)
+        for row in np.argwhere((dilations > 0) & (dilations < np.inf)):
+            found[*row] = self.kernel(float(dilations[*row])) @ pressure[*row]
         return found
 
     def kernel(self, d: float, derivative: bool = False) -> Array:
