@@ -23,7 +23,7 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids.layer import Layer
 from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
-__all__ = ["KEYS", "preset_facts", "preset_said", "take_parts"]
+__all__ = ["KEYS", "in_file", "preset_facts", "preset_said", "take_parts"]
 
 
 class Part(NamedTuple):
@@ -98,6 +98,27 @@ CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
 """Keys of ``[contact]``, for those who write them below another table."""
 
 
+ARGUMENTS = {
+    "cavitation": ("cavitation", "model"),
+    "cavity_pressure": ("cavitation", "pressure"),
+    "infinite_viscosity": ("fluid", "infinite_viscosity"),
+    "pressure_coefficient": ("fluid", "pressure_viscosity"),
+    "ratio": ("solid", "modulus_ratio"),
+    "reference_viscosity": ("fluid", "reference_viscosity"),
+    "thickness": ("solid", "layer_thickness"),
+    "time": ("solid", "retardation_time"),
+    "times": ("solid", "relaxation_times"),
+}
+"""Argument in Python with which the sentence of a problem may begin -> table and key of a case."""
+
+
+def in_file(problem: str, table: str) -> str:
+    """Return a sentence on a problem with its place in a case: ``table``, or that of the argument it begins with."""
+    name, space, rest = problem.partition(" ")
+    place, key = ARGUMENTS.get(name, (table, name))
+    return f"[{place}] {key}{space}{rest}"
+
+
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Return the tables without those of the model, what these say, and what is wrong with them.
 
@@ -134,7 +155,7 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
                 raise InputError("\n".join(_unknown(key, table[key], KEYS[name]) for key in unknown))
             parts |= read(table, rest.get("contact"))
         except InputError as problem:
-            problems += [f"[{name}] {line}" for line in str(problem).split("\n")]
+            problems += [in_file(line, name) for line in str(problem).split("\n")]
     problems += _slide_to_roll(rest.get("contact"), parts, geometry)
     return rest, parts, problems
 
@@ -201,15 +222,17 @@ def _law(table: dict[str, Any], kind: str) -> Any:
 
 
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    doubled = isinstance(contact, dict) and "viscosity" in contact
+    if isinstance(contact, dict) and not doubled:
+        contact["viscosity"] = 1.0  # stands for that of the liquid, so that a wrong condition is no lack of a viscosity
     name = _one_of(table, "preset", tuple(PRESETS), "")
     _only(table, ("preset", *CONDITIONS), "a preset")
     liquid = _liquid(table)
+    if doubled:
+        raise InputError(
+            f"preset = {name!r} and viscosity = {show(contact['viscosity'])} in [contact] are both given; remove one of them."
+        )
     if isinstance(contact, dict):
-        if "viscosity" in contact:
-            raise InputError(
-                f"preset = {name!r} and viscosity = {show(contact['viscosity'])} in [contact] are both given; "
-                "remove one of them."
-            )
         contact["viscosity"] = liquid.viscosity
     return {"fluid": liquid.fluid}
 
@@ -274,6 +297,8 @@ def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
 
 
 def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    if "model" not in table:
+        raise InputError('model is missing; add model = "patir-cheng", "effective-medium" or "none".')
     model = _one_of(table, "model", tuple(FLOW_FACTORS), "")
     made, rest = FLOW_FACTORS[model], {key: value for key, value in table.items() if key != "model"}
     if made is not PatirCheng:

@@ -11,7 +11,7 @@ from typing import Any
 from stribeck.cases.case import Case, CurveSettings
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import FROM_TABLES, law_of_file
-from stribeck.cases.model_parts import preset_facts, preset_said, take_parts
+from stribeck.cases.model_parts import in_file, preset_facts, preset_said, take_parts
 from stribeck.cases.tables import error_sentence, example_of, file_model
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
@@ -112,8 +112,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         try:
             contact = CONTACTS[geometry](**contact_inputs(checked, path.parent), **parts)
         except InputError as problem:
-            text = str(problem)
-            problems = [line if line.startswith(("[", "the table")) else f"[contact] {line}" for line in text.splitlines()]
+            said = str(problem).splitlines()
+            problems = [line if line.startswith(("[", "the table")) else in_file(line, "contact") for line in said]
     if problems:
         raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
     return Case(

@@ -273,7 +273,7 @@ def check_range(law: ViscosityLaw) -> None:
     a = law.parameters.get("pressure_coefficient", 0.0)
     if isinstance(a, float) and a > LARGEST_COEFFICIENT:
         raise InputError(
-            f"pressure_coefficient = {show(a)}; times the Hertz pressure it must lie between 0 and {LARGEST_COEFFICIENT:g}. "
+            f"pressure_coefficient times the Hertz pressure is {a:.3g}; it must lie between 0 and {LARGEST_COEFFICIENT:g}. "
             "Beyond, the contact is one of hard elastohydrodynamics, which needs a solver that follows the pressure spike; "
             "for film thickness there are the formulas of Hamrock and Dowson, or of Moes for lines."
         )
