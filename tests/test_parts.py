@@ -7,7 +7,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.contacts.model import ARTICLE
-from stribeck.contacts.with_parts import with_parts
+from stribeck.contacts.with_parts import part_attributes, with_parts
 from stribeck.fluids.presets import celsius
 
 CONTACT = {
@@ -61,6 +61,20 @@ def test_a_change_of_load_scales_the_laws_anew_and_keeps_them():
     ratio = heavier.groups.model.film.law.time * heavier.groups.speed / (c.groups.model.film.law.time * c.groups.speed)
     assert ratio == pytest.approx(c.hertz.indentation / heavier.hertz.indentation)
     assert pickle.loads(pickle.dumps(c)) == c
+
+
+@pytest.mark.quick
+def test_outputs_of_groups_hold_the_numbers_as_they_are_given():
+    """The rate law had those of the speed group one, a rolling substrate the memory of a sliding one."""
+    given = sb.fluids.Fluid(sb.fluids.Carreau(0.05, 0.5, 0.02), sb.fluids.Barus(0.5))
+    solid = sb.solids.StandardLinearSolid(0.3, 3.0)
+    groups = with_parts(sb.Groups(1e-3, 0.1, 1e-3), fluid=given, solid=solid, slide_to_roll=0.5)
+    found = part_attributes(groups)
+    assert found["fluid_relaxation_time"] == pytest.approx(0.05)
+    assert found["fluid_infinite_viscosity"] == 0.02 and found["fluid_pressure_coefficient"] == 0.5
+    assert found["solid_retardation_time"] == 0.3
+    stress = with_parts(sb.Groups(1e-3, 0.1, 1e-3), fluid=sb.fluids.Eyring(30.0))
+    assert part_attributes(stress)["fluid_eyring_stress"] == pytest.approx(30.0)
 
 
 @pytest.mark.quick

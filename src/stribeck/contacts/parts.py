@@ -106,7 +106,7 @@ class Parts:
         """Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``."""
         return 0.5 * self.slide_to_roll
 
-    def model(self, units: FilmUnits, length: float = 1.0, speed: float = 1.0) -> Model:
+    def model(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
         """Return the model in Hertz units.
 
         Parameters
@@ -115,8 +115,9 @@ class Parts:
             Of the film.
         length : float
             The Hertz half-width a, in the unit of the lengths of the solid.
-        speed : float
-            Sum of the surface speeds, in the unit of that length over the times of the solid.
+        speed : float, optional
+            Sum of the surface speeds, in the unit of that length over the times of the solid; left out, these times are
+            Deborah numbers, those of the substrate.
 
         Returns
         -------
@@ -136,7 +137,8 @@ class Parts:
                 "flow, and its memory with it; give -2 or more, or an elastic solid."
             )
         film = self.fluid.at(units, self.slide, self.flow_factors)
-        solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, 0.5 * (1 + self.slide) * speed)
+        of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed
+        solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, of_substrate)
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
 
 

@@ -9,12 +9,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import NAMES, Parts
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.laws import FilmUnits
+from stribeck.fluids.laws import HERTZ, FilmUnits
 from stribeck.quantities.units import InputError
 
 __all__ = ["check_solid", "hertz_units", "model_at", "models_beside", "part_attributes", "with_parts"]
@@ -95,9 +96,8 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
     if model == ARTICLE:
         return {}
     if parts is None:
-        film = model.film
-        laws: dict[str, Any] = {"fluid": film, "solid": model.solid}
-        slide_to_roll, cavity_pressure = 2 * film.slide, model.cavity_pressure
+        laws: dict[str, Any] = {"fluid": _at_speed(model.film, np.unique(np.asarray(groups.speed))), "solid": model.solid}
+        slide_to_roll, cavity_pressure = 2 * model.film.slide, model.cavity_pressure
     else:
         laws = {"fluid": parts.fluid, "flow_factors": parts.flow_factors, "solid": parts.solid}
         slide_to_roll, cavity_pressure = getattr(contact, "slide_to_roll", parts.slide_to_roll), parts.cavity_pressure
@@ -109,6 +109,13 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
     if model.cavitation is Cavitation.REFORM:
         found["cavity_pressure"] = cavity_pressure
     return found | {"slide_to_roll": slide_to_roll}
+
+
+def _at_speed(film: Any, speeds: Array) -> Any:
+    """Return a film with the numbers of its rate law as groups are given them at their speed, where they have a single one."""
+    if not film.uses_speed or len(speeds) != 1 or not speeds[0] > 0:
+        return film
+    return replace(film, law=film.law.scaled(HERTZ._replace(time=1 / float(speeds[0]))))
 
 
 def hertz_units(groups: Groups) -> FilmUnits:
