@@ -133,6 +133,27 @@ def mixed():
     return regime_margins(CONTACT)
 
 
+def test_margins_along_the_speed_are_read_off_the_curve_of_the_contact(mixed, monkeypatch):
+    curve, begun = sb.stribeck_curve(CONTACT, points=2, rtol=1e-6), []
+
+    def begin(contact, **settings):
+        begun.extend(set(settings) & {"speed", "load", "roughness"})
+        return sb.stribeck_curve(contact, **settings)
+
+    monkeypatch.setattr(margin_scan, "stribeck_curve", begin)
+    found = regime_margins(CONTACT, curve=curve)
+    assert begun == ["load", "roughness"] * (len(begun) // 2)
+    for (name, mark), (_, alone) in zip(crossings(found), crossings(mixed), strict=True):
+        assert (name, mark.regime) == (name, alone.regime)
+        assert mark.value == pytest.approx(alone.value, rel=1e-6)
+
+
+def test_a_curve_of_another_definition_gives_no_margins(mixed):
+    curve = sb.stribeck_curve(CONTACT, points=2, rtol=1e-6, definition="published")
+    speed, alone = (found.margins[0] for found in (regime_margins(CONTACT, curve=curve), mixed))
+    assert speed.more.value == pytest.approx(alone.more.value, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("changes", "definition"),
     [({}, "published"), ({"speed": 1e-5}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
