@@ -64,6 +64,16 @@ def test_a_change_of_load_scales_the_laws_anew_and_keeps_them():
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("factors", ["patir-cheng", "effective-medium"])
+def test_flow_between_smooth_surfaces_has_no_factors(factors):
+    """A contact without roughness was lost: its gap over the roughness has no bound."""
+    plain = contact(cavitation="exit").replace(roughness=0.0)
+    smooth = plain.replace(flow_factors=factors)
+    assert smooth.groups.model == plain.groups.model
+    assert sb.solve(smooth, rtol=1e-4).outcome.ok
+
+
+@pytest.mark.quick
 def test_outputs_of_groups_hold_the_numbers_as_they_are_given():
     """The rate law had those of the speed group one, a rolling substrate the memory of a sliding one."""
     given = sb.fluids.Fluid(sb.fluids.Carreau(0.05, 0.5, 0.02), sb.fluids.Barus(0.5))

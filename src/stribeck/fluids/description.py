@@ -84,7 +84,7 @@ class Fluid:
         slide : float
             Half the slide-to-roll ratio.
         flow_factors : FlowFactors, optional
-            Of rough surfaces.
+            Of rough surfaces; smooth ones have none.
 
         Returns
         -------
@@ -100,7 +100,7 @@ class Fluid:
         check_range(viscosity)
         density = Incompressible() if self.density is None else self.density.scaled(units)
         if self.rheology is None:
-            flow = Smooth() if flow_factors is None else flow_factors.scaled(units)
+            flow = Smooth() if flow_factors is None or units.decay_length == 0 else flow_factors.scaled(units)
             return Newtonian(viscosity, density, flow, slide)
         if flow_factors is not None and not isinstance(flow_factors, Smooth):
             raise InputError(
