@@ -94,7 +94,8 @@ def test_at_rest_only_the_dry_friction_coefficient_matters():
 
 def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
     _, found = friction_sensitivities(CONTACT.replace(roughness=0))
-    assert found["roughness"] == found["alpha"] == found["beta"] == found["boundary_friction"] == 0
+    assert found["roughness"] == found["alpha"] == found["boundary_friction"] == 0
+    assert abs(found["beta"]) < 1e-12  # the fluid's part and the groups' cancel
     assert found["speed"] > 0.4
 
 

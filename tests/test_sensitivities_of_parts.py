@@ -69,6 +69,19 @@ def friction_on_mesh_of(state, groups):
     return np.array([found.viscous_published, found.viscous_balanced])
 
 
+def test_the_printed_friction_of_a_thin_film_has_the_slopes_of_solved_states():
+    # Asperities carry all; the closed form of the printed friction was wrong by 3e-4 here.
+    groups, step = sb.Groups(5.39e-11, 9.87, 0.0369), 3e-3
+    found = log_derivatives(solved_point(groups, 1e-8).state)["viscous_published"]
+    for name, slope in zip(GROUPS, found, strict=True):
+        logs = []
+        for k in (-2, -1, 1, 2):
+            other = replace(groups, **{name: float(getattr(groups, name)) * math.exp(k * step)})
+            logs.append(math.log(sb.solve(other, rtol=1e-8).viscous_published))
+        expected = (logs[0] - 8 * logs[1] + 8 * logs[2] - logs[3]) / (12 * step)
+        assert slope / sb.solve(groups, rtol=1e-8).viscous_published == pytest.approx(expected, abs=2e-5), name
+
+
 def test_the_next_run_of_a_fit_of_the_fluid_is_found():
     contact = TRUE.replace(fluid=sb.fluids.Barus("500 1/GPa"), cavitation="exit")
     speeds = np.geomspace(1e-3, 0.3, 5)
