@@ -33,8 +33,6 @@ class Scaling:
     ----------
     name : str
         Name of the geometry.
-    total_load : float
-        Integral of the pressure in Hertz units.
     pressure_exponent, roughness_exponent : float
         e and 2e.
     slope_factor : float
@@ -46,7 +44,6 @@ class Scaling:
     """
 
     name: str
-    total_load: float
     pressure_exponent: float
     roughness_exponent: float
     slope_factor: float
@@ -55,7 +52,7 @@ class Scaling:
 
 
 SCALINGS: dict[Geometry, Scaling] = {
-    "line": Scaling("line", 0.5 * math.pi, 0.5, 1.0, 2.0, 2, 3 * math.pi),
-    "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
+    "line": Scaling("line", 0.5, 1.0, 2.0, 2, 3 * math.pi),
+    "point": Scaling("point", 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
 }
 """The geometries by name: a cylinder, whose load is per unit length, and a ball."""

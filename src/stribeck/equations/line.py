@@ -39,7 +39,6 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
-from stribeck.quantities.outcome import Outcome
 
 __all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film"]
 
@@ -470,11 +469,6 @@ class _Coupled:
         self.factors = LU.of(matrix, overwrite=True)
 
     @property
-    def failure(self) -> Outcome | None:
-        """Failure of the factors."""
-        return self.factors.failure
-
-    @property
     def is_finite(self) -> bool:
         """Whether the factors are finite."""
         return self.factors.is_finite
@@ -508,11 +502,6 @@ class _Eliminated:
             g = gradient_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
             self.by_dilation = equations.fluid_by_dilation(g, d, self.by_pressure)
         self.reduced = LU.of(equations.jacobian(y, self.units, self.volterra), overwrite=True)
-
-    @property
-    def failure(self) -> Outcome | None:
-        """Failure of the reduced system."""
-        return self.reduced.failure
 
     @property
     def is_finite(self) -> bool:

@@ -127,8 +127,5 @@ class Film(Protocol):
     def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
         """Return the derivatives of :meth:`cavity_traction`."""
 
-    def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
-        """Return the flux gap at which G vanishes, and its derivatives by gap and pressure."""
-
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return sentences on where this state leaves the range of the fluid's laws; mostly none."""

@@ -189,13 +189,6 @@ class Newtonian:
         by_pressure = traction * (eta_slope - partly * rho_slope / rho) if self.uses_pressure else None
         return Slopes(-(1 + partly) * traction / gap, by_pressure, partly * self.slide * eta / rho / gap**2)
 
-    def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
-        r"""Return :math:`m = \rho \, (h + s S)`."""
-        _, _, rho, rho_slope = self._of_pressure(pressure)
-        carried, carried_slope = self.flow.shear(gap)
-        width = gap + self.slide * carried
-        return rho * width, rho * (1 + self.slide * carried_slope), rho_slope * width if self.uses_pressure else None
-
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""
         return notes_of(self.viscosity, self.density, self.flow, gap=gap, pressure=pressure)

@@ -180,11 +180,6 @@ class ShearThinning:
         by_gap = -eta * slope * self.slide / gap**2 * wet - partly * traction / gap
         return Slopes(by_gap, by_pressure, partly * eta * stress / wi / (rho * gap), by_speed)
 
-    def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
-        r"""Return :math:`m = \rho h`."""
-        _, _, rho, rho_slope = self._of_pressure(gap, pressure)
-        return rho * gap, rho, rho_slope * gap if self.uses_pressure else None
-
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""
         return notes_of(self.law, self.viscosity, self.density, gap=gap, pressure=pressure)

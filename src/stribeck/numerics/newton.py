@@ -47,10 +47,6 @@ class Inverse(Protocol):
     """What removes residuals to first order; made at one state, good near it."""
 
     @property
-    def failure(self) -> Outcome | None:
-        """Why it cannot be used, or None."""
-
-    @property
     def is_finite(self) -> bool:
         """Whether the Jacobian was finite: then steps that are not mean that it is singular."""
 
@@ -118,12 +114,11 @@ class LU:
     """The inverse that the LU factors of a dense Jacobian are."""
 
     factors: tuple[Array, npt.NDArray[np.int32]]
-    failure: Outcome | None = None
 
     @classmethod
     def of(cls, matrix: Array, overwrite: bool = False) -> LU:
         """Return the factors of a matrix; with ``overwrite`` in its own memory if it is in Fortran order."""
-        # A pivot that is exactly zero needs no check here: it shows in the step or among the small pivots.
+        # A pivot that is exactly zero needs no check here: it shows in the step.
         lu, pivots, _ = lapack.dgetrf(matrix, overwrite_a=overwrite)
         return cls((lu, pivots))
 
@@ -171,16 +166,12 @@ class Dense:
         ``fraction(x, dx)`` returns the longest admissible fraction of a step; all of it by default.
     step_size : callable
         ``step_size(x, dx)`` returns the size of a step.
-    singular_below : float
-        Reciprocal condition number, once rows and columns are scaled to one, at which the Jacobian counts as singular. 0
-        leaves that to steps that are not finite, and spares a second factorisation if the pivots alone look doubtful.
     """
 
     function: Callable[[Array], Array]
     jacobian: Callable[[Array], Array]
     fraction: Callable[[Array, Array], float] | None = None
     step_size: Callable[[Array, Array], float] = relative_size
-    singular_below: float = 2.0**-52
 
     def residual(self, x: Array) -> Array:
         """Return F(x); refuse one of another shape than x."""
@@ -190,13 +181,11 @@ class Dense:
         return r
 
     def inverse(self, x: Array) -> LU:
-        """Return the LU factors of the Jacobian, with SINGULAR as their failure if it is."""
+        """Return the LU factors of the Jacobian."""
         matrix = self.jacobian(x)
         if matrix.shape != (x.size, x.size):
             raise ValueError(f"jacobian returned shape {matrix.shape}; it must be {(x.size, x.size)}")
-        lu = LU.of(matrix)
-        doubtful = self.singular_below > 0.0 and _has_small_pivot(lu.factors[0])
-        return LU(lu.factors, Outcome.SINGULAR) if doubtful and _is_singular(matrix, self.singular_below) else lu
+        return LU.of(matrix)
 
     def units(self, x: Array) -> Array:
         """Return ones."""
@@ -323,8 +312,6 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
                 inverse = None  # frees its memory for the next one
                 inverse = problem.inverse(x)
                 factorisations += 1
-                if inverse.failure is not None:
-                    return root(inverse.failure)
                 dx = step(inverse, r)
                 if not np.isfinite(dx).all():
                     return root(Outcome.SINGULAR if inverse.is_finite else Outcome.NOT_FINITE)
@@ -377,24 +364,6 @@ def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: fl
             return x_new, r_new, t
         t = 0.5 * t
     return None
-
-
-def _has_small_pivot(lu: Array) -> bool:
-    """Whether a pivot is small against the largest: cheap, but true also of rows that are badly scaled."""
-    pivots = np.abs(lu.diagonal())
-    return bool(pivots.min() <= lu.shape[0] * np.finfo(float).eps * pivots.max())
-
-
-def _is_singular(matrix: Array, singular_below: float) -> bool:
-    """Whether the matrix, its rows and columns scaled to one, is worse conditioned than that."""
-    for axis in (1, 0):
-        scale = np.abs(matrix).max(axis=axis, keepdims=True)
-        if scale.min() == 0.0:
-            return True
-        matrix = matrix / scale
-    lu, _, _ = lapack.dgetrf(matrix)
-    reciprocal_condition, _ = lapack.dgecon(lu, np.abs(matrix).sum(axis=0).max())  # 0 for a zero pivot
-    return bool(reciprocal_condition <= singular_below)
 
 
 def root_between(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float | None:

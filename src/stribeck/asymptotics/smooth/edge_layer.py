@@ -181,7 +181,6 @@ def layer(reach: float = 1e5, width: float = 0.5, order: int = 12) -> Layer:
         residual,
         jacobian,
         step_size=lambda y, dy: float(np.abs(dy * scale * base.root * np.exp(-scale * y)).max()),
-        singular_below=0.0,
     )
     root = root_find(problem, start, StepControl(1e-11))
     if not root.outcome.ok:

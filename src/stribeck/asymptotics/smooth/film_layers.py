@@ -270,7 +270,6 @@ def _solve(line: HalfLine, film: float | None) -> Layer:
         jacobian,
         fraction=lambda y, dy: 0.7 / max(0.7, -float(change(y, dy).min())),
         step_size=lambda y, dy: float(np.abs(change(y, dy)).max()),
-        singular_below=0.0,
     )
     start = np.append(np.zeros(n), 0.5 if film is None else 0.0)
     root = root_find(problem, start, StepControl(1e-11, chord=0.1))

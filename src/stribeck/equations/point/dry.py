@@ -81,7 +81,7 @@ def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12)
     start = np.append(
         hertz_gap(r) + np.maximum(gaps_at(law, np.log(hertz) - 0.5 * np.log1p(decay)), 1e-3 * decay), decay - 1.0
     )
-    problem = Dense(function, jacobian, fraction, size, 0.0)
+    problem = Dense(function, jacobian, fraction, size)
     root = root_find(problem, start, StepControl(tolerance, MAX_STEPS))
     outcome = Outcome.CONVERGED if root.outcome is Outcome.ROUNDING else root.outcome
     return DryContact(root.x[:n], law.pressure(root.x[:n]), float(root.x[n]), outcome, root.steps)
