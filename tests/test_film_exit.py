@@ -12,8 +12,9 @@ import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.of_length import OfLength, solve_of_length
-from stribeck.equations.line import Operators, _Coupled, _Eliminated
+from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
+from stribeck.equations.on_mesh.inverses import Coupled, Eliminated
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
@@ -320,7 +321,7 @@ def test_a_newton_step_is_the_same_with_the_pressure_eliminated_or_not(length_is
     if length_is_given:
         equations = OfLength(equations.operators, equations.speed, equations.law, equations.flux_scale, state.dilation)
     residuals = np.random.default_rng(1).standard_normal(state.y.size)
-    whole, eliminated = (inverse(equations, state.y)(residuals) for inverse in (_Coupled, _Eliminated))
+    whole, eliminated = (inverse(equations, state.y)(residuals) for inverse in (Coupled, Eliminated))
     np.testing.assert_allclose(whole, eliminated, rtol=0, atol=1e-6 * np.abs(eliminated).max())
 
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
-from stribeck.equations.cavities.torn import Capacitance, TornLinear
+from stribeck.equations.cavities.capacitance import Capacitance
+from stribeck.equations.cavities.torn import TornLinear
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import Direction, log_derivatives
 from stribeck.equations.point.system import Linear
