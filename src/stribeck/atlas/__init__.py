@@ -1,24 +1,15 @@
 """The atlas: solved states of a box of groups as smooth functions."""
 
-from stribeck.atlas.reading import (
-    BOX,
-    central_gap,
-    contact_load_share,
-    covers,
-    fluid_load_share,
-    flux_gap,
-    for_groups,
+from stribeck.atlas.friction_reading import (
     friction,
     friction_derivatives,
     friction_parts,
     friction_terms,
-    holds_for,
-    info,
-    minimum_gap,
-    offset,
     shares_and_friction,
     viscous_friction,
 )
+from stribeck.atlas.reading import central_gap, contact_load_share, fluid_load_share, flux_gap, info, minimum_gap, offset
+from stribeck.atlas.tables import BOX, covers, for_groups, holds_for
 
 __all__ = [
     "BOX",

@@ -26,13 +26,17 @@ __all__ = [
     "FLUX",
     "MINIMUM",
     "ODDS",
+    "Value",
     "contact_share",
     "flat",
     "inputs_for",
     "look_up",
     "read_friction",
+    "shaped",
     "slopes_of",
 ]
+
+Value = float | Array
 
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
 
@@ -164,3 +168,8 @@ def _check(name: str, values: Array, low: float, high: float, zero: bool) -> Non
 def contact_share(odds: Array) -> Array:
     """Return the contact share of ln(fluid over contact share); the fluid share of its negative."""
     return np.asarray(1 / (1 + np.exp(odds)))
+
+
+def shaped(groups: Groups, values: Array) -> Value:
+    """Return flat values in the shape of the groups, a number of a single state."""
+    return float(values[0]) if groups.shape == () else values.reshape(groups.shape)

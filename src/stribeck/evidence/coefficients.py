@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import COEFFICIENTS, Formula
 from stribeck.asymptotics.rough import boundary, mixed, transitions, uniform
-from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
 

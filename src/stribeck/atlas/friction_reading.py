@@ -1,0 +1,282 @@
+"""Friction read off the atlas, with its parts and its derivatives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_friction, shaped, slopes_of
+from stribeck.contacts.friction import PURE_SLIDING, Definition, check_definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.groups import Groups
+from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.inputs import quantity
+from stribeck.quantities.units import InputError, show
+
+__all__ = [
+    "friction",
+    "friction_derivatives",
+    "friction_parts",
+    "friction_terms",
+    "shares_and_friction",
+    "viscous_friction",
+]
+
+
+@refuse_former
+def friction(
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Value:
+    r"""Return the friction coefficient.
+
+    .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    boundary_friction, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll : float
+        Slide-to-roll ratio of a ball [-].
+    wetted_radius : float or ndarray
+        Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table, or an argument is wrong.
+
+    Notes
+    -----
+    Both parts are positive for surfaces of which one rests, so that its relative error is at most the larger of theirs.
+    """
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    contact, viscous = friction_terms(groups, inputs, check_definition(definition))
+    return shaped(groups, boundary_friction * _rubbing(groups, inputs) * contact + viscous)
+
+
+def viscous_friction(
+    groups: Groups,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Value:
+    """Return the part of the friction coefficient that the fluid causes.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    beta : float
+        Coefficient of the contact law [-].
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-]; zero at rest.
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table, or an argument is wrong.
+    """
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    return shaped(groups, friction_terms(groups, inputs, check_definition(definition))[1])
+
+
+@refuse_former
+def friction_derivatives(
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Array:
+    r"""Return the derivatives of the friction coefficient with respect to the logarithms of the groups.
+
+    .. math:: \frac{\partial \mu}{\partial \ln \lambda}, \quad \frac{\partial \mu}{\partial \ln \bar F_N}, \quad
+        \frac{\partial \mu}{\partial \ln \bar h_\mathrm{rms}}
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    boundary_friction, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`; they are held.
+
+    Returns
+    -------
+    ndarray, shape (3, ...)
+        By ln(speed), ln(load) and ln(roughness), the other two groups held [-]; the last is zero for smooth contacts.
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table, or an argument is wrong.
+
+    Notes
+    -----
+    Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
+    """
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    reading = read_friction(groups, check_definition(definition), slopes=3)
+    contact, viscous = slopes_of(groups, reading, inputs, definition)
+    return (boundary_friction * _rubbing(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
+
+
+def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array]:
+    r"""Return what the friction is made of, without the coefficients that it takes beside, and the derivatives of each.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, theory.md, section 6.
+
+    Returns
+    -------
+    ndarray, shape (1 + parts, ...)
+        Contact load share and the observables that :data:`stribeck.contacts.friction_rules.RULES` names, of
+        cylinders the viscous friction for beta = 1 [-].
+    ndarray, shape (1 + parts, 3, ...)
+        Their derivatives by ln(speed), ln(load) and ln(roughness), the other two groups held [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table, or the definition unknown.
+
+    Notes
+    -----
+    One reading of the table gives all, for fits in which boundary_friction and beta differ from state to state.
+    """
+    reading = read_friction(groups, check_definition(definition), slopes=3)
+    names = RULES[groups.geometry].parts(definition)
+    values = np.stack([reading.contact, *(reading.parts[name] for name in names)])
+    slopes = np.stack([reading.contact_slopes, *(reading.part_slopes[name] for name in names)])
+    slopes[:, :, reading.speed == 0] = 0.0
+    return values.reshape(len(values), *groups.shape), slopes.reshape(len(values), 3, *groups.shape)
+
+
+def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Definition) -> tuple[Array, Array]:
+    """Return contact load share and viscous friction of states, by unchecked inputs that may be arrays, even complex.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    inputs : mapping
+        What the friction rule of the geometry takes, by name, each a number or an array of the shape of the groups.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    tuple of ndarray, each of shape (n,)
+        Both of the flattened states [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table.
+    """
+    reading = read_friction(groups, definition)
+    arrays = inputs_for(groups, inputs)
+    return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
+
+
+@refuse_former
+def shares_and_friction(
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Array:
+    """Return at once what tells the regimes apart, at the cost of one of its parts.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    boundary_friction, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`.
+
+    Returns
+    -------
+    ndarray, shape (4, ...)
+        Load shares of fluid and asperities, :func:`viscous_friction`, and the derivative of :func:`friction`
+        by ln(speed) [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table, or an argument is wrong.
+    """
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    reading = read_friction(groups, check_definition(definition), slopes=1)
+    arrays = inputs_for(groups, inputs)
+    viscous = RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
+    by_contact, by_viscous = slopes_of(groups, reading, inputs, definition)
+    by_speed = boundary_friction * _rubbing(groups, inputs) * by_contact[0] + by_viscous[0]
+    return np.stack([contact_share(-reading.odds), reading.contact, viscous, by_speed]).reshape(4, *groups.shape)
+
+
+def _inputs(groups: Groups, beta: float, slide_to_roll: float, wetted_radius: float | Array) -> dict[str, Any]:
+    """Return what the friction rule of the geometry takes, checked."""
+    if not isinstance(groups, Groups):
+        raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
+    wanted = RULES[groups.geometry].inputs
+    given = {"beta": quantity("beta", beta), "slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
+    usual = {"beta": beta, "slide_to_roll": PURE_SLIDING, "wetted_radius": math.inf}
+    for name, value in given.items():
+        if name not in wanted and np.any(np.asarray(value) != usual[name]):
+            raise InputError(f"{name} = {show(value)} belongs to a ball, geometry = 'point'; these states are of a cylinder.")
+    if not np.all(np.asarray(wetted_radius) > 1):
+        raise InputError(f"wetted_radius = {show(wetted_radius)} must be above 1: the liquid reaches beyond the Hertz radius.")
+    return {name: given[name] for name in wanted}
+
+
+def _rubbing(groups: Groups, inputs: Mapping[str, Any]) -> float:
+    """Return the part of boundary_friction that acts."""
+    return abs(float(RULES[groups.geometry].rubbing(groups, inputs)))
