@@ -12,7 +12,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE
@@ -131,21 +131,16 @@ class PointCurve(StribeckCurve):
         found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
-    def _at(self, s: float) -> PointSolution:
-        """Return the solution at a coordinate: read off the function if there is one, else solved."""
-        if self._function is not None:
-            return solution_of(_state_at(self._function, s), self._path.contact_at(s))
-        return finish_point(self._solver(s), self._path.contact_at(s))
-
-    def _total(self, solution: PointSolution) -> float:
-        return solution.friction(self.boundary_friction, self.beta, self.definition).total
-
-    def _contact_share(self, solution: PointSolution) -> float:
-        return solution.friction(self.boundary_friction, self.beta, self.definition).contact_share
+    def _at(self, s: float) -> tuple[PointSolution, Friction]:
+        """Return the solution at a coordinate, read off the function if there is one, else solved, and its friction."""
+        contact = self._path.contact_at(s)
+        known = None if self._function is None else _state_at(self._function, s)
+        solution = finish_point(self._solver(s), contact) if known is None else solution_of(known, contact)
+        return solution, solution.friction(self.boundary_friction, self.beta, self.definition)
 
     def _mark(self, name: Transition, s: float) -> Landmark:
-        solution = self._at(s)
-        return Landmark(name, math.exp(s), self._total(solution), solution)  # type: ignore[arg-type]
+        solution, friction = self._at(s)
+        return Landmark(name, math.exp(s), friction.total, solution)  # type: ignore[arg-type]
 
     @cached_property
     def _at_unit(self) -> tuple[Groups, dict[str, Any], float]:
@@ -198,13 +193,13 @@ class PointCurve(StribeckCurve):
             while high - low > MINIMUM_WIDTH:
                 new = 0.5 * (low + middle) if middle - low > high - middle else 0.5 * (middle + high)
                 first, second = sorted((middle, new))
-                if self._total(self._at(first)) < self._total(self._at(second)):
+                if self._at(first)[1] < self._at(second)[1]:
                     low, middle, high = low, first, second
                 else:
                     low, middle, high = first, second, high
             nodes = np.cos(np.pi * (np.arange(MINIMUM_NODES) + 0.5) / MINIMUM_NODES)
             centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            values = [math.log(self._total(self._at(centre + half * node))) for node in nodes.tolist()]
+            values = [math.log(self._at(centre + half * node)[1]) for node in nodes.tolist()]
             polynomial = np.polynomial.Chebyshev.fit(nodes, values, MINIMUM_NODES - 1, domain=[-1, 1])
             roots = [root.real for root in polynomial.deriv().roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 1]
             if not roots:
@@ -227,7 +222,7 @@ class PointCurve(StribeckCurve):
         end, inner = places[i], places[1 if i == 0 else -2]
         while abs(end - inner) > MINIMUM_WIDTH:
             middle = 0.5 * (inner + end)
-            if self._total(self._at(middle)) < total[i]:
+            if self._at(middle)[1] < total[i]:
                 return min(inner, end), middle, max(inner, end)
             inner = middle
         return None
@@ -256,19 +251,13 @@ class PointCurve(StribeckCurve):
         fluid, contact, viscous = self._parts_at(s)
         return fluid, contact / np.maximum(contact + viscous, TINY)
 
-    @cached_property
-    def transitions(self) -> tuple[Landmark, ...]:
-        """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
-        found = [self.landmark(name) for name in Transition]
-        return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
-
     def _excess(self, name: Transition, s: float) -> float:
         """Return by how much the criterion of a transition exceeds its threshold."""
         if self._function is not None:
             fluid, share = self._shares_at(np.array([s]))
             return float(excess(name, fluid, share)[0])
-        solution = self._at(s)
-        return excess(name, solution.fluid_load_share, self._contact_share(solution))
+        solution, friction = self._at(s)
+        return excess(name, solution.fluid_load_share, friction.contact_share)
 
     def _crossing(self, name: Transition, places: Array, above: Array) -> Landmark | None:
         """Return the first transition of this name between the given coordinates, or None."""

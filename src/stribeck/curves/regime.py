@@ -80,9 +80,8 @@ def excess(name: Transition, fluid: Share, by_asperities: Share) -> Share:
 
 def check_method(method: str) -> Method:
     """Return ``method`` if it is one of the two."""
-    for known in METHODS:
-        if isinstance(method, str) and method == known:
-            return known
+    if isinstance(method, str) and method in METHODS:
+        return method
     raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
 
 

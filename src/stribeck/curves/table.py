@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.with_parts import part_attributes
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import AREA, GROUPS, OUTPUT_TABLES
 from stribeck.solver.base_solution import si_films
@@ -47,25 +46,10 @@ def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
     MissingExtraError
         If xarray is not installed.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a dataset", "data", "xarray") from None
-
     over = curve.over
-    columns = _columns(curve)
-    dataset = xarray.Dataset(
-        {name: (over, values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
-        coords={over: (over, curve.values, {"units": _unit_over(curve), "long_name": f"{over}, what varies"})},
-        attrs=_attributes(curve, title),
-    )
-    if curve.contact is None:
-        dataset[over].attrs["long_name"] = f"{over} group, what varies"
-    return dataset
-
-
-def _unit_over(curve: StribeckCurve) -> str:
-    return "1" if curve.contact is None else unit_of(curve.over, curve.contact.INPUTS)
+    unit, what = ("1", f"{over} group") if curve.contact is None else (unit_of(over, curve.contact.INPUTS), over)
+    columns: dict[str, Column] = {name: (over, *column) for name, column in _columns(curve).items()}
+    return new_dataset(columns, {over: (over, curve.values, unit, f"{what}, what varies")}, _attributes(curve, title))
 
 
 def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
@@ -89,19 +73,10 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
     for definition in DEFINITIONS:
-        found = [s.friction(curve.boundary_friction, curve.beta, definition) for s in curve.solutions]
-        name, label = f"friction_{definition}", f"friction coefficient, definition {definition}"
-        columns[name] = (np.array([f.total for f in found]), "1", label)
-        columns[f"{name}_viscous"] = (
-            np.array([f.viscous for f in found]),
-            "1",
-            f"{label}: contribution of the fluid",
-        )
-        columns[f"{name}_error"] = (
-            np.array([f.error for f in found]),
-            "1",
-            f"{label}: estimated absolute error",
-        )
+        found, name, label = curve.friction(definition=definition), f"friction_{definition}", f"definition {definition}"
+        columns[name] = (found.total, "1", f"friction coefficient, {label}")
+        columns[f"{name}_viscous"] = (found.viscous, "1", f"friction coefficient, {label}: contribution of the fluid")
+        columns[f"{name}_error"] = (found.error, "1", f"friction coefficient, {label}: estimated absolute error")
     if isinstance(curve.law, WithArea):
         for name, (unit, label) in AREA.items():
             columns[name] = (curve.observable(name), unit, label)
@@ -118,7 +93,6 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
     finished = curve.outcome.ok and len(curve) == curve.requested
     found: dict[str, Any] = {
         "title": title or f"Stribeck curve of a lubricated rough {curve.groups.geometry} contact",
-        "source": f"stribeck {version('stribeck')}",
         "outcome": curve.outcome.value,
         "complete": int(finished),
         "points": len(curve),

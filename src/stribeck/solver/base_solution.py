@@ -182,11 +182,6 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         return [*super().__dir__(), *self._own]
 
     @property
-    def rigid_separation(self) -> float:
-        """Another name of :attr:`offset` [u_Hz]: positive if the undeformed bodies are apart, negative if they overlap."""
-        return self.offset
-
-    @property
     def central_separation(self) -> float:
         """Central gap over h_rms/alpha [-], the Lambda of [BP]; infinite for smooth surfaces."""
         kappa = float(self.groups.relative_roughness)
