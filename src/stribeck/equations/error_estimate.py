@@ -218,20 +218,15 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    if not op.is_article:
-        friction = np.zeros((len(DRAG), len(y)))
-        if equations.is_sliding:
-            friction = np.abs(
-                viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, settled))
-                - observed[:, DRAG].T
-            )
-        return Perturbations(unknowns, friction)
-    friction = np.zeros((2, len(y)))
-    if equations.is_sliding:
-        scale = np.ravel(friction_scale(states.load, equations.speed))
-        found = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
-        friction = np.abs(scale * found - observed[:, FRICTION].T)
-    return Perturbations(unknowns, friction)
+    known_friction = observed[:, FRICTION if op.is_article else DRAG].T
+    if not equations.is_sliding:
+        friction = known_friction
+    elif op.is_article:
+        integrals = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
+        friction = np.ravel(friction_scale(states.load, equations.speed)) * integrals
+    else:
+        friction = viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, settled))
+    return Perturbations(unknowns, np.abs(friction - known_friction))
 
 
 def _settled(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
@@ -278,14 +273,11 @@ def _of_ends(
         residual[1:, :, at.dilation.start] = size * scale * (d * beyond + np.abs(in_cavity))
 
 
-def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array | None = None) -> Array:
+def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array) -> Array:
     """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows), at coordinates of the mesh."""
     mesh = states.equations.operators.mesh
     lowest = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
-    if central_positions is None:
-        central = np.full_like(lowest, int(np.searchsorted(mesh.edges, 0.0)))
-    else:
-        central = np.searchsorted(mesh.edges, central_positions, side="right") - 1
+    central = np.searchsorted(mesh.edges, central_positions, side="right") - 1
     panels = np.stack([central, lowest])
     gap = states.y[:, states.equations.layout.gap].reshape(len(lowest), mesh.panels, -1)[np.arange(len(lowest)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
@@ -296,7 +288,7 @@ def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0,
 
     On a reused mesh they are the first to lose resolution.
     """
-    central = int(np.searchsorted(mesh.edges, 0.0)) if centre == 0.0 else int(mesh.locate(np.array([centre]))[0][0])
+    central = int(mesh.locate(np.array([centre]))[0][0])
     lowest = mesh.nodes[int(np.argmin(gap))]
     near = np.abs(mesh.centres[:-1] - lowest) <= mesh.half_widths[:-1] + spread
     panels = [central, *np.flatnonzero(near)]
@@ -327,7 +319,7 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     rows = gradients(states.equations, states.y, states.load, states.slopes if needed else None)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
-    centres, stretch = None, np.ones(len(values))
+    centres, stretch = np.zeros(len(values)), np.ones(len(values))
     if op.has_exit:
         d, exits = states.equations.dilation(states.y), states.y[:, states.equations.layout.exit.start]
         stretch = stretch if d is None else d[:, 0]

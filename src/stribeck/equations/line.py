@@ -190,7 +190,6 @@ class Equations:
             in_cavity = self.cavity_pressure(y) / self.speed
             r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
             r[..., at.dilation] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
-        if d is not None:
             r[..., at.offset] += (d - 1) * (r[..., at.offset] + LOAD)
         return r
 
