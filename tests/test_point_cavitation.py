@@ -13,6 +13,7 @@ from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflections_from_beyond
+from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold, solve_from
 
 EXIT = Model(cavitation=Cavitation.EXIT)
@@ -160,3 +161,29 @@ def test_a_film_fills_as_many_torn_nodes_at_once_as_its_flow_fills():
     # Nodes that have just broken take no part, whatever their residual is.
     gas, now, before = np.array([[-3.0, 1.0, -0.1, 1.0]]), np.array([[0, 1, 1, 1]]) > 0, np.array([[1, 1, 0, 1]]) > 0
     assert swept(gas, now, before).tolist() == [[False, False, True, True]]
+
+
+def followed(speeds, kappa, load):
+    """Return the states at some speeds, each from those before it."""
+    solver = NeighbourSolver(lambda s: ball(math.exp(s), kappa, load), 1e-4)
+    return [solver(math.log(speed)) for speed in speeds]
+
+
+def test_a_slow_film_is_told_by_a_mesh_for_comparison_whose_pressure_has_settled():
+    """Its gap settled a step before: the state went to 45 angles, and the next one back."""
+    states = followed((1e-2, 8.4e-3, 7.06e-3, 5.93e-3), 0.1, 1e-3)
+    assert [state.mesh.modes for state in states] == [30] * 4
+    assert max(state.error_estimate for state in states) < 5e-5
+
+
+def test_panels_that_serve_get_more_angles_where_these_are_missing():
+    states = followed((0.1, 8.4e-2, 7.06e-2), 0.1, 0.1)
+    assert [(state.mesh.modes, state.work.fine.resolution.halvings) for state in states] == [(20, 2), (20, 2), (30, 2)]
+    assert states[-1].outcome.ok
+
+
+def test_panels_that_leave_the_error_at_the_centre_are_halved_on_as_many_angles():
+    states = followed((1e-2, 8.4e-3, 7.06e-3, 5.93e-3, 4.99e-3), 0.1, 1.0)
+    assert [state.mesh.modes for state in states] == [20] * 5
+    assert len(states[-1].work.fine.resolution.splits) > len(states[0].work.fine.resolution.splits)
+    assert states[-1].error_estimate <= 1e-4

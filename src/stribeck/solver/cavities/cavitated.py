@@ -7,6 +7,7 @@ Numbers of angles are multiples of five: the rays along which the film ruptures 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -44,6 +45,9 @@ WASTE, WASTE_ANEW, REGULAR = 0.25, 0.35, 30
 """Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
 needs other meshes anyway, when it may move to the first, or if that pair has this many angles, with which errors fall
 regularly."""
+
+SAFELY = 0.9
+"""Error that is expected on fewer angles over the tolerance, at most."""
 
 COMPANY, FRONT = 0.6, 0.04
 """Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
@@ -105,8 +109,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
-    walk = min(WALK * values["fluid_load_share"] * values["central_gap"], MOST_WALK)
-    widest = max(widest, max(FRONT, walk) / fine.mesh.modes**2)
+    widest = max(widest, front(values, fine.mesh.modes))
     if fine.equations.spread is not None:  # where gas goes the film follows
         widest = max(widest, doubt / scales["J_balanced"])
     company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
@@ -115,6 +118,11 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))
     return Pair(coarse, fine, values, errors, scales, outcome, steps, krylov)
+
+
+def front(values: dict[str, float], angles: int) -> float:
+    """Return the smallest error of all that is stated where the line of rupture lies between so many angles."""
+    return max(FRONT, min(WALK * values["fluid_load_share"] * values["central_gap"], MOST_WALK)) / angles**2
 
 
 def held(pair: Pair) -> float:
@@ -135,28 +143,31 @@ def refine_cavitated(
     best = known
     try:
         if known is not None:
-            base, start, mesh = _base(speed, law, known.fine, model), known.fine.unknowns, known.fine.mesh
-            serve = base.halvings == known.fine.resolution.halvings
-            rungs = LADDER[_rung(known) + serve :]
+            now, start, mesh = known.fine.resolution, known.fine.unknowns, known.fine.mesh
+            base = _halved(now, known, rtol) if fits(now, speed, law) else _base(speed, law, known.fine, model)
+            rung = _rung(known) + ((base.halvings, base.splits) == (now.halvings, now.splits))
         else:
-            base, rungs = _base(speed, law, guess, model), LADDER[_first_rung(rtol, model) :]
+            base, rung = _base(speed, law, guess, model), _first_rung(rtol, model)
             start, mesh = guess.unknowns, guess.mesh
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
                 start = rigid(mesh, speed)
-        for rung in rungs:
-            found = _pair(base, rung, speed, law, start, mesh)
+        while rung < len(LADDER):
+            found = _pair(base, LADDER[rung], speed, law, start, mesh)
             if isinstance(found, Outcome):
-                if best is None and rung == LADDER[0]:
+                if best is None and rung == 0:
+                    rung = 1
                     continue
                 return found if best is None else replace(best, outcome=found)
-            if best is not None and held(found) > NO_GAIN * held(best):
-                if known is not None and _rung(found) > _rung(best) and held(found) >= held(best) > rtol:
-                    break  # a cold start has panels of its own
-                base = replace(base, splits=tuple(sorted({*base.splits, *_crossed(found.fine)})))
+            left = math.inf if best is None else held(best)
+            if known is not None and best is not None and _rung(found) > _rung(best) and held(found) >= left > rtol:
+                break  # a cold start has panels of its own
+            gained = held(found) <= NO_GAIN * left
             best, start, mesh = found, found.fine.unknowns, found.fine.mesh
             if holds_torn(found, rtol):
                 return found
+            before, base = base, _halved(base, found, rtol if gained else 0.0)
+            rung += base == before
     except MeshTooLargeError:
         pass
     return Outcome.REFINEMENT_LIMIT if best is None else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
@@ -172,6 +183,16 @@ def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resoluti
         return split_where_poor(base, mesh, np.zeros_like(contact), contact)
     found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
     return replace(base, splits=found.splits if base.doublings == found.doublings else ())
+
+
+def _halved(base: Resolution, pair: Pair, rtol: float) -> Resolution:
+    """Return a resolution with the panels halved that the line of rupture crosses, where the centre misses a tolerance.
+
+    More angles would not help its series.
+    """
+    tail = CENTRAL["central_gap"] * float(centre_tails(pair.fine)[0])
+    crossed = _crossed(pair.fine) if tail > rtol * pair.scales["central_gap"] else []
+    return replace(base, splits=tuple(sorted({*base.splits, *crossed})))
 
 
 def _crossed(level: Level) -> list[float]:
@@ -229,8 +250,7 @@ def follow_cavitated(
 
     serves, rung = fits(now, speed, law, COARSER), _rung(neighbour)
     lowest, fewer = 1 if serves else _first_rung(rtol, now.model), LADDER[rung - 1][1]
-    part = WASTE if serves and fewer < REGULAR else WASTE_ANEW
-    is_waste = rung > lowest and _within(neighbour, part * rtol, fewer)
+    is_waste = rung > lowest and _within(neighbour, _waste(neighbour, rtol, fewer, serves), fewer)
     if not serves or is_waste:
         fine = neighbour.fine
         base = now if fits(now, speed, law) else _base(speed, law, fine, now.model)
@@ -269,6 +289,18 @@ def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
 def holds_torn(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state hold a tolerance, or the smallest that is aimed at."""
     return _within(pair, max(rtol, pair.fine.equations.finest), pair.fine.mesh.modes)
+
+
+def _waste(pair: Pair, rtol: float, fewer: int, serves: bool) -> float:
+    """Return the stated error up to which a state moves to fewer angles, where its panels serve or not.
+
+    Where it is the smallest that is stated of all it grows with the square of the angles.
+    """
+    if fewer < REGULAR:
+        return rtol * (WASTE if serves else WASTE_ANEW)
+    if held(pair) <= 1.001 * COMPANY * front(pair.values, pair.fine.mesh.modes):
+        return SAFELY * rtol * (fewer / pair.fine.mesh.modes) ** 2
+    return rtol * WASTE_ANEW
 
 
 def _within(pair: Pair, rtol: float, angles: int) -> bool:
