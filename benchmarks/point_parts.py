@@ -9,8 +9,8 @@ or thins, flow factors, a layer and such an end with even odds.  Groups are even
 to 1, kappa 1e-3 to 1; one state in five is smooth, at speed 1e-3 to 10.
 
 Each state is solved once more on a finer mesh: all panels near the contact halved and three degrees more, with 1.4 times the
-modes and a rim farther out where the fluid thins; where the film breaks 1.4 times the angles or more, and four degrees more, as
-these limit what is known of the line of rupture.  By how much the state differs from that is taken for its error.  With
+modes and a rim farther out where the fluid thins; where the film breaks 1.4 times the angles or more, and four degrees more,
+as these limit what is known of the line of rupture.  By how much the state differs from that is taken for its error.  With
 --out each state is a line of that file; --table prints what a file holds, and solves nothing.
 """
 

@@ -135,9 +135,9 @@ def held(pair: Pair) -> float:
 def refine_cavitated(
     speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
 ) -> Pair | Outcome:
-    """Return a state whose estimated error holds a tolerance from that of the full film, or the best that was found.
+    """Return a state whose estimated error holds a tolerance from that of a full film, or the best that was found.
 
-    ``known`` is the state with a larger error.
+    Where that is the film of another fluid it breaks before the fluid changes.  ``known`` is the state with a larger error.
     """
     rtol = max(rtol, PROBLEMS[model.cavitation][0].finest)
     best = known
@@ -152,6 +152,11 @@ def refine_cavitated(
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
                 start = rigid(mesh, speed)
+            if guess.resolution.model.film != model.film:
+                few, _, degree = LADDER[rung]
+                other = replace(base, modes=few, degree=degree, model=replace(model, film=guess.resolution.model.film))
+                torn = solve_level(other, speed, law, start, mesh, ROUGH, max_steps=FROM_FAR)
+                start, mesh = (torn.unknowns, torn.mesh) if torn.outcome.ok else (start, mesh)
         while rung < len(LADDER):
             found = _pair(base, LADDER[rung], speed, law, start, mesh)
             if isinstance(found, Outcome):

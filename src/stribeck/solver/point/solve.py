@@ -78,7 +78,10 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
         return _at_rest(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
     model = as_solved(groups.model)
-    first = first_state(speed, law, full_model(model))
+    full = full_model(model)
+    if model.cavitation is Cavitation.EXIT:  # the suction of a full film may be far from any state of one that breaks
+        full = replace(full, film=ARTICLE.film)
+    first = first_state(speed, law, full)
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
     return _state(groups, rtol, ENDINGS[model.cavitation].refine(speed, law, first, rtol, model))
