@@ -2,7 +2,8 @@
 
 Usage::
 
-    python benchmarks/point_parts.py FAMILY [--number 60] [--rtol 1e-4] [--seed 15] [--first 0] [--out STATES.jsonl] [--table]
+    python benchmarks/point_parts.py FAMILY [--number 60] [--rtol 1e-4] [--seed 15] [--first 0] [--largest 7000]
+        [--out STATES.jsonl] [--table]
 
 FAMILY is cavitated, a film that ends at ambient pressure and nothing else, or combined: each of motion, a fluid that stiffens
 or thins, flow factors, a layer and such an end with even odds.  Groups are even in the logarithm: speed 1e-7 to 10, load 1e-4
@@ -102,13 +103,12 @@ def finer_mesh(state: PointState) -> Resolution:
     return replace(now, degree=degree, modes=modes, splits=splits, farther=farther)
 
 
-def better_values(state: PointState) -> dict[str, float]:
+def better_values(state: PointState, finer: Resolution) -> dict[str, float]:
     """Return the observables on a finer mesh."""
     fine = state.work.fine
     tolerance = TIGHT_TORN if fine.resolution.model.cavitation is Cavitation.EXIT else TIGHT
-    level = solve_level(
-        finer_mesh(state), fine.equations.speed, fine.equations.law, fine.unknowns, fine.mesh, tolerance, largest=math.inf
-    )
+    speed, law = fine.equations.speed, fine.equations.law
+    level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, tolerance, largest=math.inf)
     if not level.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {level.outcome.name}")
     found = observables(level.equations, level.unknowns)
@@ -116,8 +116,8 @@ def better_values(state: PointState) -> dict[str, float]:
     return found | {name: found[name] + shift for name in SHIFTED}
 
 
-def judged(family: str, number: int, seed: int, rtol: float) -> dict[str, Any]:
-    """Return what came of one state, with its true errors over what it states."""
+def judged(family: str, number: int, seed: int, rtol: float, largest: float = math.inf) -> dict[str, Any]:
+    """Return what came of one state, with true over stated errors where the judge has at most ``largest`` nodes."""
     groups, parts = draw(family, number, seed)
     row: dict[str, Any] = {"family": family, "seed": seed, "number": number, "rtol": rtol, "speed": float(groups.speed)}
     row |= {"load": float(groups.load), "kappa": float(groups.relative_roughness)}
@@ -132,8 +132,11 @@ def judged(family: str, number: int, seed: int, rtol: float) -> dict[str, Any]:
         return row
     row |= {"rings": state.mesh.rings, "modes": state.mesh.modes, "estimate": state.error_estimate}
     row["load_error"] = abs(state.load_error)
+    row["judge"] = (finer := finer_mesh(state)).mesh.rings * finer.modes
+    if row["judge"] > largest:
+        return row
     try:
-        exact = better_values(state)
+        exact = better_values(state, finer)
     except ArithmeticError as problem:
         return row | {"problem": str(problem)}
     ratios = {name: abs(state.values[name] - exact[name]) / error for name, error in state.absolute_errors.items()}
@@ -180,6 +183,7 @@ def main() -> None:
     parser.add_argument("--number", type=int, default=60)
     parser.add_argument("--rtol", type=float, default=1e-4)
     parser.add_argument("--seed", type=int, default=15)
+    parser.add_argument("--largest", type=float, default=7000.0, help="nodes of the judge up to which a state is judged")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--table", action="store_true")
@@ -192,7 +196,7 @@ def main() -> None:
     done = {row["number"] for row in rows}
     for number in range(arguments.first, 0 if arguments.table else arguments.number):
         if number not in done:
-            rows.append(judged(arguments.family, number, arguments.seed, arguments.rtol))
+            rows.append(judged(arguments.family, number, arguments.seed, arguments.rtol, arguments.largest))
             if arguments.out is not None:
                 with arguments.out.open("a") as file:
                     print(json.dumps(rows[-1]), file=file)

@@ -273,3 +273,12 @@ def test_interference_is_black_without_a_film_and_fades_far_apart():
     np.testing.assert_array_equal(interference(0.0), [0, 0, 0])
     np.testing.assert_allclose(interference(1e-4), 0.5, atol=1e-6)
     assert interference(540e-9 / (4 * 1.4))[1] > 0.9  # a quarter of the wave in the fluid: green is bright
+
+
+@pytest.mark.quick
+def test_the_angle_of_a_minimum_near_the_centre_is_as_unsure_as_its_place():
+    rest, slow, fast = (sb.solve(sb.Groups(speed, 1e-3, 1e-3, geometry="point"), rtol=1e-4) for speed in (0.0, 1e-6, 1e-3))
+    for solution in (rest, slow):
+        assert solution.minimum_radius < solution.minimum_radius_error
+        assert solution.minimum_angle_error == pytest.approx(math.pi)
+    assert fast.minimum_radius * fast.minimum_angle_error == pytest.approx(fast.minimum_radius_error)

@@ -105,7 +105,7 @@ def _solution_rows(
         yield row.label, f"{digits(value, error)} p_Hz", si, error_text(error)
     if "minimum_angle" in solution.outputs.listed:
         angle, wrong = math.degrees(solution.minimum_angle), math.degrees(solution.minimum_angle_error)
-        yield "angle of minimum film", f"{angle:.3g}°", "", f"{wrong:.1g}°"
+        yield "angle of minimum film", f"{angle:.3g}°", "", f"{float(f'{wrong:.2g}'):g}°"
     yield "Lambda (minimum film over h_rms)", digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error

@@ -31,7 +31,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
-from stribeck.solver.point.refinement import CENTRAL, Pair, centre_tails, scales_of
+from stribeck.solver.point.refinement import CENTRAL, Pair, angle_error, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
 LADDER = ((5, 10, 8), (10, 20, 8), (15, 30, 8), (20, 45, 10), (30, 65, 10), (45, 95, 10))
@@ -59,6 +59,9 @@ the same.  Offsets erred by up to 0.35 times the film over that square, and by u
 
 DRAG = ("J_couette", "J_balanced", "J_published")
 """Integrals that have the shear, and with it the same error."""
+
+THINNED = 1.6
+"""Stated error of friction over that of other fluids, where a fluid thins: drag is smaller, what moves the load is not."""
 
 ALONE = 10.0
 """Smallest error of the minimum film and its place over the largest of all; the tolerance does not limit them."""
@@ -114,6 +117,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         widest = max(widest, doubt / scales["J_balanced"])
     company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
     errors = {name: max(error, company[name] * widest * scales[name]) for name, error in errors.items()}
+    if fine.resolution.model.film.uses_speed:
+        errors |= {name: THINNED * errors[name] for name in errors if name.startswith("J_")}
+    errors["minimum_angle"] = angle_error(values, errors)
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))

@@ -236,12 +236,19 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
             errors[name] = max(errors[name], CUSP / fine.mesh.modes * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
         errors[name] = max(4.0 * errors[name], unseen * (2.0 if fine.resolution.model.film.uses_speed else 1.0))
+    errors["minimum_angle"] = angle_error(values, errors)
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps = coarse.iterated.steps + fine.iterated.steps
     return Pair(
         coarse, fine, values, errors, scales, outcome, steps, coarse.iterated.krylov_steps + fine.iterated.krylov_steps
     )
+
+
+def angle_error(values: dict[str, float], errors: dict[str, float]) -> float:
+    """Return the error of the angle of the minimum: at least that of its place as seen from the centre; there any angle is."""
+    seen = errors["minimum_radius"] / max(values["minimum_radius"], errors["minimum_radius"] / math.pi, 1e-300)
+    return min(math.pi, max(errors["minimum_angle"], seen))
 
 
 def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: float = 1.0) -> Resolution:
