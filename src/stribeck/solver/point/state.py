@@ -24,8 +24,9 @@ from stribeck.solver.point.refinement import Pair
 WITHOUT_TOLERANCE = MINIMA
 """Observables with stated errors that do not count in :attr:`PointState.error_estimate`: rtol does not limit them."""
 
-LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "central_pressure")
-"""More of them where the film breaks: the streaks of the wake are less accurate than the film."""
+LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
+"""More of them where the film breaks: the streaks of the wake are less accurate than the film, and so is the moment of a thin
+contact whose panels the line of rupture crosses."""
 
 
 class PointFields(NamedTuple):
