@@ -152,6 +152,8 @@ def table(rows: list[dict[str, Any]]) -> str:
     """Return what docs/numerics.md shows."""
     asked = [row for row in rows if row["outcome"] != "REFUSED"]
     compared = [row for row in asked if "ratios" in row]
+    if not compared:
+        return f"none of {len(rows)} states is judged"
     single = np.array([ratio for row in compared for ratio in row["ratios"].values()])
     whole, minima = (np.array([worst(row, apart)[0] for row in compared]) for apart in (False, True))
     seconds = [row["seconds"] for row in asked]
