@@ -125,16 +125,27 @@ class Extrapolation:
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
-        fields, places = np.zeros((2, x.size)), [x] * len(self.states)
-        if self._moved is not None:
-            middle, distance = self._edge
-            with_edge = 0.5 * (1 + np.tanh(SHARPNESS * ((x - middle) / distance - 0.5)))
-            places = [x + moved * with_edge for moved in self._moved]
-        for w, s, place in zip(self.weights, self.states, places, strict=True):
+        fields = np.zeros((2, x.size))
+        for w, s, place in zip(self.weights, self.states, self._places(x), strict=True):
             fields += w * s.fields(self._in_frame(s, place))
         if self._in_place:  # the pressure has kinks where the film ends and begins
             fields[0] = sum(w * s.fields(_at_place(self, s, x))[0] for w, s in zip(self.weights, self.states, strict=True))
         return fields
+
+    def known_on(self, x: Array) -> Array:
+        """Return the lengths of the shortest panels of all states at ``x``."""
+        lengths = [s.known_on(self._in_frame(s, place)) for s, place in zip(self.states, self._places(x), strict=True)]
+        if self._in_place:
+            lengths += [s.known_on(_at_place(self, s, x)) for s in self.states]
+        return np.asarray(np.min(lengths, axis=0))
+
+    def _places(self, x: Array) -> list[Array]:
+        """Return where each state is looked at for ``x``."""
+        if self._moved is None:
+            return [x] * len(self.states)
+        middle, distance = self._edge
+        with_edge = 0.5 * (1 + np.tanh(SHARPNESS * ((x - middle) / distance - 0.5)))
+        return [x + moved * with_edge for moved in self._moved]
 
     def _in_frame(self, state: State, x: Array) -> Array:
         """Return coordinates in the frame of a state whose cavity may have another length on its mesh."""
@@ -199,7 +210,15 @@ class SeenFrom:
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``; in the cavity that is the guessed one."""
-        found = self.state.fields((x + self.exit - self.state.exit) / self.state.dilation)
+        found = self.state.fields(self._seen(x))
         cavity = (x > 0) & (x < self.restart)
         found[1] = np.where(cavity, self.cavity_pressure, found[1])
         return found
+
+    def known_on(self, x: Array) -> Array:
+        """Return the lengths of the panels of the state at ``x``."""
+        return self.state.known_on(self._seen(x))
+
+    def _seen(self, x: Array) -> Array:
+        """Return the coordinates of the state."""
+        return (x + self.exit - self.state.exit) / self.state.dilation

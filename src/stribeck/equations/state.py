@@ -81,6 +81,9 @@ WIDEST_FAR = 0.5
 KINK_SEARCHES, KINK_PLACES = 2, 17
 """How often a kink is looked for between so many places of its bracket; then the line through two of them tells."""
 
+SHORTEST_OF_GUESS = 0.1
+"""Length of a panel over that of the panels by which the guess is known, from which no shorter ones are asked for."""
+
 COARSE = 1e-3
 """Tolerance from which a mesh serves to find a state, not to read off drag."""
 
@@ -284,6 +287,10 @@ class State:
         found[0] += np.log(self.mesh.scale**2 + x * x)
         return found
 
+    def known_on(self, x: Array) -> Array:
+        """Return the lengths of the panels at ``x``."""
+        return self.mesh.lengths_at(x)
+
 
 def fall_of(film: Film, speed: float) -> Fall:
     """Return how the pressure of a film falls off at a speed group: as an even power unless the film says otherwise."""
@@ -476,7 +483,11 @@ def mesh_for(
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > restart)] if ends else x
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
-    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks)
+
+    def shortest(x: Array) -> Array:
+        return SHORTEST_OF_GUESS * guess.known_on(x * to_guess) / to_guess
+
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))

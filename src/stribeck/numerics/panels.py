@@ -24,6 +24,8 @@ from stribeck._types import Array, Indices
 MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
 
+SAME_PLACE = 2.0**-34
+"""Distance over the scale of a mesh below which an edge gives way to a kink: nodes between them are the same to rounding."""
 
 TAIL_HALVINGS = 12
 """Panels on each side of infinity on which integrands that hold a logarithm there are summed."""
@@ -194,6 +196,11 @@ class Mesh:
         x = 1 / (t * self.half_widths[-1])
         return x, weights * self.half_widths[-1] * x**2, to_tail
 
+    def lengths_at(self, x: Array) -> Array:
+        """Return the lengths of the panels at ``x``; on that through infinity the distance, over which fields change there."""
+        panel = np.searchsorted(self.edges[1:-1], x, side="right")
+        return np.where(np.abs(x) < self.edges[-1], np.diff(self.edges)[panel], np.abs(x))
+
     def locate(self, x: Array) -> tuple[Indices, Array]:
         """Return the panel of each point and its coordinate in ``[-1, 1]`` there."""
         panel = np.searchsorted(self.edges, x, side="right") - 1
@@ -300,6 +307,7 @@ def adapt(
     start: Mesh | None = None,
     anew: bool = True,
     places: Array = NOWHERE,
+    shortest: Callable[[Array], Array] = np.zeros_like,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields.
 
@@ -327,6 +335,9 @@ def adapt(
         Whether the panels are laid anew.
     places : ndarray
         Edges besides zero, where the fields have kinks: panels laid anew would hide these in longer ones.
+    shortest : callable
+        Panels around ``x`` of at most this length are not halved: fields that are known by polynomials jump where their panels
+        end, and no panel is short enough for a jump.
 
     Returns
     -------
@@ -357,14 +368,19 @@ def adapt(
         reach = float(edges[-1])
         inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
-    edges = np.unique(np.append(edges, places[np.abs(places) < edges[-1]]))
+    near = SAME_PLACE * scale
+    places = np.sort(places[(np.abs(places) > near) & (np.abs(places) < edges[-1] - near)])
+    places = places[np.diff(places, prepend=-np.inf) > near]
+    apart = (np.abs(edges[:, None] - places) > near).all(axis=1)
+    edges = np.unique(np.append(edges[apart], places))
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done, sizes = [], []
     count = 0
     smallest = 2.0**-44 * scale
     while len(open_panels):
         size = tails(open_panels)
-        split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > smallest)
+        least = np.maximum(shortest(open_panels.mean(axis=1)), smallest)
+        split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > least)
         done.append(open_panels[~split])
         sizes.append(size[~split])
         count += int((~split).sum())
