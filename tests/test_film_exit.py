@@ -11,18 +11,19 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
+from stribeck.equations.cavities.of_exit import solve_of_exit
 from stribeck.equations.cavities.of_length import OfLength, solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
 from stribeck.equations.on_mesh.inverses import Coupled, Eliminated
-from stribeck.equations.prediction import extrapolate
+from stribeck.equations.prediction import SeenFrom, extrapolate
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.corrector import Corrector
-from stribeck.solver.models.towards import Work, _along
+from stribeck.solver.models.towards import Work, _along, _coarse, _seen_from_exit
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import solved_point
 
@@ -242,6 +243,37 @@ def test_a_cavity_under_a_rigid_film_goes_with_the_square_root_of_the_speed():
         ends = np.array([state.exit_position, state.reformation_position])
         found.append([*ends / np.sqrt(state.central_gap), state.flux_gap / state.central_gap])
     assert found[0] == pytest.approx(found[1], rel=3e-4)
+
+
+@pytest.mark.parametrize("fluid", [None, sb.fluids.Barus(1.0)], ids=("plain", "stiffens"))
+def test_a_film_of_given_exit_holds_all_but_the_end_and_points_to_the_free_exit(fluid):
+    point = solved_point(with_parts(sb.Groups(1e-5, 0.1, 1e-3), cavitation="exit", fluid=fluid), 1e-6)
+    free = point.state
+    assert free is not None
+    for moved in (-0.02, 0.02):
+        held, step = solve_of_exit(point.groups, free.equations.operators, SeenFrom(free, free.exit + moved), 1e-9, 30)
+        at, residual = held.equations.layout, held.equations.residual(held.y)
+        assert held.root.outcome.ok
+        assert held.exit == free.exit + moved
+        assert np.abs(residual[: at.exit.start]).max() < 1e-8 < 1e-4 < abs(residual[at.exit.start])
+        assert abs(step[at.exit.start] + moved) < 0.2 * abs(moved)
+
+
+def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
+    """Steps of an exit by a hundred times the width of the inlet: Newton's iteration took 100 and did not arrive."""
+    groups = sb.Groups(3.7224e-9, 2.32711e-8, 2.96201e-14)
+    path = first_path(groups)
+    ending = replace(groups, model=ENDING)
+    guess = _seen_from_exit(path.states[-1])
+    state = _coarse(ending, guess)
+    assert state is not None
+    assert state.outcome.ok
+    assert abs(state.exit - guess.exit) > 0.05
+    assert state.root.steps < 50
+    fluid = sb.fluids.Fluid(sb.fluids.Carreau(0.00252452, 0.6052987, 0.00015806), sb.fluids.Barus(0.0693958))
+    solution = sb.solve(groups, fluid=fluid, cavitation="exit", slide_to_roll=-2.34927)
+    assert solution.error_estimate <= 1e-6
+    assert solution.exit_position < state.exit - 0.2
 
 
 @pytest.mark.quick

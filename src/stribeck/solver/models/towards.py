@@ -27,6 +27,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE, Model
+from stribeck.equations.cavities.of_exit import solve_of_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
@@ -48,6 +49,15 @@ NEWTON_TOLERANCE = 1e-5
 FINER = (12, 1e-5)
 """Nodes per panel and tolerance of the mesh if coarse ones fail."""
 MOST_STEPS = 100
+
+FREE_STEPS = 15
+"""The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones."""
+
+HELD_STEPS = 25
+"""The same with an exit that is given."""
+
+MOST_EXITS, FARTHEST_EXIT = 15, 0.3
+"""Exits that are tried, and how far apart in units of the width of contact and film."""
 
 FAR_FROM_GUESS = 1.0
 """Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too."""
@@ -270,24 +280,18 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     article : callable
         The path from cold to groups with the model of the article.
     """
-    model = groups.model
-    changes = model.film != Newtonian() or not isinstance(model.solid, HalfPlane)
-    for way in WAYS if changes else WAYS[:1]:
-        yield _changed(groups, article, way)
-
-
-def _changed(groups: Groups, article: Callable[[Groups], Path[State]], way: Way) -> Path[State]:
-    """Return the path from the state of the article's model by one way to change the fluid."""
     model, solid = groups.model, groups.model.solid
     path, state = _newtonian(groups, article, solid)
     if state is None and not isinstance(solid, HalfPlane):
         solid = ARTICLE.solid
         path, state = _newtonian(groups, article, solid)
     if state is None:
-        return replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
-    if model.film == Newtonian() and model.solid == solid:
-        return extended(path, state)
-    return _blended(groups, path, state, way)
+        yield replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
+    elif model.film == Newtonian() and model.solid == solid:
+        yield extended(path, state)
+    else:
+        for way in WAYS:
+            yield _blended(groups, path, state, way)
 
 
 def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
@@ -309,6 +313,18 @@ def extended(path: Path[State], state: State) -> Path[State]:
 
 def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state from a guess, or None."""
+    ends = groups.model.cavitation is Cavitation.EXIT
+    operators = _operators(groups, guess, order, tolerance)
+    if operators is None:
+        return None
+    if not ends:
+        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MOST_STEPS)
+    state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, FREE_STEPS)
+    return state if state.outcome.ok else _with_exit_sought(groups, guess, state, order, tolerance)
+
+
+def _operators(groups: Groups, guess: Guess, order: int, tolerance: float) -> Operators | None:
+    """Return the operators of a mesh for a guess, or None if that needs too many panels."""
     # Predictions from panels that lie elsewhere in the contact are uneven, which may ask for more panels than there are.
     shapes: tuple[Guess, ...] = (guess, guess.states[-1]) if isinstance(guess, Extrapolation) else (guess,)
     for shape in shapes:
@@ -316,8 +332,38 @@ def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float =
             mesh = mesh_for(shape, groups, contact_law(groups), order, tolerance, anew=False)
         except MeshTooLargeError:
             continue
-        return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
+        return Operators(mesh, groups.model)
     return None
+
+
+def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, tolerance: float) -> State:
+    """Return a coarse state from a guess, by states whose exit is given; the one that failed with a free exit if that fails.
+
+    Its Newton steps are those of all.
+    """
+    last, step, spent = None, 0.0, failed.root.steps
+    for _ in range(MOST_EXITS):
+        operators = _operators(groups, guess, order, tolerance)
+        if operators is None:
+            break
+        held, free = solve_of_exit(groups, operators, guess, NEWTON_TOLERANCE, HELD_STEPS)
+        spent += held.root.steps
+        if held.root.outcome.ok:
+            last, step = held, float(free[held.equations.layout.exit.start])
+            if held.equations.admissible(held.y, free) == 1.0:
+                found = solve_state(groups, operators, held, NEWTON_TOLERANCE, FREE_STEPS)
+                spent += found.root.steps
+                if found.outcome.ok:
+                    failed = found
+                    break
+            longest = FARTHEST_EXIT * math.sqrt(1.0 + float(held.gap.min()))
+            step = math.copysign(min(abs(step), longest), step)
+        else:
+            step *= 0.5
+        if last is None or not math.isfinite(step):
+            break
+        guess = SeenFrom(last, last.exit + step)
+    return replace(failed, root=replace(failed.root, steps=spent))
 
 
 def settled(groups: Groups, guess: Guess) -> State | None:
