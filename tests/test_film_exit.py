@@ -11,7 +11,7 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.cavities.of_exit import solve_of_exit
+from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.cavities.of_length import OfLength, solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
@@ -274,6 +274,22 @@ def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
     solution = sb.solve(groups, fluid=fluid, cavitation="exit", slide_to_roll=-2.34927)
     assert solution.error_estimate <= 1e-6
     assert solution.exit_position < state.exit - 0.2
+
+
+def test_an_exit_is_sought_where_the_gap_grows_through_that_of_the_flux_not_at_infinity():
+    """Behind that gap the gradient falls to zero at infinity too: Newton's step pointed there, away from the film."""
+    groups = sb.Groups(2.710267970250662e-09, 1.0889806625813665, 0.029095843970784)
+    guess = _seen_from_exit(first_path(groups).states[-1])
+    state = _coarse(replace(groups, model=ENDING), guess)
+    assert state is not None
+    assert state.outcome.ok
+    assert state.exit < guess.exit - 0.2
+    held, step = solve_of_exit(state.groups, state.equations.operators, SeenFrom(state, guess.exit), 1e-5, 30)
+    assert held.root.outcome.ok
+    assert step[held.equations.layout.exit.start] > 0 > distance_to_flux_gap(held) > 2 * (state.exit - guess.exit)
+    held, _ = solve_of_exit(state.groups, state.equations.operators, SeenFrom(state, state.exit - 1e-3), 1e-5, 30)
+    assert held.root.outcome.ok
+    assert 0 < distance_to_flux_gap(held) < 0.01
 
 
 @pytest.mark.quick

@@ -20,7 +20,7 @@ from stribeck.equations.state import State, unknowns_of
 from stribeck.numerics.newton import Inverse, StepControl, root_find
 from stribeck.quantities.outcome import Outcome
 
-__all__ = ["solve_of_exit"]
+__all__ = ["distance_to_flux_gap", "solve_of_exit"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,3 +67,17 @@ def solve_of_exit(groups: Groups, operators: Operators, guess: Guess, tolerance:
     if root.outcome.ok:
         step = free.units(root.x) * free.inverse(root.x)(free.residual(root.x))
     return State(groups, free, root.x, replace(root, inverse=None), 0.0), step
+
+
+def distance_to_flux_gap(state: State) -> float:
+    """Return how far it is from the exit of a state to where its gap grows through that at which the flux needs no pressure.
+
+    There the film would end; infinite if there is no such place.  The gradient of the pressure vanishes at infinity too, and
+    Newton's step points there from beyond its maximum.
+    """
+    equations, at = state.equations, state.equations.layout
+    x, pressure = state.mesh.nodes, state.y[at.pressure] if equations.film.uses_pressure else None
+    rising = equations.ending.gradient(state.gap, pressure, state.y[at.flux_gap]) > 0
+    if equations.residual(state.y)[at.exit.start] > 0:
+        return float(np.max(x[(x < 0) & ~rising], initial=-np.inf))
+    return float(np.min(x[(x > 0) & rising], initial=np.inf))

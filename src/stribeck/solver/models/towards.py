@@ -27,7 +27,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.equations.cavities.of_exit import solve_of_exit
+from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
@@ -56,8 +56,8 @@ FREE_STEPS = 15
 HELD_STEPS = 25
 """The same with an exit that is given."""
 
-MOST_EXITS, FARTHEST_EXIT = 15, 0.3
-"""Exits that are tried, and how far apart in units of the width of contact and film."""
+MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
+"""Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film."""
 
 FAR_FROM_GUESS = 1.0
 """Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too."""
@@ -341,7 +341,7 @@ def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, t
 
     Its Newton steps are those of all.
     """
-    last, step, spent = None, 0.0, failed.root.steps
+    last, step, spent, bounds, missed = None, 0.0, failed.root.steps, [-math.inf, math.inf], 0
     for _ in range(MOST_EXITS):
         operators = _operators(groups, guess, order, tolerance)
         if operators is None:
@@ -349,18 +349,23 @@ def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, t
         held, free = solve_of_exit(groups, operators, guess, NEWTON_TOLERANCE, HELD_STEPS)
         spent += held.root.steps
         if held.root.outcome.ok:
-            last, step = held, float(free[held.equations.layout.exit.start])
+            last, missed, step = held, 0, float(free[held.equations.layout.exit.start])
             if held.equations.admissible(held.y, free) == 1.0:
                 found = solve_state(groups, operators, held, NEWTON_TOLERANCE, FREE_STEPS)
                 spent += found.root.steps
                 if found.outcome.ok:
                     failed = found
                     break
+            to_flux = distance_to_flux_gap(held)
+            bounds[int(to_flux < 0)] = held.exit
+            step = step if step * to_flux > 0 else to_flux
+            if not bounds[0] < held.exit + step < bounds[1]:
+                step = 0.5 * (bounds[0] + bounds[1]) - held.exit
             longest = FARTHEST_EXIT * math.sqrt(1.0 + float(held.gap.min()))
             step = math.copysign(min(abs(step), longest), step)
         else:
-            step *= 0.5
-        if last is None or not math.isfinite(step):
+            missed, step = missed + 1, 0.5 * step
+        if last is None or missed > MOST_MISSED or not math.isfinite(step):
             break
         guess = SeenFrom(last, last.exit + step)
     return replace(failed, root=replace(failed.root, steps=spent))
