@@ -227,8 +227,9 @@ def continued(
     points: int,
     on_point: Callable[[int, int], object] | None = None,
     begin: float | None = None,
+    span: float = math.inf,
 ) -> StribeckCurve:
-    """Continue a curve from its nearer end to ``end``, without a cold start.
+    """Continue a curve from its nearer end towards ``end``, without a cold start.
 
     Parameters
     ----------
@@ -242,6 +243,8 @@ def continued(
         ``on_point(done, points)`` is called for progress.
     begin : float, optional
         Where a curve that is known at its points only begins instead.
+    span : float
+        Factor of the value from which on a curve that is a function ends, at the state that it has there anyhow.
 
     Returns
     -------
@@ -265,8 +268,11 @@ def continued(
         if on_point is not None:
             on_point(0, points)
 
-    path = follow(known.problem, here, s, curve.rtol, report)
-    low, high = sorted((math.exp(here.coordinate), end))
+    def is_far(one: Expansion) -> bool:
+        return abs(one.coordinate - here.coordinate) >= math.log(span)
+
+    path = follow(known.problem, here, s, curve.rtol, report, until=is_far)
+    low, high = np.exp(path.coordinates[[0, -1]]) if path.outcome.ok else sorted((math.exp(here.coordinate), end))
     values = np.geomspace(low, high, points)
     reached = np.exp(path.coordinates[[0, -1]]) * (1 - SLACK, 1 + SLACK)
     inside = values[(values >= reached[0]) & (values <= reached[1])]

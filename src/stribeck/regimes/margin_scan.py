@@ -26,7 +26,10 @@ REACH = 1e6
 """Largest factor by which an input is changed."""
 
 DECADE = math.log(10.0)
-"""Length of one step outwards in the logarithm of an input."""
+"""Length of one step outwards in the logarithm of an input, at least where it ends at a state that is solved anyhow."""
+
+ROUNDING = 1e-9
+"""Difference of logarithms of values that are the same."""
 
 POINTS: dict[Geometry, int] = {"line": 41, "point": 3}
 """States looked at on a decade, by geometry: read off a function, or solved."""
@@ -147,60 +150,63 @@ class Scan:
     def _outwards(self, start: Contact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
         """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
         value, outward = float(getattr(start, name)), math.copysign(1.0, limit)
-        size, here = min(abs(limit), math.log(reach)), 0.0
-        while size - here > 1e-9:
-            there = min(here + DECADE, size)
-            near, far = (value * math.exp(outward * s) for s in (here, there))
-            curve = self._curve(start, name, near, far, POINTS[start.groups.geometry])
+        near, end = value, value * math.exp(outward * min(abs(limit), math.log(reach)))
+        while abs(math.log(end / near)) > ROUNDING:
+            curve = self._curve(start, name, near, end, POINTS[start.groups.geometry])
             if curve is None:
                 break
             change = self._first_change(curve, outward)
             if change is not None:
                 regime, place = self._located(curve, start, name, outward, *change)
                 return Crossing(regime, place, place / value), math.log(place / value)
-            here = there
-            if name == "speed" and outward < 0 and _stays_mixed(curve):
+            before, near = near, float(curve.values[-1 if outward > 0 else 0])
+            is_long = math.log(before / near) >= DECADE - ROUNDING
+            if name == "speed" and is_long and _stays_mixed(curve):
                 break
-        return None, outward * here
+        return None, math.log(near / value)
 
-    def _curve(self, start: Contact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
-        """Return the states between two values of an input; None where the solver does not reach them all."""
-        part = self._part_known(name, min(near, far), max(near, far), points)
+    def _curve(self, start: Contact, name: Over, near: float, end: float, points: int) -> StribeckCurve | None:
+        """Return the states from a value of an input about a decade on; None where the solver does not reach them."""
+        far = end if abs(math.log(end / near)) < DECADE else near * math.exp(math.copysign(DECADE, end - near))
+        low, high = sorted((near, far))
+        part = self._part_known(name, near, low, high, points)
         if part is not None:
-            return part
-        try:
-            if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
-                curve = continued(self.known[near], far, points, self._report, near)
-            else:
-                ends: Any = {name: (min(near, far), max(near, far))}
-                settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report, "like": self.like}
-                curve = stribeck_curve(start, **ends, points=points, **settings)
-                self.like = curve if self.like is None else self.like
-        except SolveError:
-            return None
+            curve = part
+        else:
+            try:
+                if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
+                    known = self.known[near]
+                    goal = end if known.is_function else far
+                    curve = continued(known, goal, points, self._report, near, math.exp(DECADE))
+                else:
+                    ends: Any = {name: (low, high)}
+                    settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
+                    curve = stribeck_curve(start, **ends, points=points, like=self.like, **settings)
+                    self.like = curve if self.like is None else self.like
+            except SolveError:
+                return None
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         if not curve.outcome.ok:
             return None
-        if curve.is_function:
-            self.known |= {near: curve, far: curve}
-        else:
-            self.known |= dict.fromkeys(curve.values.tolist(), curve)
+        self.known |= dict.fromkeys(curve.values[[0, -1]].tolist() if curve.is_function else curve.values.tolist(), curve)
         return curve
 
-    def _part_known(self, name: Over, low: float, high: float, points: int) -> StribeckCurve | None:
-        """Return the states between two values as the curve gives them with which the search began, if that holds both."""
+    def _part_known(self, name: Over, near: float, low: float, high: float, points: int) -> StribeckCurve | None:
+        """Return the states between two values as far as the curve gives them with which the search began."""
         whole, contact = self.like, self.contact
         if whole is None or not whole.is_function or whole.over != name or not whole.rtol <= self.rtol:
             return None
         of_friction = (whole.definition, whole.boundary_friction, whole.beta)
         if of_friction != (self.definition, contact.boundary_friction, contact.beta):
             return None
-        path, (first, last) = whole._solved_path, np.log([low, high]).tolist()
-        if not path.coordinates[0] <= first < last <= path.coordinates[-1]:
+        path = whole._solved_path
+        first, last = np.clip(np.log([low, high]), *path.coordinates[[0, -1]]).tolist()
+        if last - first <= ROUNDING or not first - ROUNDING <= math.log(near) <= last + ROUNDING:
             return None
         inside = (one for one in path.intervals if one.right.coordinate > first and one.left.coordinate < last)
-        return whole._along(replace(path, intervals=tuple(inside)), np.geomspace(low, high, points), points)
+        values = np.clip(np.geomspace(math.exp(first), math.exp(last), points), low, high)
+        return whole._along(replace(path, intervals=tuple(inside)), values, points)
 
     def _report(self, done: int, points: int) -> None:
         if self.on_point is not None:
