@@ -210,6 +210,16 @@ def test_a_tab_that_is_closed_is_collected():
     assert len(tab.TABS) == 0
 
 
+def test_two_quick_interrupts_end_it_without_a_word(tmp_path):
+    with start(tmp_path) as process:
+        address_of(process)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)  # the first one is heeded, and the server not yet closed
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=30)
+    assert said == ("", "")
+
+
 @pytest.mark.slow  # a minute on a busy machine: it fills the time limit of a file
 def test_a_sigterm_during_an_upload_leaves_no_folder(tmp_path):
     with start(tmp_path) as process:

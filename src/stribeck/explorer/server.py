@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import secrets
 import socket
 import sys
 import threading
 from functools import partialmethod
 from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
@@ -19,6 +22,9 @@ from stribeck.explorer.serving.guard import Guard, check_host
 from stribeck.explorer.serving.tidy import set_aside
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, to_si
+
+if TYPE_CHECKING:
+    from nicegui.server import Server
 
 __all__ = ["serve"]
 
@@ -83,6 +89,7 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     nicegui.app.on_startup(prepare)
     # NiceGUI takes the number of a port, which another program may have taken by then, and no socket.
     Server.run = partialmethod(Server.run, sockets=[listening])  # type: ignore[method-assign,assignment]
+    Server.handle_exit = _end  # type: ignore[method-assign,assignment]
     nicegui.ui.run(
         host=host,
         port=chosen,
@@ -99,6 +106,14 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
         ws_max_size=1_000_000,
         ws_per_message_deflate=False,  # nothing leaves this machine
     )
+
+
+def _end(server: Server, number: int, frame: FrameType | None) -> None:
+    """End the server, and at once where it is ending already: to give up its tasks would print their tracebacks."""
+    if server.should_exit:
+        os._exit(0)
+    server.should_exit = True
+    server._captured_signals.append(number)  # which Uvicorn raises again when it has ended
 
 
 def prepare() -> None:
