@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.with_parts import with_parts
 from stribeck.curves import landmarks
 from stribeck.curves.function import solved_at
 from stribeck.curves.regime import Transition
-from stribeck.equations.observables import ROW
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import ROW, observables_of_stacked
+from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import corrector
 from stribeck.solver.cold_start import first_path
@@ -339,3 +342,17 @@ def test_a_curve_is_sampled_at_a_whole_number_of_points(points):
 def test_a_curve_like_none_that_is_one_is_refused():
     with pytest.raises(sb.InputError, match="similar contact"):
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3, like="the last")
+
+
+@pytest.mark.parametrize("solid", [sb.solids.HalfPlane(), sb.solids.Layer(1.0, 0.4)])
+@pytest.mark.parametrize(("exit_position", "dilation"), [(5e4, 1.0), (0.1, -0.5), (0.1, math.nan)])
+def test_a_series_beyond_its_radius_is_no_number_and_no_error(solid, exit_position, dilation):
+    """Curves through the place where a cavity opens ended with an error of arithmetic."""
+    groups = with_parts(sb.Groups(0.05, 0.5, 0.04), cavitation="reform", cavity_pressure=-0.1, solid=solid)
+    mesh = Mesh(np.array([-8.0, -1.0, 0.0, 0.25, 1.0, 8.0]), 12, restart=0.25)
+    equations = Equations(Operators(mesh, groups.model), 0.05, contact_law(groups), 1.0)
+    y, at = np.ones(equations.layout.size), equations.layout
+    y[at.gap], y[at.exit], y[at.dilation] = np.exp(np.sin(3 * mesh.nodes)), exit_position, dilation
+    with np.errstate(all="ignore"):
+        wrong = equations.residual(y[None]), *(each.central_gap for each in observables_of_stacked(equations, y[None], 0.5))
+    assert not all(np.isfinite(each).all() for each in wrong)

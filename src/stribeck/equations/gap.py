@@ -60,7 +60,7 @@ def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[float, float, slice, Arr
         legendre_of_s.append(last)
     row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
     logs, far = np.log(h[nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
-    value = math.exp(float(row @ logs)) * far
+    value = float(np.exp(row @ logs)) * far
     slope = float(row @ (_slope_at_nodes(mesh.order) @ logs)) / width
     return value, value * (slope + 2 * x / far), nodes, row
 

@@ -222,8 +222,11 @@ class Operators:
         """Return D in a frame dilated by d, or its derivative by the logarithm of d."""
         if isinstance(self.model.solid, HalfPlane):
             return np.zeros((1, self.mesh.size)) if derivative else self.deflection
-        cell = round(math.log(d) / CELL)
-        at = math.log(d) / CELL - cell
+        place = np.log(d) / CELL
+        if not np.isfinite(place):  # of a series beyond its radius, which shows in the gap
+            return np.full((self.mesh.size, self.mesh.size), np.nan)
+        cell = round(place)
+        at = place - cell
         weights = _OF_CELL @ (np.arange(IN_CELL) * at ** np.maximum(np.arange(IN_CELL) - 1, 0) / CELL) if derivative else None
         weights = _OF_CELL @ at ** np.arange(IN_CELL) if weights is None else weights
         return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
