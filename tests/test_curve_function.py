@@ -356,3 +356,11 @@ def test_a_series_beyond_its_radius_is_no_number_and_no_error(solid, exit_positi
     with np.errstate(all="ignore"):
         wrong = equations.residual(y[None]), *(each.central_gap for each in observables_of_stacked(equations, y[None], 0.5))
     assert not all(np.isfinite(each).all() for each in wrong)
+
+
+def test_asperities_that_hardly_touch_a_film_that_thins_ask_for_no_states():
+    """What they change is below a ten-thousandth of the tolerance, but was held against the part that a state may err by."""
+    parts = {"fluid": sb.fluids.Cross(5.453965e-4, 0.89295), "solid": sb.solids.Layer(3.8718, 0.44184636)}
+    groups = with_parts(sb.Groups(9.5e-3, 3.6e-3, 7.9e-6), cavitation="exit", **parts)
+    curve = sb.stribeck_curve(groups, roughness=(2.2e-6, 3.5e-6), points=2)
+    assert curve.states <= 8  # 29

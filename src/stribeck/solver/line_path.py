@@ -292,7 +292,7 @@ class LineProblem:
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
         """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
-        rounding = max(ROUNDING, UNSEEN_PART * self.rtol)
+        rounding = max(ROUNDING, UNSEEN_PART * self.tolerance)
         return min(radius(each, reach, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
