@@ -364,3 +364,14 @@ def test_asperities_that_hardly_touch_a_film_that_thins_ask_for_no_states():
     groups = with_parts(sb.Groups(9.5e-3, 3.6e-3, 7.9e-6), cavitation="exit", **parts)
     curve = sb.stribeck_curve(groups, roughness=(2.2e-6, 3.5e-6), points=2)
     assert curve.states <= 8  # 29
+
+
+def test_a_cusp_that_passes_through_the_nodes_asks_for_few_states():
+    """Polynomials through all samples turned with it, and had slopes wrong by a ten-thousandth."""
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8))
+    fluid = sb.fluids.Fluid(sb.fluids.Cross(0.0103, 0.81), sb.fluids.Barus(1.08))
+    base = with_parts(sb.Groups(1.2e-5, 0.011, 0.0056, law=law), fluid=fluid, slide_to_roll=0.0)
+    curve = sb.stribeck_curve(base, roughness=(0.005, 0.012), points=2)
+    assert curve.states <= 25  # 33
+    for roughness in (0.006, 0.008):
+        assert worst(curve, roughness, replace(base, roughness=roughness), 1e-8) < 2

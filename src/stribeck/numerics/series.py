@@ -7,8 +7,8 @@ the solution,
 
 with the Jacobian at the solution: one factorisation serves all orders.  What is nonlinear is either composed of products,
 quotients and exponentials, whose coefficients follow from those of lower order, or known by its values alone: then the
-coefficients are those of the polynomial through its values on [-r, r], which has them also where the function is not quite
-smooth, with fewer digits.
+coefficients are those of a polynomial near its values on [-r, r], which has them also where the function is not quite smooth,
+with fewer digits.
 
 Coefficients are in the first axis, order by order.  The module knows no physics.
 Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
@@ -136,22 +136,26 @@ class Samples:
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
 
 
-def interval(reach: float, count: int = ON_INTERVAL) -> Samples:
-    """Return the samples of a real function up to a distance ``reach``."""
-    orders = np.arange(count)
-    return Samples(reach * chebyshev.chebpts1(count), _to_taylor(count) * reach ** -orders[:, None].astype(float))
+def interval(reach: float, count: int = ON_INTERVAL, degree: int | None = None) -> Samples:
+    """Return the samples of a real function up to a distance ``reach``, for the polynomial of a degree nearest to its values.
+
+    It goes through all of them by default.  A degree hardly above the orders asked for leaves out more of what is not smooth.
+    """
+    matrix = _to_taylor(count)[-1 if degree is None else degree]
+    orders = np.arange(len(matrix))
+    return Samples(reach * chebyshev.chebpts1(count), matrix * reach ** -orders[:, None].astype(float))
 
 
 @lru_cache(maxsize=4)
-def _to_taylor(count: int) -> Array:
-    """Matrix from values at Chebyshev points to the Taylor coefficients about zero of the polynomial through them."""
+def _to_taylor(count: int) -> list[Array]:
+    """Matrices from values at Chebyshev points to the Taylor coefficients about zero of polynomials, by their degrees."""
     degrees = np.arange(count)
     values = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1).T
     to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / count
     to_powers = np.zeros((count, count))
     for n in degrees:
         to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
-    return np.asarray(to_powers @ to_chebyshev)
+    return [to_powers[: n + 1, : n + 1] @ to_chebyshev[: n + 1] for n in degrees]
 
 
 def implicit_series(

@@ -52,9 +52,10 @@ the higher the order the more it counts."""
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 """Distance at which the equations are evaluated for the series, over the radius of convergence, and its limits."""
 
-INTERVAL = 1.0
-"""Half of the interval on which films are sampled, over that distance.  Where the shear rate passes through zero at a node of
-a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from order two on."""
+INTERVAL, INTERVAL_OF_CUSPS = 1.0, 0.7
+"""Half of the interval on which films are sampled, over that distance, and of films with a cusp where the rate is zero.
+Where the shear rate passes through zero at a node of a fluid that thins, that node turns sharply with the speed: on twice the
+interval series were wrong from order two on."""
 
 THINNING_PART, CUSP_PART = 0.3, 0.1
 """Part of the tolerance that states of fluids that thin must hold, as their errors differ from mesh to mesh; and of those
@@ -148,14 +149,16 @@ class LineProblem:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
         film = start.model.film
-        part = CUSP_PART if fall_of(film, 1.0).broken else THINNING_PART if is_thinning(film) else KNOT_PART
+        broken = fall_of(film, 1.0).broken
+        part = CUSP_PART if broken else THINNING_PART if is_thinning(film) else KNOT_PART
         self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDER if exact else ORDER
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= LAW_PART * rtol)
-        self.order_if_sampled = ORDER_OF_CUSPS if fall_of(film, 1.0).broken else ORDER_OF_ANY_FILM
+        self.order_if_sampled = ORDER_OF_CUSPS if broken else ORDER_OF_ANY_FILM
+        self.interval = INTERVAL_OF_CUSPS if broken else INTERVAL
         self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
         self.failure: RefinedState | None = None
@@ -299,8 +302,8 @@ class LineProblem:
         """Return the series of a film that is sampled, and an estimate of its radius, on which the samples depend."""
         reach = max(SHORTEST_REACH, REACH * near)
         for trial in range(MOST_TRIALS):
-            samples = interval(INTERVAL * reach)
-            direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
+            samples = interval(self.interval * reach, degree=self.order + 1)
+            direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.places) - 1)
             models = [] if self.uniform else [as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
             found = expand_any_film(*around, samples, models, self.order)
