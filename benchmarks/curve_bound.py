@@ -3,11 +3,15 @@
 Usage::
 
     python benchmarks/curve_bound.py [--geometry line] [--number 50] [--speeds 2001] [--rtol 1e-6] [--seed 17] [--minutes 60]
+    python benchmarks/curve_bound.py --parts [--seconds 90] [--number 50] [--speeds 11] [--rtol 1e-6] [--seed 17]
 
 Load 1e-4 to 1 and relative roughness 1e-5 to 10, of balls 1e-6 to 0.5 and 1e-3 to 1, even in the logarithm; speeds from
 boundary plateau to hydrodynamic branch.
 Contact laws by turns: exponential, Persson's, Greenwood and Williamson's, Greenwood and Tripp's, a table.  The true values are
 those of states solved one after the other, to 1e-9 or a tenth of a smaller tolerance; of balls each from cold, to a twentieth.
+With --parts curves of the line run over half a decade to two of speed, load or roughness, with random fluids, cavities, flow
+factors, layers and motions at once, as fluid_box.py draws them; the true values are those of states solved from cold, to a
+hundredth.  A curve that takes more than so many seconds of processor time is judged as far as it came, and says so.
 Prints one row a curve: states that it was made of, part of the speeds at which all errors are covered, the worst miss over the
 stated error and the observable.
 """
@@ -15,17 +19,21 @@ stated error and the observable.
 from __future__ import annotations
 
 import argparse
+import signal
 import time
 from dataclasses import replace
 from functools import cache
 
+import fluid_box
 import numpy as np
 
 import stribeck as sb
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.scaling import SCALINGS
+from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.quantities.outputs import ABSOLUTE, NAMES
+from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, ENDS, NAMES
+from stribeck.solver.solve import SolveError
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 
@@ -84,6 +92,62 @@ def misses_of_ball(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndar
     return found, 0
 
 
+def draw_parts(seed: int, number: int) -> tuple[sb.Groups, str, float]:
+    """Return the middle of one curve with parts, what it runs over, and the factor to both ends."""
+    rng = np.random.default_rng([seed, number])
+    speed, load, kappa = (float(value) for value in 10 ** rng.uniform((-6, -3, -4), (-1, 0, 0)))
+    groups = sb.Groups(speed, load, kappa * load, law=law_of(LAWS[number % len(LAWS)]))
+    parts = fluid_box.motion_alone(rng) | (fluid_box.cavitation(rng, groups) if rng.random() < 0.7 else {})
+    thins = rng.random() < 0.4
+    parts["fluid"] = sb.fluids.Fluid(
+        fluid_box.thinning(rng, groups)["fluid"] if thins else None,
+        fluid_box.viscosity(rng) if rng.random() < 0.5 else None,
+        fluid_box.density(rng) if rng.random() < 0.3 else None,
+    )
+    if not thins and rng.random() < 0.5:
+        parts |= fluid_box.flow(rng, groups)
+    if rng.random() < 0.5:
+        parts |= fluid_box.layer(rng, groups)
+    return with_parts(groups, **parts), str(rng.choice(["speed", "load", "roughness"])), float(10 ** rng.uniform(0.25, 1))
+
+
+def judge_with_parts(seed: int, number: int, places: int, rtol: float, seconds: float) -> str:
+    """Return the row of one curve with parts."""
+    groups, over, factor = draw_parts(seed, number)
+    middle, model = float(getattr(groups, over)), groups.model
+    name = f"{model.film.name or 'newtonian'}, {model.solid.name}, {model.cavitation.value}, "
+    name += f"{LAWS[number % len(LAWS)]}, over {over}"
+    row = f"| {number} | {name} | {groups.load:.2g} | {groups.relative_roughness:.2g} "
+    began = time.process_time()
+    try:
+        signal.setitimer(signal.ITIMER_PROF, seconds)
+        curve = sb.stribeck_curve(groups, points=2, rtol=rtol, **{over: (middle / factor, middle * factor)})
+    except (KeyboardInterrupt, SolveError) as error:
+        return f"{row}| none: {type(error).__name__} | | | | |"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+    took = f"{curve.states} in {time.process_time() - began:.1f} s" + ("" if curve.outcome.ok else f", {curve.outcome.name}")
+    values = np.geomspace(*np.exp(curve._solved_path.coordinates[[0, -1]]), places + 2)[1:-1]
+    here, found = curve.at(values), np.full((places, len(ALL_NAMES)), np.nan)
+    for i, value in enumerate(values.tolist()):
+        try:
+            exact = sb.solve(replace(groups, **{over: value}), rtol=max(1e-10, 0.01 * rtol), on_failure="return")
+        except SolveError:
+            continue
+        for j, each in enumerate(ALL_NAMES):
+            true = float(getattr(exact.observables, each))
+            least = {"offset": OFFSET_FLOOR, "viscous_upper": abs(exact.observables.viscous_balanced)}.get(each, 1e-300)
+            scale = 1.0 if each in ABSOLUTE or each in {row.name for row in ENDS} else max(abs(true), least)
+            found[i, j] = abs(here.values[each][i] - true) / scale / (here.errors[each][i] + exact.errors.get(each, np.nan))
+    judged = np.isfinite(found).any(axis=1)
+    if not judged.any():
+        return f"{row}| {took} | | | | |"
+    where = np.unravel_index(np.nanargmax(found), found.shape)
+    covered = np.mean(np.nanmax(found[judged], axis=1) <= 1)
+    stated = float(np.nanmax(here.relative_errors))
+    return f"{row}| {took} | {stated:.1e} | {covered:.4f} | {found[where]:.2g} | {ALL_NAMES[where[1]]} |"
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -93,13 +157,21 @@ def main() -> None:
     parser.add_argument("--rtol", type=float, default=1e-6)
     parser.add_argument("--seed", type=int, default=17)
     parser.add_argument("--minutes", type=float, default=60.0, help="no curve is begun after so long")
+    parser.add_argument("--parts", action="store_true", help="random fluids, cavities, flow factors, layers and motions")
+    parser.add_argument("--seconds", type=float, default=90.0, help="processor time of a curve with parts")
     arguments = parser.parse_args()
+    if arguments.parts:
+        signal.signal(signal.SIGPROF, signal.default_int_handler)
     print("| curve | law | load | kappa | states | largest stated | covered | worst | observable |")
     print("|---|---|---|---|---|---|---|---|---|", flush=True)
     start = time.monotonic()
     for number in range(arguments.number):
         if time.monotonic() - start > 60 * arguments.minutes:
             break
+        if arguments.parts:
+            settings = (arguments.speeds, arguments.rtol, arguments.seconds)
+            print(judge_with_parts(arguments.seed, number, *settings), flush=True)
+            continue
         name, load, kappa = draw(arguments.seed, number, arguments.geometry)
         law, of = law_of(name), arguments.geometry
         roughness = kappa * load ** SCALINGS[of].roughness_exponent

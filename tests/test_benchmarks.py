@@ -87,6 +87,10 @@ def test_its_tables_come_out(load_benchmark, run, monkeypatch, name):
         assert all(f"pip install {peer}" in text for peer in script.PEERS)
 
 
+def test_random_parts_are_drawn_and_judged(load_benchmark, run):
+    check(run(load_benchmark("curve_bound"), "--parts", "--number", "1", "--speeds", "3", "--seed", "7311"))
+
+
 def test_a_sweep_too_small_to_be_timed_says_so(load_benchmark, monkeypatch, tmp_path):
     script = load_benchmark("sweep_rate")
 
