@@ -18,7 +18,6 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.state import State, unknowns_of
 from stribeck.numerics.newton import Inverse, StepControl, root_find
-from stribeck.quantities.outcome import Outcome
 
 __all__ = ["distance_to_flux_gap", "solve_of_exit"]
 
@@ -39,11 +38,6 @@ class _Held:
     free: Inverse
     held: int
     size: int
-
-    @property
-    def failure(self) -> Outcome | None:
-        """Failure of the inverse."""
-        return self.free.failure
 
     @property
     def is_finite(self) -> bool:
