@@ -8,7 +8,6 @@ for each group G, with the factors of Newton's Jacobian made anew at the state. 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -64,34 +63,35 @@ def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, A
     for column, name in enumerate(GROUPS):
         if float(getattr(state.groups, name)) > 0:
             found[:, column] = through @ (units * inverse(equations.parameter_derivative(y, name)))
-    for column, name in enumerate(GROUPS):
-        found[:, column] += _direct(state, name)
-    found[1:, GROUPS.index("load")] += 0.5 * _values(equations, y, load)[1:]  # friction goes with the root of the load
+    found[:, : len(GROUPS)] += _direct(state)
     for column, (below, above, width) in enumerate(changes, len(GROUPS)):
         first, second = (replace(equations, operators=Operators(state.mesh, model)) for model in (below, above))
         dy = units * inverse((second.residual(y) - first.residual(y)) / width)
-        found[:, column] = through @ dy + (_values(second, y, load) - _values(first, y, load)) / width
+        found[:, column] = through @ dy + (_values(second, y[None], load) - _values(first, y[None], load))[0] / width
     return dict(zip(names, found, strict=True))
 
 
-def _direct(state: State, name: str) -> Array:
-    """Return the derivatives of observables with respect to the logarithm of a group, at fixed unknowns and friction scale."""
-    value, found = float(getattr(state.groups, name)), []
-    for step in (-STEP, STEP):
-        changed: dict[str, Any] = {name: value * math.exp(step)}
-        groups = replace(state.groups, **changed)
-        equations = replace(state.equations, speed=float(groups.speed), law=contact_law(groups))
-        found.append(_values(equations, state.y, float(state.groups.load)))
-    return np.asarray((found[1] - found[0]) / (2 * STEP))
+def _direct(state: State) -> Array:
+    """Return the derivatives of observables with respect to the logarithms of the groups, at fixed unknowns."""
+    steps = np.eye(len(GROUPS))
+    logs = STEP * np.concatenate([0.0 * steps[:1], -steps, steps])
+    moved: dict[str, Any] = {name: getattr(state.groups, name) * np.exp(logs[:, [k]]) for k, name in enumerate(GROUPS)}
+    groups, load = replace(state.groups, **moved), float(state.groups.load)
+    equations = replace(state.equations, speed=groups.speed, law=contact_law(groups))
+    values = _values(equations, np.tile(state.y, (len(logs), 1)), load)
+    behind, ahead = np.split(values[1:], 2)
+    found = (ahead - behind).T / (2 * STEP)
+    found[1:, GROUPS.index("load")] += 0.5 * values[0, 1:]  # friction goes with the root of the load
+    return np.asarray(found)
 
 
 def _values(equations: Equations, y: Array, load: float) -> Array:
-    """Return the load share of asperities and both viscous frictions."""
-    op, rows, d = equations.operators, y[None], equations.dilation(y)
-    contact, fluid = equations.pressures(rows)
-    share = contact @ op.mesh.weights / LOAD * (1.0 if d is None else d)
-    friction = viscous_friction(equations, rows, load, Nodal(op.integral, rows[:, equations.layout.gap], fluid, op.weights))
-    return np.concatenate([share, *friction[: len(FRICTIONS)]])
+    """Return the load share of asperities and both viscous frictions of stacked states, shape (rows, 3)."""
+    op, d, gap = equations.operators, equations.dilation(y), y[:, equations.layout.gap]
+    contact, fluid = equations.pressures(y)
+    share = contact @ op.mesh.weights / LOAD * (1.0 if d is None else d[:, 0])
+    friction = viscous_friction(equations, y, load, Nodal(op.integral, gap, fluid, op.weights))
+    return np.stack([share, *friction[: len(FRICTIONS)]], axis=1)
 
 
 def friction_slopes(
