@@ -318,3 +318,11 @@ def test_panels_that_halve_towards_a_place_are_taken_out_again():
     found = halved_towards(Mesh(edges, 10), [0.0, 2.0], 9)
     assert found.panels == len(edges) + 36
     np.testing.assert_array_equal(ungraded(found.edges, [0.0, 2.0]), edges)
+
+
+def test_an_edge_that_rounding_keeps_apart_from_a_place_leaves_no_panel_between():
+    """Nodes there were the same, and slopes between them divided by zero."""
+    beside = 0.25 * (1 + 2.0**-51)
+    mesh = halved_towards(Mesh(np.array([-8.0, -1.0, 0.0, beside, 1.0, 8.0]), 12), [0.0, 0.25], 5)
+    assert 0.25 in mesh.edges and beside not in mesh.edges
+    assert (np.diff(mesh.nodes[: -mesh.order]) > 0).all()

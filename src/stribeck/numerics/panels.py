@@ -410,8 +410,12 @@ def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
 
 
 def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
-    """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides; these become edges."""
-    edges = np.unique(np.concatenate([mesh.edges, places]))
+    """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides; these become edges.
+
+    They take the place of edges that rounding alone keeps apart from them: nodes between the two would be the same.
+    """
+    apart = [np.abs(mesh.edges - place) > CLOSEST * abs(place) for place in places]
+    edges = np.unique(np.concatenate([mesh.edges[np.all(apart, axis=0)], places]))
     halvings = 0.5 ** np.arange(1, levels + 1)
     added = [edges]
     for place in places:
