@@ -110,6 +110,21 @@ def test_bad_settings_are_refused(arguments):
         friction_sensitivities(CONTACT, **arguments)
 
 
+def test_a_substrate_that_is_overtaken_has_regimes_too():
+    """Both parts of its friction are negative: its states had all counted as hydrodynamic, its errors had no bound."""
+    overtaken = CONTACT.replace(slide_to_roll=-1.0)
+    friction = sb.solve(overtaken).friction()
+    assert friction.contact < 0 and 0.9 < friction.contact_share < 1
+    curve = sb.stribeck_curve(overtaken, points=5, rtol=1e-3)
+    assert (curve.regimes[0], curve.regimes[-1]) == ("boundary", "hydrodynamic")
+    begins = curve.landmark("asperities cause 10 % of the friction")
+    assert begins.solution.friction().contact_share == pytest.approx(0.1, rel=1e-2)
+    found = sb.propagate(overtaken, {"load": 0.3}, transitions=False)
+    assert found.regimes["mixed"] > 0.9
+    low, high = next(each for each in found.spreads if each.name == "friction").interval_95
+    assert -1 < low < friction.total < high < 0
+
+
 # --- the way to the next regime ---
 
 

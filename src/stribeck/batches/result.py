@@ -15,7 +15,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import REGIMES, regime_numbers
+from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.contact_values import refuse_former
@@ -136,8 +136,7 @@ class BatchSolution(Exported, Shown, ByValue):
     def regime(self) -> np.ndarray[Any, np.dtype[np.str_]]:
         """Lubrication regime of each state, as :func:`stribeck.regime_of` tells it; empty text if there is no state."""
         friction = self.friction
-        with np.errstate(invalid="ignore", divide="ignore"):
-            part = np.where(friction.total > 0, friction.contact / friction.total, 0.0)
+        part = friction_share(friction.contact, friction.viscous)
         return np.where(self.ok, np.array(REGIMES)[regime_numbers(self.fluid_load_share, part)], "")
 
     def _each(self, of: Callable[[Any], float]) -> float | Array:

@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.regime import friction_share
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
@@ -89,7 +90,7 @@ class Friction(float):
     @property
     def contact_share(self) -> float:
         """Part of the friction that asperities cause [-]; zero without friction."""
-        return self.contact / self.total if self.total > 0 else 0.0
+        return float(friction_share(self.contact, self.viscous))
 
     @property
     def total(self) -> float:

@@ -6,10 +6,18 @@ from typing import Literal
 
 import numpy as np
 
-from stribeck._types import Array, Indices
+from stribeck._types import Array, Indices, Numbers
 from stribeck.quantities.units import to_si
 
-__all__ = ["BOUNDARY_FLUID_SHARE", "HYDRODYNAMIC_CONTACT_SHARE", "REGIMES", "Regime", "regime_numbers", "regime_of"]
+__all__ = [
+    "BOUNDARY_FLUID_SHARE",
+    "HYDRODYNAMIC_CONTACT_SHARE",
+    "REGIMES",
+    "Regime",
+    "friction_share",
+    "regime_numbers",
+    "regime_of",
+]
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
 
@@ -22,6 +30,20 @@ BOUNDARY_FLUID_SHARE = 0.05
 HYDRODYNAMIC_CONTACT_SHARE = 0.1
 """Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
 contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
+
+
+TINY = 1e-300
+"""Least friction, for quotients."""
+
+
+def friction_share(contact: Numbers, viscous: Numbers) -> Array:
+    """Return the part of the friction that asperities cause, zero without friction.
+
+    Parts count by their size: a substrate that the cylinder overtakes is dragged along, and both are negative; near pure
+    rolling they may have different signs.
+    """
+    size = np.abs(contact)
+    return np.asarray(size / np.maximum(size + np.abs(viscous), TINY))
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:

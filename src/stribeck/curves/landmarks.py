@@ -11,6 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.regime import friction_share
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurvePoint, solved_at, within
 from stribeck.curves.regime import Transition, excess
@@ -40,9 +41,6 @@ STEP = 1e-20
 
 WIDTH = 1e-3
 """Step along the coordinate for other derivatives."""
-
-TINY = 1e-300
-"""Added to a friction that may vanish."""
 
 MOST_POLISHES = 4
 """Most states solved for one landmark: each squares the error."""
@@ -109,7 +107,7 @@ class Landmarks:
 
         def above(rows: Array) -> Array:
             contact, other = parts(rows)
-            return np.asarray(excess(mark, rows[:, ROW["fluid_load_share"]], contact / (contact + other + TINY)))
+            return np.asarray(excess(mark, rows[:, ROW["fluid_load_share"]], friction_share(contact, other)))
 
         def above_at(point: RefinedState) -> float:
             assert point.values is not None

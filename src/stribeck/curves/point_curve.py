@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE, friction_share
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress
 from stribeck.curves.landmarks import Landmark, places_of
@@ -57,9 +57,6 @@ COARSE = 1e-3
 PLATEAU, BRANCH = 1e-3, 1e-2
 """The curve ends where the load share changes by less than this over a decade of speed, and asperities cause less than this
 part of the friction."""
-
-
-TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -240,7 +237,7 @@ class PointCurve(StribeckCurve):
         """Coordinates, and there the share of the fluid in the load and that of asperities in the friction."""
         if self._function is None:
             fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
-            places, share = np.log(self.values), contact / np.maximum(total, TINY)
+            places, share = np.log(self.values), friction_share(contact, total - contact)
         else:
             places = places_of(self._solved_path)
             fluid, share = self._shares_at(places)
@@ -249,7 +246,7 @@ class PointCurve(StribeckCurve):
     def _shares_at(self, s: Array) -> tuple[Array, Array]:
         """Return the load share of the fluid, and that of asperities in friction, at coordinates of a function."""
         fluid, contact, viscous = self._parts_at(s)
-        return fluid, contact / np.maximum(contact + viscous, TINY)
+        return fluid, friction_share(contact, viscous)
 
     def _excess(self, name: Transition, s: float) -> float:
         """Return by how much the criterion of a transition exceeds its threshold."""

@@ -7,8 +7,18 @@ from collections.abc import Iterable, Sequence
 from enum import StrEnum
 from typing import Literal, Protocol, TypeVar
 
+import numpy as np
+
 from stribeck._types import Array
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.contacts.regime import (
+    BOUNDARY_FLUID_SHARE,
+    HYDRODYNAMIC_CONTACT_SHARE,
+    REGIMES,
+    Regime,
+    friction_share,
+    regime_numbers,
+    regime_of,
+)
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
@@ -87,8 +97,8 @@ def check_method(method: str) -> Method:
 
 def regimes_along(fluid_load_share: Array, by_asperities: Array, friction: Array) -> tuple[Regime, ...]:
     """Return the lubrication regime of each point of a curve, from the friction that asperities cause and all of it."""
-    shares = zip(fluid_load_share, by_asperities, friction, strict=True)
-    return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+    numbers = regime_numbers(np.asarray(fluid_load_share), friction_share(by_asperities, np.asarray(friction) - by_asperities))
+    return tuple(REGIMES[number] for number in numbers.tolist())
 
 
 def ranges_of(

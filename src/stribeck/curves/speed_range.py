@@ -14,6 +14,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
 from stribeck.quantities.outcome import Outcome
@@ -136,7 +137,7 @@ def part_of_contact(boundary_friction: float, beta: float, definition: Definitio
 
     def part(row: Array) -> float:
         contact = (boundary_friction or 1.0) * float(row[ROW["contact_load_share"]])
-        return contact / max(contact + beta * float(row[ROW[f"viscous_{definition}"]]), 1e-300)
+        return float(friction_share(contact, beta * float(row[ROW[f"viscous_{definition}"]])))
 
     return part
 

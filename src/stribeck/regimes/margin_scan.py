@@ -12,6 +12,7 @@ import numpy as np
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.regime import friction_share
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition
 from stribeck.curves.result import StribeckCurve
@@ -245,7 +246,8 @@ class Scan:
     def _nearest_to_bound(curve: StribeckCurve, mark: str, low: float, high: float) -> float:
         """Return that of two values of a curve where the share that a mark is about is nearer to its bound."""
         if mark == Transition.HYDRODYNAMIC_START:
-            share, bound = curve.friction_contact / np.maximum(curve.friction, 1e-300), HYDRODYNAMIC_CONTACT_SHARE
+            viscous = curve.friction - curve.friction_contact
+            share, bound = friction_share(curve.friction_contact, viscous), HYDRODYNAMIC_CONTACT_SHARE
         else:
             share, bound = curve.observable("fluid_load_share"), BOUNDARY_FLUID_SHARE
         return float(min((low, high), key=lambda value: abs(share[np.flatnonzero(curve.values == value)[0]] - bound)))

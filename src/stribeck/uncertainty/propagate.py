@@ -15,7 +15,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.model import ARTICLE
-from stribeck.contacts.regime import REGIMES, regime_numbers
+from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -145,7 +145,7 @@ def propagate(
         contact=contact,
         errors=sigmas,
         spreads=tuple(spreads),
-        regimes=_regimes(share, dry / np.maximum(friction, 1e-300)),
+        regimes=_regimes(share, friction_share(dry, viscous)),
         contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},
         method=method,
     )

@@ -42,6 +42,9 @@ FARTHEST = 3.5
 NARROW = 1e-9
 """Standard deviation of a logarithm below which a direction counts as known."""
 
+VISCOUS = 1
+"""Place of the viscous friction in the values of a state."""
+
 TINY = 1e-290
 """Value in place of a share that underflows."""
 
@@ -159,6 +162,11 @@ def _by_quadratics(
 
 def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> dict[str, Array]:
     """Return the quadratics through the middle and two states on each axis, at the places of samples along the axes."""
+    every = [start, *(each for _, *pair in axes for each in pair)]
+    sign = np.sign(start[VISCOUS])
+    is_power = all(sign * each[VISCOUS] > 0 for each in every)  # a drag that changes its sign is none
+    for each in every if is_power else []:
+        each[VISCOUS] = np.log(sign * each[VISCOUS])
     y = np.tile(start, (number, 1))
     for places, ahead, behind in axes:
         t = np.clip(places, -FARTHEST, FARTHEST)[:, None]
@@ -166,13 +174,13 @@ def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometr
     odds, viscous, *films = y.T
     return {
         "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
-        "viscous": np.exp(viscous),
+        "viscous": sign * np.exp(viscous) if is_power else viscous,
         **{name: np.exp(film) for name, film in zip(films_of(geometry), films, strict=True)},
     }
 
 
 def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
-    """Return the log odds of the load share and the logarithms of viscous friction and films of a solved state."""
+    """Return the log odds of the load share, the viscous friction and the logarithms of films of a solved state."""
     contact, fluid = max(state.contact_load_share, TINY), max(state.fluid_load_share, TINY)
     rule = RULES[state.groups.geometry]
     inputs = rule.of_contact(of)
@@ -180,8 +188,7 @@ def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
     given = {**inputs, "far": far_film(state.groups.model)}
     viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, given, definition)) / inputs["beta"]
     films = [float(getattr(state, name)) for name in films_of(state.groups.geometry)]
-    values = [max(value, TINY) for value in (viscous, *films)]
-    return np.array([np.log(contact / fluid), *np.log(values)])
+    return np.array([np.log(contact / fluid), viscous, *np.log([max(value, TINY) for value in films])])
 
 
 def _moved(groups: Groups, offsets: Array) -> Groups:
