@@ -31,6 +31,16 @@ def test_silicone_oil_has_the_density_of_data_sheets():
 
 
 @pytest.mark.quick
+def test_a_grade_may_have_its_unit():
+    oil = sb.fluids.PRESETS["silicone-oil"]
+    assert oil(grade="100 cSt").viscosity == pytest.approx(oil(grade=100).viscosity, rel=1e-12)
+    with pytest.raises(sb.InputError, match="grade = '1 cSt' must lie between 5 and 1000 cSt"):
+        oil(grade="1 cSt")
+    with pytest.raises(sb.InputError, match=r"grade = '1 Pa\*s' is a (dynamic )?viscosity"):
+        oil(grade="1 Pa*s")
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize("name", sorted(sb.fluids.PRESETS))
 def test_every_liquid_has_a_source_and_a_range(name):
     preset = sb.fluids.PRESETS[name]

@@ -190,10 +190,12 @@ def _between(T: float, low: float, high: float) -> float:
     return T
 
 
-def _silicone(grade: float) -> Liquid:
-    """Return a silicone oil (PDMS) of a grade in cSt."""
-    if not 5 <= to_si(grade, "number", "grade") <= 1000:
-        raise InputError(f"grade = {show(grade)} must lie between 5 and 1000 cSt; thicker silicone oils thin under shear.")
+def _silicone(grade: str | float) -> Liquid:
+    """Return a silicone oil (PDMS) of a grade: a number in cSt, or text with a unit."""
+    given, is_text = grade, isinstance(grade, str)
+    grade = 1e6 * to_si(given, "kinematic", "grade") if is_text else to_si(given, "number", "grade")
+    if not 5 <= grade <= 1000:
+        raise InputError(f"grade = {show(given)} must lie between 5 and 1000 cSt; thicker silicone oils thin under shear.")
     density = 917 + 56 * (1 - math.exp(-math.log(grade / 5) / 1.6))
     return Liquid(f"silicone oil {grade:g} cSt at 25 degC", 1e-6 * grade * density, Fluid(), _SILICONE)
 
