@@ -136,6 +136,15 @@ def test_ten_angles_serve_a_loose_tolerance_and_state_their_errors():
         assert abs(rough.values[name] - value) <= rough.absolute_errors[name] + sharp.absolute_errors[name], name
 
 
+def test_thin_films_get_more_than_ten_angles_as_five_tell_nothing_of_their_errors():
+    """The central gap of a film that thins erred by 3.3 times what was stated."""
+    rough, sharp = (solve_cold(ball(2e-3, 0.0, 1.4e-4), rtol) for rtol in (1e-3, 1e-4))
+    assert rough.mesh.modes > 10
+    assert rough.outcome.ok
+    error = abs(rough.values["central_gap"] - sharp.values["central_gap"])
+    assert error <= rough.absolute_errors["central_gap"] + sharp.absolute_errors["central_gap"]
+
+
 def test_errors_are_stated_where_two_meshes_agree_by_chance():
     """Both meshes of a pair erred by the same: 1.8 times what was stated."""
     state = solve_cold(ball(0.146, 0.0, 2.4e-3), 1e-4)

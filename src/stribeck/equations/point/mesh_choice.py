@@ -213,8 +213,14 @@ def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
     """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
-    width = layout(speed, law)[0] / EDGE
-    return COARSEST * SIDE_LOBES * width**-0.675 > MOST_MODES and film_scale(speed) > float(np.max(law.decay_length))
+    return fewest_modes(speed, law) > MOST_MODES
+
+
+def fewest_modes(speed: float, law: ContactLaw, model: Model = ARTICLE) -> float:
+    """Return the number of modes with which all but the minimum of a film that is thicker than roughness is good to 1e-2."""
+    width = layout(speed, law, model)[0] / EDGE
+    is_smooth = film_scale(film_speed(speed, model)) > float(np.max(law.decay_length))
+    return COARSEST * SIDE_LOBES * width**-0.675 if is_smooth else 0.0
 
 
 def lift(speed: float, model: Model) -> float:

@@ -20,6 +20,7 @@ from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,
     Resolution,
+    fewest_modes,
     fits,
     operators_of,
     resolution,
@@ -155,7 +156,7 @@ def refine_cavitated(
             base = _halved(now, known, rtol) if fits(now, speed, law) else _base(speed, law, known.fine, model)
             rung = _rung(known) + ((base.halvings, base.splits) == (now.halvings, now.splits))
         else:
-            base, rung = _base(speed, law, guess, model), _first_rung(rtol, model)
+            base, rung = _base(speed, law, guess, model), _first_rung(rtol, speed, law, model)
             start, mesh = guess.unknowns, guess.mesh
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
@@ -224,9 +225,14 @@ def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
 
 
-def _first_rung(rtol: float, model: Model) -> int:
-    """Return the place on the ladder of the first pair that may hold a tolerance; where gas moves, ten angles are too few."""
-    return int(model.cavitation is not Cavitation.EXIT or FRONT / LADDER[0][1] ** 2 > rtol)
+def _first_rung(rtol: float, speed: float, law: ContactLaw, model: Model) -> int:
+    """Return the place on the ladder of the first pair that may hold a tolerance.
+
+    Ten angles are too few where gas moves, and for thin films: five tell nothing of their errors.
+    """
+    few, many, _ = LADDER[0]
+    moves = model.cavitation is not Cavitation.EXIT
+    return int(moves or FRONT / many**2 > rtol or fewest_modes(speed, law, model) > few)
 
 
 def _rung(pair: Pair) -> int:
@@ -262,7 +268,7 @@ def follow_cavitated(
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
     serves, rung = fits(now, speed, law, COARSER), _rung(neighbour)
-    lowest, fewer = 1 if serves else _first_rung(rtol, now.model), LADDER[rung - 1][1]
+    lowest, fewer = 1 if serves else _first_rung(rtol, speed, law, now.model), LADDER[rung - 1][1]
     is_waste = rung > lowest and _within(neighbour, _waste(neighbour, rtol, fewer, serves), fewer)
     if not serves or is_waste:
         fine = neighbour.fine
