@@ -375,3 +375,20 @@ def test_a_cusp_that_passes_through_the_nodes_asks_for_few_states():
     assert curve.states <= 25  # 33
     for roughness in (0.006, 0.008):
         assert worst(curve, roughness, replace(base, roughness=roughness), 1e-8) < 2
+
+
+def test_a_curve_like_one_of_the_same_groups_takes_over_its_states():
+    contact = sb.load_case("examples/pdms_cylinder.toml").contact
+    first = sb.stribeck_curve(contact, rtol=1e-4, slide_to_roll=1.0)
+    first = sb.stribeck_curve(contact, rtol=1e-4, slide_to_roll=1.0, like=first)  # steps are longer where guesses are near
+    thicker = contact.replace(viscosity=1.1 * contact.viscosity)
+    found = sb.stribeck_curve(thicker, rtol=1e-4, slide_to_roll=1.0, like=first)
+    known = {id(one.point) for one in first._solved_path.expansions}
+    new = [one for one in found._solved_path.expansions if id(one.point) not in known]
+    assert len(new) <= 1  # where the curve ends is found to 1e-6 only
+    alone = sb.stribeck_curve(thicker, rtol=1e-4, slide_to_roll=1.0)
+    inside = np.geomspace(1.01 * alone.values[0], 0.99 * alone.values[-1], 50)
+    assert np.allclose(found.at(inside).friction, alone.at(inside).friction, rtol=4e-4)
+    heavier = contact.replace(load=1.001 * contact.load)
+    others = sb.stribeck_curve(heavier, rtol=1e-4, slide_to_roll=1.0, like=first)._solved_path.expansions
+    assert not known & {id(one.point) for one in others}

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,7 +38,7 @@ from stribeck.solver.expansion import (
     observed,
     residuals,
 )
-from stribeck.solver.path import KNOT_PART, Expansion, rate
+from stribeck.solver.path import KNOT_PART, TINY, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
 EXACT_ORDER, ORDER = (18, 20), (14, 16)
@@ -104,6 +104,9 @@ OFFSET_FLOOR = 5e-3
 SIMILAR = 0.5
 """Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
 
+SAME = 1e-9
+"""Relative difference of groups, and of places, that are the same."""
+
 WILD = 12.0
 """Change of the logarithm of the least or the widest gap within a step above which polynomials predict nothing."""
 
@@ -164,7 +167,14 @@ class LineProblem:
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
         kind = start.model.cavitation
-        self.like = [one for one in like if one.point.state.groups.model.cavitation is kind is not Cavitation.REFORM]
+        alike = [one for one in like if one.point.state.groups.model.cavitation is kind is not Cavitation.REFORM]
+        self.like = [replace(one, coordinate=one.coordinate + self._shift(one)) for one in alike]
+
+    def _shift(self, one: Expansion) -> float:
+        """Return the way along the path to the groups that are nearest to those of a state of a similar contact."""
+        there, here, d = one.point.refined.groups, self.groups_at(one.coordinate), np.array(self.direction)
+        apart = [float(getattr(there, name)) / float(getattr(here, name) or 1.0) for name in ("speed", "load", "roughness")]
+        return float(d @ np.log(np.maximum(apart, TINY)) / (d @ d))
 
     @cached_property
     def held(self) -> Flags:
@@ -202,6 +212,9 @@ class LineProblem:
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
         groups = self.groups_at(s)
+        same = self._same(s, groups)
+        if same is not None:
+            return same
         refined = self._from_similar(s, groups, near)
         if refined is not None:
             pass
@@ -229,6 +242,20 @@ class LineProblem:
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
+
+    def _same(self, s: float, groups: Groups) -> Expansion | None:
+        """Return the state of a similar contact that has these groups, as where only its friction or viscosity differs."""
+        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
+        if found is None or abs(found.coordinate - s) > SAME:
+            return None
+        point: LinePoint = found.point
+        estimate = point.refined.estimate
+        if not _agree(point.refined.groups, groups):
+            return None
+        if estimate is None or estimate.total > self.tolerance or found.order < self.order:
+            return None
+        self.corrector.move_to(point.state.equations.operators, point.fine)
+        return replace(found, coordinate=s)
 
     def _from_similar(self, s: float, groups: Groups, near: Sequence[Expansion]) -> RefinedState | None:
         """Return the state from the nearest one of a similar contact, on its mesh; None if there is none, or it fails."""
@@ -473,6 +500,17 @@ def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: A
     shapes[0] -= np.log(mesh.far)
     own = shapes.reshape(len(shapes), mesh.panels, mesh.order)[:, mesh.locate(places)[0]]
     return interpolation_error(np.einsum("rj,jrn->rn", weights, own))
+
+
+def _agree(one: Any, other: Any) -> bool:
+    """Return whether groups, models or their parts are the same but for the rounding of their numbers."""
+    if one is other:
+        return True
+    if isinstance(one, float | np.ndarray):
+        return np.shape(one) == np.shape(other) and np.allclose(one, other, rtol=SAME, atol=0.0, equal_nan=True)
+    if is_dataclass(one) and type(one) is type(other):
+        return all(_agree(getattr(one, each.name), getattr(other, each.name)) for each in fields(one) if each.compare)
+    return bool(one == other)
 
 
 def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
