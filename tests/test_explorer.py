@@ -684,6 +684,32 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["opacity"] < 1
 
 
+def test_the_first_solved_curve_is_coarse_and_says_so_and_at_rest_a_finer_one_replaces_it():
+    rolling = choices.choose(START, "motion", "rolling")
+    model = Answerer()
+    assert model.settle(rolling, always)
+    coarse = model(rolling).curve
+    assert model.settle(rolling, always, True) and not model.settle(rolling, always, True)
+    fine = model(rolling).curve
+    assert not model.settle(rolling, always)
+    assert coarse.solved.rtol > fine.solved.rtol and coarse.solved.error_estimate <= coarse.solved.rtol
+    for name in ("boundary", "minimum", "hydrodynamic"):
+        first, then = coarse.transition(name), fine.transition(name)
+        assert abs(math.log(first.speed / then.speed)) < first.error + then.error
+
+
+def test_rows_of_a_solved_map_lie_around_their_transitions_which_the_whole_range_has_too():
+    rolling = choices.choose(START, "motion", "rolling").contact
+    beside = sb.stribeck_curve(rolling, rtol=1e-3)
+    row = rolling.replace(roughness=3 * rolling.roughness)
+    marks, narrow = curves._row(row, "balanced", (1e-8, 10.0), always, beside)
+    alone, wide = curves._row(row, "balanced", (1e-8, 10.0), always, None)
+    assert marks == pytest.approx(alone, rel=1e-2)
+    assert len(narrow._solved_path.expansions) < len(wide._solved_path.expansions)
+    far = curves._row(rolling.replace(roughness=1e-3 * rolling.roughness), "balanced", (1e-8, 10.0), always, beside)[0]
+    assert far[0] == 0.0 or far[0] < marks[0]
+
+
 def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
     now = inputs.typed(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
     model = Answerer()

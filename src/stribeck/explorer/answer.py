@@ -25,7 +25,9 @@ from stribeck.curves.regime import Regime, regime_of
 from stribeck.explorer.asked.carried import facts_of
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.curves import (
+    FIRST_RTOL,
     SOLVED_ROWS,
+    SOLVED_RTOL,
     Curve,
     Diagram,
     Report,
@@ -194,8 +196,8 @@ class Answerer:
             speeds=speeds,
         )
 
-    def settle(self, inputs: Inputs, report: Report) -> bool:
-        """Solve the curve of inputs outside the atlas.
+    def settle(self, inputs: Inputs, report: Report, at_rest: bool = False) -> bool:
+        """Solve the curve of inputs outside the atlas, first of all as the picture needs it.
 
         Parameters
         ----------
@@ -203,6 +205,8 @@ class Answerer:
             What is shown.
         report : callable
             Called with the finished part; an exception that it raises ends the work.
+        at_rest : bool
+            Whether to solve it to the tolerance of curves that stay.
 
         Returns
         -------
@@ -210,14 +214,20 @@ class Answerer:
             Whether there is something new to show.
         """
         contact, definition = inputs.contact, inputs.definition
-        key = ("solved", _key(contact), definition)
-        if in_atlas(contact) or key in self._kept:
+        key, geometry = ("solved", _key(contact), definition), contact.INPUTS.geometry
+        rtol = SOLVED_RTOL if at_rest else FIRST_RTOL[geometry]
+        known: Curve | None = self._kept.get(key)
+        if in_atlas(contact) or (key in self._kept and (known is None or known.solved is None or known.solved.rtol <= rtol)):
             return False
         try:
-            last = self._last_curves.get(contact.INPUTS.geometry)
+            last = known or self._last_curves.get(geometry)
             like = None if last is None else last.solved
-            self._keep(key, lambda: solved_curve(contact, definition, report, like))
+            found = solved_curve(contact, definition, report, like, rtol)
+            self._kept.pop(key, None)
+            self._keep(key, lambda: found)
         except (InputError, SolveError) as problem:
+            if known is not None:  # the first one stays, with its error
+                return False
             self._kept[key] = None
             self._kept["why", _key(contact), definition] = str(problem)
         return True

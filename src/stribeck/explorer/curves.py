@@ -45,6 +45,9 @@ ROWS = 31
 """Points of a curve, and roughnesses of a diagram."""
 
 SOLVED_RTOL = 1e-4
+FIRST_RTOL = {"line": 5e-4, "point": SOLVED_RTOL}
+"""Tolerance of curves that are solved, and by geometry of the first one for new inputs: less than a tenth of a pixel; at 1e-3
+some take more states."""
 
 SOLVED_POINTS = {"line": 200, "point": 15}
 """Points of curves that are solved; of a ball those for which states are solved where it is no function."""
@@ -76,6 +79,9 @@ class SolvedRows(NamedTuple):
 
 SOLVED_ROWS = {"line": SolvedRows(5, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(5, 9, 1e-3)}
 """By geometry.  Straight lines between rows half a decade apart miss the speeds by up to 4 %, less than a pixel."""
+
+STEEPNESS, MARGIN = (1.0, 2.6), 2.0
+"""Least and largest power of the roughness as which the speeds of transitions grow, and the factor by which rows go on."""
 
 Report = Callable[[float], object]
 """Called with the finished part; an exception that it raises ends the work."""
@@ -224,7 +230,13 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
 
-def solved_curve(contact: Contact, definition: Definition, report: Report, like: StribeckCurve | None = None) -> Curve:
+def solved_curve(
+    contact: Contact,
+    definition: Definition,
+    report: Report,
+    like: StribeckCurve | None = None,
+    rtol: float = SOLVED_RTOL,
+) -> Curve:
     """Return a curve of solved states, with the transitions located on them.
 
     Parameters
@@ -237,6 +249,8 @@ def solved_curve(contact: Contact, definition: Definition, report: Report, like:
         Called with the finished part; an exception that it raises ends the work.
     like : StribeckCurve, optional
         The curve before, whose states serve as guesses.
+    rtol : float
+        Relative tolerance of its states.
 
     Returns
     -------
@@ -251,7 +265,7 @@ def solved_curve(contact: Contact, definition: Definition, report: Report, like:
     found = stribeck_curve(
         contact,
         points=SOLVED_POINTS[contact.INPUTS.geometry],
-        rtol=SOLVED_RTOL,
+        rtol=rtol,
         definition=definition,
         on_point=lambda done, of: report(done / of),
         like=like,
@@ -350,18 +364,27 @@ def solved_diagram(
 def _row(
     contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report, like: StribeckCurve | None
 ) -> tuple[tuple[float, float, float], StribeckCurve]:
-    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve."""
+    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve.
+
+    It is solved where the regimes of the row beside it let expect these, and beyond only where they are not there.
+    """
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
-    low, high = speeds[0] / solved.room, speeds[1] * solved.room
-    found = stribeck_curve(
-        contact,
-        speed=(low, high),
-        points=solved.points,
-        rtol=solved.rtol,
-        definition=definition,
-        on_point=lambda done, of: report(done / of),
-        like=like,
-    )
+    whole = speeds[0] / solved.room, speeds[1] * solved.room
+    for low, high in (_expected(contact.roughness, whole, like), whole):
+        found = stribeck_curve(
+            contact,
+            speed=(low, high),
+            points=solved.points,
+            rtol=solved.rtol,
+            definition=definition,
+            on_point=lambda done, of: report(done / of),
+            like=like,
+        )
+        is_slow = low == whole[0] or found.regimes[0] == "boundary"
+        rises = found.regimes[-1] == "hydrodynamic" and np.argmin(found.friction) < len(found) - 1
+        if is_slow and (rises or high == whole[1]):
+            break
+        like = found
     marks = {mark.name: mark.speed for mark in _marks_of(found)}
     slow = found.regimes[0]
     ends = found.values[-1] >= 0.99 * high
@@ -369,6 +392,17 @@ def _row(
     boundary = marks.get("boundary", 0.0 if slow != "boundary" else beyond)
     hydrodynamic = marks.get("hydrodynamic", 0.0 if slow == "hydrodynamic" else beyond)
     return (boundary, hydrodynamic, marks.get("minimum", math.nan)), found
+
+
+def _expected(roughness: float, whole: tuple[float, float], like: StribeckCurve | None) -> tuple[float, float]:
+    """Return speeds between which the transitions at a roughness should lie, by those of a curve at another one."""
+    marks = {} if like is None else {mark.name: mark.speed for mark in _marks_of(like)}
+    if like is None or like.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
+        return whole
+    factors = [(roughness / like.contact.roughness) ** power for power in STEEPNESS]
+    low, high = min(factors) * marks["boundary"] / MARGIN, max(factors) * max(marks.values()) * MARGIN
+    low, high = max(low, whole[0]), min(high, whole[1])
+    return (low, high) if low < high else whole
 
 
 def _power(error: float) -> str:

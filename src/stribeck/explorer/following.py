@@ -177,6 +177,8 @@ class Following:
                         await asyncio.wait({curve}, timeout=REST)
                     if curve.result():
                         await self.refresh(now)
+                if await run(SLOW, self.model.settle, now, go_on, True):
+                    await self.refresh(now)
                 self.page.progress = self.model.why_no_curve(now)
                 if self.page.progress:
                     self.page.show_progress()
