@@ -251,7 +251,8 @@ def mesh_for(
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
 
     def shortest(x: Array) -> Array:
-        return SHORTEST_OF_GUESS * guess.known_on(x * to_guess) / to_guess
+        # Not where numbers are read off: kinks of flow factors ask for panels that no guess has.
+        return SHORTEST_OF_GUESS * guess.known_on(x * to_guess) / to_guess if tolerance >= COARSE else np.zeros_like(x)
 
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
