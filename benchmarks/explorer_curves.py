@@ -3,7 +3,7 @@
 Line contacts that no atlas holds, each moved by arrow keys of load, roughness and viscosity; the speed moves along the curve
 and costs no other one.  All that the server does for a key is counted: the state with its fields, the curve with its
 transitions, and both charts.  LU is the time of factorising a 300 x 300 matrix meanwhile: on a busy machine it grows as the
-others do.
+others do.  The finer curve that comes at rest is not counted.
 """
 
 from __future__ import annotations
