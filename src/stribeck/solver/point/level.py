@@ -66,17 +66,20 @@ THINNED, LITTLE = 8, 0.8
 """Band where a fluid thins, and the speed of a Newtonian film as thick over that of the film from which it does so little."""
 
 
-TORN = 3
-"""By how much the band of a film that breaks is narrower: steps of GMRES are as many, as the torn nodes take most of them."""
+TORN, COUPLED = 3, 1e-2
+"""By how much the band of a film that breaks is narrower: steps of GMRES are as many, as the torn nodes take most of them; and
+the speed below which films thicker than roughness couple so many modes that they are three to ten times as many."""
 
 
 def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
     like = film_speed(speed, model)
     band = 5 if like > LITTLE * speed else THINNED
-    if float(np.max(law.decay_length)) <= like**0.6 and like < 1e-3:
+    is_smooth = float(np.max(law.decay_length)) <= like**0.6
+    if is_smooth and like < 1e-3:
         band = max(band, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
-    return band if model.cavitation is Cavitation.NONE else band - TORN
+    narrows = model.cavitation is not Cavitation.NONE and not (is_smooth and like < COUPLED)
+    return band - TORN if narrows else band
 
 
 def moved(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
