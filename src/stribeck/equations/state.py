@@ -246,6 +246,11 @@ def is_rough(film: Film) -> bool:
     return not getattr(film, "is_smooth", True)
 
 
+def closed_gap(film: Film) -> float | None:
+    """Return the mean gap at which roughness closes the last path of the flow; None if it never does."""
+    return None if getattr(film, "is_plain", False) else getattr(film, "closed_at", None)
+
+
 def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     """Return what tells by how much the pressure gradient jumps between each node and the next one; None if it never does."""
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)

@@ -95,6 +95,11 @@ class EffectiveMedium(FlowFactors):
         """The roughness in Hertz units."""
         return {} if self.sigma is None else {"sigma": self.sigma}
 
+    @property
+    def closed_at(self) -> float | None:
+        """The threshold."""
+        return None if self.sigma is None else PERCOLATION * self.sigma
+
     def scaled(self, units: FilmUnits) -> Self:
         """Return the factors in Hertz units."""
         return with_sigma(self, scaled_roughness(self.alpha, units))

@@ -119,6 +119,11 @@ class FlowFactors(Law, Protocol):
         """Return the factors of the drag; None where it is that between smooth walls."""
         return None
 
+    @property
+    def closed_at(self) -> float | None:
+        """Mean gap at which the last path of the flow closes and phi_x turns sharply; None if there is no such gap."""
+        return None
+
 
 @dataclass(frozen=True)
 class Smooth(FlowFactors):

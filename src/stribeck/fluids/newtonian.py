@@ -141,6 +141,11 @@ class Newtonian:
         eta = self._of_pressure(pressure)[0]
         return np.asarray(eta / (self.flow.pressure(gap)[0] * gap**3) * height)
 
+    @property
+    def closed_at(self) -> float | None:
+        """Mean gap at which roughness closes the last path of the flow; None if it never does."""
+        return self.flow.closed_at
+
     def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
         rate, pull = self.slide * self._of_pressure(pressure)[0] / gap, 3 * gap * self.gradient(gap, pressure, flux_gap)

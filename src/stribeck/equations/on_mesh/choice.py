@@ -11,7 +11,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
-from stribeck.equations.state import State, fall_of, is_rough, is_thinning, jump_of
+from stribeck.equations.state import State, closed_gap, fall_of, is_rough, is_thinning, jump_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
@@ -64,7 +64,8 @@ KINK_SEARCHES, KINK_PLACES = 2, 17
 """How often a kink is looked for between so many places of its bracket; then the line through two of them tells."""
 
 SHORTEST_OF_GUESS = 0.1
-"""Length of a panel over that of the panels by which the guess is known, from which no shorter ones are asked for."""
+"""Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
+asks for no shorter ones."""
 
 COARSE = 1e-3
 """Tolerance from which a mesh serves to find a state, not to read off drag."""
@@ -80,23 +81,30 @@ SAME_FRAME = 1.5
 
 
 def kinks_of(guess: Guess, film: Film, x: Array) -> Array:
-    """Return where a wall is not sheared, between the places ``x`` of a guess: a fluid without a plateau has kinks there."""
+    """Return where the gradient has a kink, between the places ``x`` of a guess.
 
-    def walls(x: Array) -> Array:
+    With flow factors that is where the last path of the flow closes; a fluid without a plateau has kinks where a wall is not
+    sheared.
+    """
+    closed_at = closed_gap(film)
+
+    def crossing(x: Array) -> Array:
         found = guess.fields(x)
+        if closed_at is not None:
+            return found[:1] - math.log(closed_at)
         pressure = found[1] if film.uses_pressure else None
         return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
 
-    stress = walls(x)
-    wall, at = np.nonzero(np.signbit(stress[:, 1:]) != np.signbit(stress[:, :-1]))
-    each = np.arange(len(wall))
+    values = crossing(x)
+    row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
+    each = np.arange(len(row))
     low, high = x[at], x[at + 1]
     for _ in range(KINK_SEARCHES):
         within = np.linspace(low, high, KINK_PLACES)
-        stress = walls(within.ravel()).reshape(2, *within.shape)[wall, :, each].T
-        at = np.argmax(np.signbit(stress[1:]) != np.signbit(stress[:-1]), axis=0)
+        values = crossing(within.ravel()).reshape(-1, *within.shape)[row, :, each].T
+        at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
         low, high = within[at, each], within[at + 1, each]
-    before, after = stress[at, each], stress[at + 1, each]
+    before, after = values[at, each], values[at + 1, each]
     return np.asarray(low + (high - low) * before / (before - after))
 
 
@@ -244,7 +252,7 @@ def mesh_for(
     if ends and start is not None:
         start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
     kinks = NOWHERE
-    if broken and tolerance < COARSE:
+    if (broken or closed_gap(film) is not None) and tolerance < COARSE:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > restart)] if ends else x
