@@ -8,8 +8,7 @@ import pytest
 import stribeck as sb
 from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Operators
-from stribeck.equations.on_mesh.choice import mesh_for
-from stribeck.equations.state import solve_state
+from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES

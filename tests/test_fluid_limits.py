@@ -6,7 +6,7 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.on_mesh.choice import mesh_for
+from stribeck.equations.state import mesh_for
 from stribeck.solver.solve import solved_point
 
 GROUPS = sb.Groups(1e-3, 0.1, 1e-4)

@@ -19,9 +19,8 @@ from stribeck.contacts.with_parts import with_parts
 from stribeck.equations import line
 from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Operators
-from stribeck.equations.on_mesh.choice import mesh_for
 from stribeck.equations.prediction import SeenFrom
-from stribeck.equations.state import solve_state
+from stribeck.equations.state import mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, check_range

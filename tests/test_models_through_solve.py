@@ -10,7 +10,7 @@ from test_film_exit import differences
 from test_fluid_states import film_of
 
 import stribeck as sb
-import stribeck.equations.on_mesh.choice
+import stribeck.equations.state
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -105,7 +105,7 @@ def test_a_cavity_on_a_solid_with_a_length_does_not_know_the_frame_in_which_it_i
     """The frame stretched the layer with the cavity: the film was wrong by 4 % at a stated 2e-7, in another frame by 4 %."""
     found = []
     for restart in (0.25, 0.3):
-        monkeypatch.setattr(stribeck.equations.on_mesh.choice, "_cavity_on_mesh", lambda guess, restart=restart: restart)
+        monkeypatch.setattr(stribeck.equations.state, "_cavity_on_mesh", lambda guess, restart=restart: restart)
         parts = {"cavitation": "reform", "cavity_pressure": -0.02, "solid": solid}
         found.append(sb.solve(sb.Groups(1e-2, 0.1, 1e-3), **parts).observables.array(in_article=False))
     np.testing.assert_allclose(found[0], found[1], rtol=1e-6)

@@ -13,8 +13,7 @@ import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.on_mesh.choice import mesh_for
-from stribeck.equations.state import solve_state
+from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.layer import REACH, Layer, smooth_kernel

@@ -1,4 +1,4 @@
-"""Discrete states: the unknowns on a mesh, and Newton's iteration that finds them.
+"""Discrete states: the mesh that resolves one, the unknowns on it, and Newton's iteration that finds them.
 
 A state knows its groups, its equations and the Newton iteration that made it.  Between meshes the logarithm of the
 gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure are interpolated.
@@ -14,16 +14,19 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.on_mesh.film import slopes_in_film
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh
+from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.outcome import Outcome
+from stribeck.solids.solid import Lengths
 
 WANDERING = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
 """Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins."""
@@ -33,6 +36,66 @@ FULL_STEPS = 25
 
 CHORD = 0.25
 """Contraction of the steps above which a kept factorisation is given up."""
+
+ROUNDING = 1e-9
+"""Relative rounding in the position of a panel."""
+
+LONG_REACH_ORDER = 14
+"""Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order."""
+
+END_GAIN = 5.0
+"""Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
+
+END_TAIL = 3.5e-4
+"""Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
+
+REACH_OF_LAYER = 24.0
+"""Distance in thicknesses beyond which pressures on a layer have no effect."""
+
+DRAG_OF_LAYER = 0.02
+"""Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
+the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
+
+UNSEEN = 0.2
+"""Part of the tolerance that errors may take of which the estimate knows nothing."""
+
+DIED_AWAY = 6.0
+"""Distance in thicknesses of a layer beyond which the gap is that of the layer."""
+
+BROKEN = 30.0
+"""Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
+
+FAR_OFF = 512.0
+"""Distance, over the scale of the mesh, up to which panels resolve such a power."""
+
+NEAR_MINIMUM, AS_IT_MOVES = 0.05, 30.0
+"""Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
+along the path is steeper there than the gap."""
+
+NODAL_NOISE = 2.0**-48
+"""Rounding of a nodal gap, over that gap: no mesh resolves less."""
+
+WIDEST_FAR = 0.5
+"""Half-width over the distance of panels on which a broken power is resolved."""
+
+KINK_SEARCHES, KINK_PLACES = 2, 17
+"""How often a kink is looked for between so many places of its bracket; then the line through two of them tells."""
+
+SHORTEST_OF_GUESS = 0.1
+"""Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
+asks for no shorter ones."""
+
+COARSE = 1e-3
+"""Tolerance from which a mesh serves to find a state, not to read off drag."""
+
+FORGOTTEN = 30.0
+"""Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure."""
+
+TAIL_OF_ERROR = 0.2
+"""Tolerance of a mesh for an error of one."""
+
+SAME_FRAME = 1.5
+"""Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
 
 BETWEEN = 3
 """Places over nodes at which the lowest pressure is sought."""
@@ -254,6 +317,202 @@ def closed_gap(film: Film) -> float | None:
 def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     """Return what tells by how much the pressure gradient jumps between each node and the next one; None if it never does."""
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
+
+
+def kinks_of(guess: Guess, film: Film, x: Array) -> Array:
+    """Return where the gradient has a kink, between the places ``x`` of a guess.
+
+    With flow factors that is where the last path of the flow closes; a fluid without a plateau has kinks where a wall is not
+    sheared.
+    """
+    closed_at = closed_gap(film)
+
+    def crossing(x: Array) -> Array:
+        found = guess.fields(x)
+        if closed_at is not None:
+            return found[:1] - math.log(closed_at)
+        pressure = found[1] if film.uses_pressure else None
+        return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
+
+    values = crossing(x)
+    row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
+    each = np.arange(len(row))
+    low, high = x[at], x[at + 1]
+    for _ in range(KINK_SEARCHES):
+        within = np.linspace(low, high, KINK_PLACES)
+        values = crossing(within.ravel()).reshape(-1, *within.shape)[row, :, each].T
+        at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
+        low, high = within[at, each], within[at + 1, each]
+    before, after = values[at, each], values[at + 1, each]
+    return np.asarray(low + (high - low) * before / (before - after))
+
+
+def mesh_for(
+    guess: Guess,
+    groups: Groups,
+    law: ContactLaw,
+    order: int,
+    tolerance: float,
+    gap_tolerance: float = 1e-2,
+    profile_tolerance: float = np.inf,
+    halvings: int = 0,
+    spread: float = 0.0,
+    anew: bool = True,
+) -> Mesh:
+    """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place.
+
+    Parameters
+    ----------
+    guess : Guess
+        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
+        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
+        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
+    groups : Groups
+        Scalar groups.
+    law : ContactLaw
+        Contact pressure from the gap.
+    order : int
+        Nodes a panel.
+    tolerance : float
+        Legendre tail allowed on each panel.
+    profile_tolerance : float
+        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
+    gap_tolerance : float
+        That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
+    halvings : int
+        How often the panels beside the ends of a film are halved, beyond the demand of the tolerance.
+    spread : float
+        Distance from the minimum of the gap up to which it may be read off.
+    anew : bool
+        Whether panels begin with those of the guess and are laid anew, see :func:`stribeck.numerics.panels.adapt`; coarse
+        states far from their guesses are found more surely on halves of the coarsest panels.
+
+    Raises
+    ------
+    MeshTooLargeError
+        If more panels are needed than :data:`mesh.MAX_PANELS`.
+    """
+    cavitation = groups.model.cavitation
+    film = groups.model.film
+    plateau, broken = fall_of(film, float(groups.speed))
+    turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE)
+    jump = jump_of(film)
+    ends, restart = cavitation is not Cavitation.NONE, math.inf
+    if cavitation is Cavitation.REFORM:
+        restart = _cavity_on_mesh(guess)
+    to_guess = guess.restart / restart if restart < math.inf else 1.0
+    centre = -guess.exit / (guess.dilation * to_guess) if ends else 0.0
+    central_gap = np.exp(guess.fields(np.array([centre * to_guess]))[0])
+    width = np.sqrt(1.0 + central_gap)
+    scale = 2.0 ** round(float(np.log2(width).mean()))
+    minimum_position = guess.minimum_position / to_guess
+    strict = gap_tolerance
+    if spread > 0:
+        strict = max(gap_tolerance / AS_IT_MOVES, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
+    lift = 1.0
+    if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
+        lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
+    highest = highest_degree(order)
+    thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
+
+    def asked(lengths: Array) -> Array:
+        """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
+        size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
+        return np.asarray((size[:, None] * highest)[None])
+
+    def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
+        flat = x.ravel()
+        found = guess.fields(flat * to_guess if ends else flat)
+        if ends and restart == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:  # seen from one side of infinity alone
+            found[1] = guess.fields(-np.abs(flat))[1] * np.sign(flat)
+        gap = np.exp(found[0])
+        if len(found) == 2:
+            fluid = found[1]
+        else:
+            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
+            fluid = slopes * np.repeat(half_widths, x.shape[1])
+            if ends and stretch[0, 0] == 1.0:
+                fluid = np.where(flat > 0, 0.0, fluid)
+        edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
+        pressures = (
+            width
+            / np.repeat(edge_scale, x.shape[1], axis=-1)
+            * np.stack([law.pressure(gap), fluid if stretch[0, 0] != 1.0 else lift * fluid])
+        )
+        nodal = (*gap.shape[:-1], *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
+        centres = x.mean(axis=1)
+        at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
+        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
+        read_off &= stretch[:, 0] == 1.0
+        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, NEAR_MINIMUM))
+        weight = max(0.1, tolerance / profile_tolerance)
+        parts = tolerance / np.where(moving, strict, gap_tolerance)
+        shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
+        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
+        fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
+        if broken and stretch[0, 0] != 1.0:
+            fields[0] *= BROKEN
+        if broken and tolerance < COARSE and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
+            fields.append(asked(np.minimum(half_widths / (WIDEST_FAR * np.abs(centres)), half_widths / (2 * scale))))
+        jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
+        if jumps is not None:
+            wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
+            wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
+            fields.append(asked(wrong / (tolerance / TAIL_OF_ERROR) ** 2))
+        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
+            h = gap.reshape(x.shape)
+            partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
+            kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
+            drag = math.pi * math.sqrt(2 / float(central_gap.max()))
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
+            fields.append(asked(np.sqrt(wrong)))
+        if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
+            behind = x - (centre + float(width.mean()))
+            fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]
+            fields.append(np.where(np.all(behind > 0, axis=1)[:, None], np.stack(fading), 0.0))
+        return np.concatenate(fields)
+
+    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
+        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
+        allowed = UNSEEN * (tolerance / TAIL_OF_ERROR) ** 2
+        dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) / allowed) ** 0.25
+        reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(DIED_AWAY * thickness, dragged))
+    if tolerance < COARSE:
+        reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
+    if memories:  # where the panel through infinity begins, all is forgotten
+        reach = max(reach, FORGOTTEN * max(memories))
+    places: list[float] = []
+    start = guess.mesh if anew and isinstance(guess, State) else None
+    if ends:
+        places = [0.0] if restart == math.inf else [0.0, restart]
+        reach = 2 * max(reach, places[-1])
+    if ends and start is not None:
+        start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
+    kinks = NOWHERE
+    if (broken or closed_gap(film) is not None) and tolerance < COARSE:
+        about = Mesh(base_edges(scale, reach), order) if start is None else start
+        x = np.sort(about.nodes[: -about.order])
+        x = x[(x < 0) | (x > restart)] if ends else x
+        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
+
+    def shortest(x: Array) -> Array:
+        # Not where numbers are read off: kinks of flow factors ask for panels that no guess has.
+        return SHORTEST_OF_GUESS * guess.known_on(x * to_guess) / to_guess if tolerance >= COARSE else np.zeros_like(x)
+
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
+    if not ends:
+        return mesh
+    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
+    return replace(graded(mesh, places, levels), restart=restart)
+
+
+def _cavity_on_mesh(guess: Guess) -> float:
+    """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
+    length = guess.dilation * guess.restart
+    near = 1 / SAME_FRAME < guess.dilation < SAME_FRAME and math.log2(guess.restart).is_integer()
+    return guess.restart if near else 2.0 ** round(math.log2(length))
 
 
 def unknowns_of(equations: Equations, guess: Guess) -> Array:

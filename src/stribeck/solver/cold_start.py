@@ -21,9 +21,8 @@ from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.on_mesh.choice import mesh_for
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError

@@ -12,9 +12,8 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
-from stribeck.equations.on_mesh.choice import mesh_for
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import MeshTooLargeError
@@ -97,7 +96,7 @@ class Corrector:
         return self._adopt(converge(path.states[-1], groups, self.rtol, spread=FIRST_SPREAD)) if path.outcome.ok else None
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
-        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`mesh_for`."""
+        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
         if not _cavity_may_vanish(groups):
             return self._solve(guess, groups, spread)
         forms_anew = guess.restart < math.inf

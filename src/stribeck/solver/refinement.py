@@ -14,8 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.on_mesh.choice import END_GAIN, mesh_for
-from stribeck.equations.state import State, fall_of, is_rough, solve_state
+from stribeck.equations.state import END_GAIN, State, fall_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -84,7 +83,7 @@ def converge(
 ) -> RefinedState:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
-    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.on_mesh.choice.mesh_for`.
+    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
     ``profile_tolerance`` is the tail of the gap between the nodes, on which no observable depends; ``spread`` is the
     distance from its minimum up to which the gap is resolved as well as there.
     """

@@ -16,9 +16,8 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.cavities.of_length import solve_of_length
 from stribeck.equations.line import Operators
-from stribeck.equations.on_mesh.choice import mesh_for
 from stribeck.equations.prediction import SeenFrom
-from stribeck.equations.state import State
+from stribeck.equations.state import State, mesh_for
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path
 from stribeck.numerics.panels import MeshTooLargeError

@@ -30,9 +30,8 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.on_mesh.choice import mesh_for
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
-from stribeck.equations.state import State, is_thinning, solve_state
+from stribeck.equations.state import State, is_thinning, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
