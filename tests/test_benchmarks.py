@@ -29,7 +29,16 @@ ARGUMENTS = {
 LONG = {"point_speed"}
 """Those that take a while even so."""
 
-APART = {"fluid_speed", "point_box", "walk", "explorer_latency", "explorer_memory", "instructions"}
+APART = {
+    "fluid_speed",
+    "point_box",
+    "point_exit_speed",
+    "point_parts",
+    "walk",
+    "explorer_latency",
+    "explorer_memory",
+    "instructions",
+}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 

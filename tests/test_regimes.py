@@ -10,6 +10,7 @@ from command_line import EXAMPLES
 
 import stribeck as sb
 from stribeck import cli
+from stribeck.contacts.regime import friction_share
 from stribeck.curves import sensitivities
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
@@ -509,3 +510,13 @@ def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
     assert speed.less is None and heavy.speed / 10 > slowest > 10 * heavy.speed / margin_scan.REACH
     beyond = [sb.solve(heavy.replace(speed=slowest / factor), rtol=1e-4).fluid_load_share for factor in (1, 10, 1000)]
     assert beyond[0] > beyond[1] > beyond[2] > 1.5 * 0.05
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("contact", "viscous"), [(0.3, 0.1), (-0.3, -0.1), (0.3, -0.1)])
+def test_the_share_of_asperities_has_derivatives_by_complex_steps(contact, viscous):
+    """Errors of transitions come from them; by absolute values they were zero, and 4e-7 was stated as 1e-9."""
+    step = 1e-6
+    slope = (friction_share(contact + step, viscous) - friction_share(contact - step, viscous)) / (2 * step)
+    assert friction_share(contact + 1e-20j, viscous).imag / 1e-20 == pytest.approx(slope, rel=1e-6)
+    assert friction_share(0.0, 0.0) == 0.0 and np.isnan(friction_share(contact, np.nan))

@@ -40,10 +40,11 @@ def friction_share(contact: Numbers, viscous: Numbers) -> Array:
     """Return the part of the friction that asperities cause, zero without friction.
 
     Parts count by their size: a substrate that the cylinder overtakes is dragged along, and both are negative; near pure
-    rolling they may have different signs.
+    rolling they may have different signs.  Complex parts give derivatives by complex steps.
     """
-    size = np.abs(contact)
-    return np.asarray(size / np.maximum(size + np.abs(viscous), TINY))
+    size, other = (np.where(part.real < 0, -part, part) for part in map(np.asarray, (contact, viscous)))
+    total = size + other
+    return np.asarray(size / np.where(total.real <= TINY, TINY, total))
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:

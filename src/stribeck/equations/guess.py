@@ -40,6 +40,3 @@ class Guess(Protocol):
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
-
-    def known_on(self, x: Array) -> Array:
-        """Return the lengths of the panels at ``x`` by whose polynomials the guess is known; zero where formulas tell it."""

@@ -289,7 +289,7 @@ class State:
         return found
 
     def known_on(self, x: Array) -> Array:
-        """Return the lengths of the panels at ``x``."""
+        """Return the lengths of the panels at ``x``, by whose polynomials the state is known there."""
         return self.mesh.lengths_at(x)
 
 
@@ -396,7 +396,7 @@ def mesh_for(
     film = groups.model.film
     plateau, broken = fall_of(film, float(groups.speed))
     turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE)
-    jump = jump_of(film)
+    jump, turns_at = jump_of(film), closed_gap(film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -491,17 +491,20 @@ def mesh_for(
     if ends and start is not None:
         start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
     kinks = NOWHERE
-    if (broken or closed_gap(film) is not None) and tolerance < COARSE:
+    if (broken or turns_at is not None) and tolerance < COARSE:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > restart)] if ends else x
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
+    known_on: Callable[[Array], Array] | None = getattr(guess, "known_on", None)  # formulas are known on no panels
 
     def shortest(x: Array) -> Array:
-        # Not where numbers are read off: kinks of flow factors ask for panels that no guess has.
-        return SHORTEST_OF_GUESS * guess.known_on(x * to_guess) / to_guess if tolerance >= COARSE else np.zeros_like(x)
+        assert known_on is not None
+        return SHORTEST_OF_GUESS * known_on(x * to_guess) / to_guess
 
-    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
+    # Where numbers are read off, kinks of flow factors ask for panels that no guess has.
+    held = known_on is not None and tolerance >= COARSE
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest if held else None)
     if not ends:
         return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))

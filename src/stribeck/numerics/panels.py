@@ -307,7 +307,7 @@ def adapt(
     start: Mesh | None = None,
     anew: bool = True,
     places: Array = NOWHERE,
-    shortest: Callable[[Array], Array] = np.zeros_like,
+    shortest: Callable[[Array], Array] | None = None,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields.
 
@@ -335,7 +335,7 @@ def adapt(
         Whether the panels are laid anew.
     places : ndarray
         Edges besides zero, where the fields have kinks: panels laid anew would hide these in longer ones.
-    shortest : callable
+    shortest : callable, optional
         Panels around ``x`` of at most this length are not halved: fields that are known by polynomials jump where their panels
         end, and no panel is short enough for a jump.
 
@@ -379,7 +379,7 @@ def adapt(
     smallest = 2.0**-44 * scale
     while len(open_panels):
         size = tails(open_panels)
-        least = np.maximum(shortest(open_panels.mean(axis=1)), smallest)
+        least = smallest if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), smallest)
         split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > least)
         done.append(open_panels[~split])
         sizes.append(size[~split])

@@ -91,10 +91,6 @@ class RigidGuess:
         # Where asperities carry nearly all of a heavy load, the film's deflection may exceed the height.
         return np.asarray(np.log(np.maximum(parabola + deflection, 0.1 * parabola))[None, :])
 
-    def known_on(self, x: Array) -> Array:
-        """Return zeros: it is known by formulas."""
-        return np.zeros_like(x)
-
 
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups with the load divided by ``exp(log_factor)``, all else fixed."""

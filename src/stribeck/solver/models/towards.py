@@ -174,10 +174,6 @@ class RigidEnding:
         """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
         return np.asarray(np.log(self.offset + (x + self.exit) ** 2 / 2)[None, :])
 
-    def known_on(self, x: Array) -> Array:
-        """Return zeros: it is known by formulas."""
-        return np.zeros_like(x)
-
 
 @dataclass(frozen=True)
 class BlendedFilm:
