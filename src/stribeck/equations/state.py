@@ -335,12 +335,13 @@ def kinks_of(guess: Guess, film: Film, x: Array) -> Array:
         return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
 
     values = crossing(x)
+    count = len(values)
     row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
     each = np.arange(len(row))
     low, high = x[at], x[at + 1]
     for _ in range(KINK_SEARCHES):
         within = np.linspace(low, high, KINK_PLACES)
-        values = crossing(within.ravel()).reshape(-1, *within.shape)[row, :, each].T
+        values = crossing(within.ravel()).reshape(count, *within.shape)[row, :, each].T
         at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
         low, high = within[at, each], within[at + 1, each]
     before, after = values[at, each], values[at + 1, each]
