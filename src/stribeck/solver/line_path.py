@@ -162,6 +162,7 @@ class LineProblem:
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= LAW_PART * rtol)
         self.order_if_sampled = ORDER_OF_CUSPS if broken else ORDER_OF_ANY_FILM
         self.interval = INTERVAL_OF_CUSPS if broken else INTERVAL
+        self.degree = ORDER_OF_CUSPS + 1 if broken else None
         self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
         self.failure: RefinedState | None = None
@@ -329,7 +330,7 @@ class LineProblem:
         """Return the series of a film that is sampled, and an estimate of its radius, on which the samples depend."""
         reach = max(SHORTEST_REACH, REACH * near)
         for trial in range(MOST_TRIALS):
-            samples = interval(self.interval * reach, degree=self.order + 1)
+            samples = interval(self.interval * reach, degree=self.degree)
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.places) - 1)
             models = [] if self.uniform else [as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
