@@ -216,7 +216,8 @@ class Interval:
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials for observables without a series, their errors and columns, and whether they are good enough."""
         values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(READ_AT))
-        form = chebyshev_form(values)
+        with np.errstate(invalid="ignore"):  # of values that are not finite no polynomial is good enough
+            form = chebyshev_form(values)
         tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
