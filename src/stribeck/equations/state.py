@@ -319,13 +319,12 @@ def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
 
 
-def kinks_of(guess: Guess, film: Film, x: Array) -> Array:
+def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Array:
     """Return where the gradient has a kink, between the places ``x`` of a guess.
 
-    With flow factors that is where the last path of the flow closes; a fluid without a plateau has kinks where a wall is not
-    sheared.
+    With flow factors that is where the last path of the flow closes, at the gap ``closed_at``; a fluid without a plateau has
+    kinks where a wall is not sheared.
     """
-    closed_at = closed_gap(film)
 
     def crossing(x: Array) -> Array:
         found = guess.fields(x)
@@ -397,7 +396,7 @@ def mesh_for(
     film = groups.model.film
     plateau, broken = fall_of(film, float(groups.speed))
     turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE)
-    jump, turns_at = jump_of(film), closed_gap(film)
+    jump, closed_at = jump_of(film), closed_gap(film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -492,20 +491,15 @@ def mesh_for(
     if ends and start is not None:
         start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
     kinks = NOWHERE
-    if (broken or turns_at is not None) and tolerance < COARSE:
+    if (broken or closed_at is not None) and tolerance < COARSE:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > restart)] if ends else x
-        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess) / to_guess
-    known_on: Callable[[Array], Array] | None = getattr(guess, "known_on", None)  # formulas are known on no panels
-
-    def shortest(x: Array) -> Array:
-        assert known_on is not None
-        return SHORTEST_OF_GUESS * known_on(x * to_guess) / to_guess
-
-    # Where numbers are read off, kinks of flow factors ask for panels that no guess has.
-    held = known_on is not None and tolerance >= COARSE
-    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest if held else None)
+        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
+    # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
+    known_on = getattr(guess, "known_on", None) if tolerance >= COARSE else None
+    shortest = None if known_on is None else lambda x: SHORTEST_OF_GUESS * known_on(x * to_guess) / to_guess
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))

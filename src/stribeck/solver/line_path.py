@@ -38,7 +38,7 @@ from stribeck.solver.expansion import (
     observed,
     residuals,
 )
-from stribeck.solver.path import KNOT_PART, TINY, Expansion, rate
+from stribeck.solver.path import KNOT_PART, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
 EXACT_ORDER, ORDER = (18, 20), (14, 16)
@@ -174,8 +174,11 @@ class LineProblem:
     def _shift(self, one: Expansion) -> float:
         """Return the way along the path to the groups that are nearest to those of a state of a similar contact."""
         there, here, d = one.point.refined.groups, self.groups_at(one.coordinate), np.array(self.direction)
-        apart = [float(getattr(there, name)) / float(getattr(here, name) or 1.0) for name in ("speed", "load", "roughness")]
-        return float(d @ np.log(np.maximum(apart, TINY)) / (d @ d))
+        # A speed or a roughness of zero is none along the whole path.
+        apart = [
+            float(getattr(there, name) or 1.0) / float(getattr(here, name) or 1.0) for name in ("speed", "load", "roughness")
+        ]
+        return float(d @ np.log(apart) / (d @ d))
 
     @cached_property
     def held(self) -> Flags:
