@@ -136,7 +136,7 @@ def judge_with_parts(seed: int, number: int, places: int, rtol: float, seconds: 
             continue
         for j, each in enumerate(ALL_NAMES):
             true = float(getattr(exact.observables, each))
-            least = {"offset": OFFSET_FLOOR, "viscous_upper": abs(exact.observables.viscous_balanced)}.get(each, 1e-300)
+            least = OFFSET_FLOOR if each == "offset" else 1e-300
             scale = 1.0 if each in ABSOLUTE or each in {row.name for row in ENDS} else max(abs(true), least)
             found[i, j] = abs(here.values[each][i] - true) / scale / (here.errors[each][i] + exact.errors.get(each, np.nan))
     judged = np.isfinite(found).any(axis=1)

@@ -13,7 +13,7 @@ from stribeck._types import Array, Flags
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
-from stribeck.equations.observables import ROW, Observables
+from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
@@ -93,7 +93,8 @@ class CurvePoint(Solution):
             "outcome": Outcome.CONVERGED,
             "rtol": rtol,
             "observables": Observables(**values),
-            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model)),
+            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model))
+            / drag_parts(row[:POSITION]),
             "minimum_position_error": float(errors[POSITION]),
         }
         vars(self).update(known | {"_place": (path, s)})
@@ -182,7 +183,7 @@ class CurveValues(Shown, ByValue):
         CurveValues
             The values.
         """
-        relative = np.maximum(errors[:, :POSITION], least)
+        relative = np.maximum(errors[:, :POSITION], least) / drag_parts(found[:, :POSITION])
         shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
         values = dict(zip(COLUMNS, found.T if np.ndim(value) else found[0].tolist(), strict=True))
         nothing = np.nan

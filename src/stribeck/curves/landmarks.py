@@ -203,6 +203,6 @@ class Landmarks:
                 s = s + step
             solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
         assert solution is not None
-        row[:POSITION], known = solution.observables.array(in_article=False), solution.relative_errors
+        row[:POSITION], known = solution.observables.array(in_article=False), solution.counted_errors
         errors[: len(known)] = known
         return Place(s, LOCATION_TOLERANCE + doubt(s, row, errors) / abs(slope), solution)

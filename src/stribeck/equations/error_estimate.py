@@ -23,7 +23,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD
-from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
+from stribeck.equations.observables import DRAG, ROW, Observables, drag_scales, friction_integrals, friction_scale, gradients
 from stribeck.equations.on_mesh.film import gradient_in_film, slopes_in_film
 from stribeck.equations.on_mesh.finer import FineOperators
 from stribeck.equations.position_error import position_errors
@@ -70,7 +70,6 @@ GAP_FLOOR = 1e-3
 SHARES = [ROW[name] for name in ABSOLUTE]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
 FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
-DRAG = [ROW[name] for name in VISCOUS]
 POSITIONS = [ROW[row.name] for row in ENDS]
 
 
@@ -330,8 +329,7 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     scales = np.abs(values)
     if not op.is_article:
         scales[:, POSITIONS] = np.maximum(1.0, scales[:, POSITIONS])
-        # Rolling friction has another sign on the other wall, and passes through zero.
-        scales[:, DRAG] = scales[:, DRAG].max(axis=1, keepdims=True)
+        scales[:, DRAG] = drag_scales(values)
     scales[:, SHARES] = 1.0
     scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
     if not states.equations.is_sliding:

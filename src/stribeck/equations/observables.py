@@ -37,6 +37,7 @@ ROW = {name: row for row, name in enumerate(ALL_NAMES)}
 """Index of each in such an array."""
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
+DRAG = [ROW[name] for name in VISCOUS]
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,23 @@ class Observables:
     def array(self, in_article: bool = True) -> Array:
         """Return the observables in the order of :data:`NAMES`, or of :data:`ALL_NAMES`."""
         return np.array([getattr(self, name) for name in (NAMES if in_article else ALL_NAMES)])
+
+
+def drag_scales(values: Array) -> Array:
+    """Return what the tolerance of each drag is relative to, in the order of :data:`DRAG`; ``values`` has shape (..., rows).
+
+    Rolling friction has another sign on the other wall, and passes through zero: both count by the larger of them.
+    """
+    published, balanced, upper = np.moveaxis(np.abs(values[..., DRAG]), -1, 0)
+    walls = np.fmax(balanced, upper)
+    return np.stack([np.fmax(published, walls), walls, walls], axis=-1)
+
+
+def drag_parts(values: Array) -> Array:
+    """Return the drags over these scales, and one for all else; an error over that is relative to the observable itself."""
+    parts, sizes, scales = np.ones_like(values), np.abs(values[..., DRAG]), drag_scales(values)
+    parts[..., DRAG] = np.divide(sizes, scales, out=np.ones_like(sizes), where=sizes > 0)
+    return parts
 
 
 def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:

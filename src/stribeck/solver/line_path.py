@@ -17,7 +17,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
 from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import ROW
+from stribeck.equations.observables import DRAG, ROW, drag_scales
 from stribeck.equations.state import State, fall_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import hermite_weights, missed_by
@@ -196,8 +196,7 @@ class LineProblem:
         found[:, SHARES] = 1.0
         found[:, ROW["exit_position"] :] = 1.0
         found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], OFFSET_FLOOR)
-        # The drag on the upper wall is a small difference of large numbers in thick films, zero at some slide-to-roll ratios.
-        found[:, ROW["viscous_upper"]] = np.fmax(found[:, ROW["viscous_upper"]], found[:, ROW["viscous_balanced"]])
+        found[:, DRAG] = drag_scales(values)
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
             found[:, GAPS] = np.maximum(found[:, GAPS], GAP_FLOOR * kappa[:, None])

@@ -16,7 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
-from stribeck.equations.observables import Observables
+from stribeck.equations.observables import Observables, drag_parts
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, ENDING, NAMES, OutputTable
@@ -103,9 +103,16 @@ class Solution(BaseSolution):
     def error_estimate(self) -> float:
         """Largest estimated relative error of the observables; load shares count absolutely.
 
-        It says nothing about :attr:`minimum_position`, which has :attr:`minimum_position_error`.
+        Both drags count relative to the larger of them, as that on one wall may be zero.  It says nothing about
+        :attr:`minimum_position`, which has :attr:`minimum_position_error`.
         """
-        return float(np.nanmax(self.relative_errors))
+        return float(np.nanmax(self.counted_errors))
+
+    @property
+    def counted_errors(self) -> Array:
+        """The errors as the tolerance counts them, see :func:`stribeck.equations.observables.drag_scales`."""
+        parts = drag_parts(self.observables.array(in_article=False))
+        return np.asarray(self.relative_errors * parts[: len(self.relative_errors)])
 
     @property
     def errors(self) -> dict[str, float]:

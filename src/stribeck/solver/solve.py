@@ -18,7 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.observables import Observables
+from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
@@ -344,6 +344,13 @@ def minimum_estimate(rtol: float, model: Model) -> float:
     return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
+def stated_errors(point: RefinedState, rtol: float) -> Array:
+    """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
+    assert point.values is not None and point.estimate is not None
+    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
+    return np.asarray(counted / drag_parts(point.values.array(in_article=False))[: len(counted)])
+
+
 def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
     """Return a refined state as a solution, or None if there is no state."""
     state, values, estimate = point.state, point.values, point.estimate
@@ -357,7 +364,7 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol, point.groups.model)),
+        relative_errors=stated_errors(point, rtol),
         minimum_position_error=estimate.minimum_position,
         rounding_floor=estimate.floor,
         mesh=state.mesh,

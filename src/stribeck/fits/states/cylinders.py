@@ -22,7 +22,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
-from stribeck.solver.solve import SolveError, minimum_estimate
+from stribeck.solver.solve import SolveError, stated_errors
 
 __all__ = ["kept_parts", "solved_parts"]
 
@@ -94,7 +94,7 @@ def _along(
         derivatives = log_derivatives(point.state, [each[1:] for each in changes])
         values[:, i] = point.values.array(in_article=False)[columns]
         slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
-        errors[:, i] = np.maximum(point.estimate.relative[columns], minimum_estimate(rtol, point.groups.model))
+        errors[:, i] = stated_errors(point, rtol)[columns]
     return values, slopes, errors
 
 
