@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, Self, TypeVar
 
 import numpy as np
@@ -30,9 +31,14 @@ __all__ = ["FLOOR", "PatirCheng", "lifted", "nominal_separation", "scaled_roughn
 FLOOR = 1e-4
 """Pressure flow factor that is left where the formula ends at zero: without any flow there is no pressure gradient."""
 
-MOST_STEPS = 60
+OF_FIT, SMOOTHNESS = 0.5, 4
+"""Part of the way from the end of the fits to their zero on which they go over into an exponential, and how many derivatives
+go over: with the first alone, the series of a curve converge on a twentieth of their length while the film passes there."""
 
 Factors = TypeVar("Factors", bound=FlowFactors)
+
+ENDS = -37.0, 9.0
+"""H below which widths underflow, and above which they are H to double precision."""
 
 LINKED = 5.0
 """H from which the shear flow factor is an exponential."""
@@ -64,9 +70,11 @@ class PatirCheng(FlowFactors):
     with H the nominal separation over the roughness :math:`\sigma`, found from the mean gap.  The flow under a pressure
     gradient goes as :math:`\phi_x (\sigma H)^3`: over that between smooth surfaces at the mean gap it is
     :math:`\phi = \phi_x (\sigma H/h_T)^3`.  The fits go down to :math:`H_0` = 0.5 for :math:`\gamma \ge 1`, 0.75 for 1/3 and 1
-    below.  Nearer than that
+    below.  Nearer than that the pressure flow factor goes over, with four derivatives, into an exponential of the same slope,
+    before the fit falls to zero at :math:`H_z`, and the shear flow factor is proportional to the mean gap:
 
-    .. math:: \phi = \phi(H_0) \, e^{k (H - H_0)}, \quad k = \frac{\phi'(H_0)}{\phi(H_0)}, \qquad
+    .. math:: \phi = \phi(H_0 + y) \, e^{k (H - H_0 - y)}, \quad k = \frac{\phi'(H_0)}{\phi(H_0)}, \quad
+              y = \frac{H - H_0}{[1 + ((H - H_0)/w)^4]^{1/4}}, \quad w = \frac{H_0 - H_z}{2}, \qquad
               \phi_s = \phi_s(H_0) \, \frac{h_T(H)}{h_T(H_0)}
 
     Parameters
@@ -155,18 +163,27 @@ class PatirCheng(FlowFactors):
         """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
         H, by_gap = self._separation(gap)
         least, C, r = FACTORS[self.gamma][:3]
-        fitted = np.maximum(H, least)
-        if self.gamma > 1:
-            phi_x = 1 + C * fitted**-r
-            steep = -r * (phi_x - 1) / fitted
-        else:
-            phi_x = 1 - C * np.exp(-r * fitted)
-            steep = r * (1 - phi_x)
-        width, by_H = self._width(fitted)
-        rate = steep / phi_x + 3 * (1 / fitted - by_H / width)
-        phi = phi_x * (fitted / width) ** 3 * np.exp(rate * np.minimum(H - least, 0.0))
-        phi, slope = lifted(phi, rate * phi)
+        x = np.minimum(H - least, 0.0)
+        zero = 0.0 if self.gamma > 1 else max(0.0, math.log(C) / r)
+        short = 1 + (x / (OF_FIT * (least - zero))) ** SMOOTHNESS
+        y = x * short ** (-1 / SMOOTHNESS)
+        phi, rate = self._fitted(np.maximum(H, least) + y)
+        k, of_y = self._fitted(least)[1], short ** (-1 / SMOOTHNESS - 1)  # y' below H_0, and one above
+        phi = phi * np.exp(k * (x - y))
+        phi, slope = lifted(phi, (rate * of_y + k * (1 - of_y)) * phi)
         return phi, slope * by_gap
+
+    def _fitted(self, H: Numbers) -> tuple[Numbers, Numbers]:
+        """Return the flow over that between smooth surfaces as fitted, and the slope of its logarithm by H."""
+        _, C, r = FACTORS[self.gamma][:3]
+        if self.gamma > 1:
+            phi_x = 1 + C * H**-r
+            steep = -r * (phi_x - 1) / H
+        else:
+            phi_x = 1 - C * np.exp(-r * H)
+            steep = r * (1 - phi_x)
+        width, by_H = self._width(H)
+        return phi_x * (H / width) ** 3, steep / phi_x + 3 * (1 / H - by_H / width)
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return sigma phi_s and its slope."""
@@ -268,15 +285,22 @@ def mean_width(H: Numbers) -> Numbers:
     return H * scipy.special.ndtr(H) + np.exp(-0.5 * H * H) / math.sqrt(2 * math.pi)
 
 
+@lru_cache(maxsize=1)
+def _separations() -> tuple[Array, Array]:
+    """Logarithms of mean widths, ascending, and their separations."""
+    H = np.linspace(*ENDS, 4001)
+    return np.log(mean_width(H)), H
+
+
 def nominal_separation(width: Array) -> Array:
     """Return the separation of the mean planes at a mean width > 0, both over the roughness of Gaussian surfaces."""
-    H = np.array(width, dtype=float)
-    for _ in range(MOST_STEPS):  # from above the function is convex: Newton's steps cannot overshoot
-        step = (mean_width(H) - width) / scipy.special.ndtr(H)
-        H = np.maximum(H - step, -37.0)
-        if np.abs(step).max(initial=0.0) < 1e-14 * 37:
-            break
-    return H
+    logs, separations = _separations()
+    log = np.clip(np.log(width), logs[0], logs[-1])
+    H = np.interp(log, logs, separations)
+    for _ in range(2):  # in the logarithms Newton's steps square an error of 1e-5 twice
+        known = mean_width(H)
+        H = H - (np.log(known) - log) * known / scipy.special.ndtr(H)
+    return np.where(width > ENDS[1], width, H)
 
 
 def mean_inverse_width(H: Array) -> tuple[Array, Array]:
