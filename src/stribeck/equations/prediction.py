@@ -181,6 +181,8 @@ class SeenFrom:
         The guessed length of the cavity [a]; infinite if the film does not begin anew.
     cavity_pressure : float
         The pressure there [p_Hz].
+    flux : float or None
+        The guessed flux gap [u_Hz]; that of the state if None.
     """
 
     state: State
@@ -188,11 +190,12 @@ class SeenFrom:
     restart: float = math.inf
     cavity_pressure: float = 0.0
     dilation: float = 1.0
+    flux: float | None = None
 
     @property
     def flux_gap(self) -> float:
-        """That of the state."""
-        return self.state.flux_gap
+        """The guessed one, or that of the state."""
+        return self.state.flux_gap if self.flux is None else self.flux
 
     @property
     def offset(self) -> float:

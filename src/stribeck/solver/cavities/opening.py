@@ -1,7 +1,8 @@
 r"""Cold start of a cavity of the line: from the full film, or from a film that ends, by cavities of given length.
 
 The shorter a cavity, the nearer its pressure to the largest suction of the full film; the longer, the nearer to zero.  Lengths
-are tried until that pressure is the one asked for.
+are tried until that pressure is the one asked for.  The first is that of Reynolds' equation in the gap of the full film, which
+hardly changes where asperities or the elastic body hold it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.cavities.of_length import solve_of_length
@@ -24,9 +26,9 @@ from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.models.towards import (
     MESH_TOLERANCE,
-    MOST_STEPS,
     NEWTON_TOLERANCE,
     ORDER,
+    SETTLED,
     extended,
     paths_to_model,
     settled,
@@ -35,14 +37,10 @@ from stribeck.solver.models.towards import (
 __all__ = ["paths_to_cavity", "ruptured"]
 
 LOOKED_AT = 4001
-"""Points at which the largest suction of the full film is searched, and lengths of cavities behind an exit."""
+"""Lengths of cavities behind an exit that are looked at."""
 
-CAVITY_PARTS = (0.52, 0.75, 1.0, 2.0)
-"""Lengths of a cavity over that of the stretch on which the suction of the full film is too large: half of it for a short
-cavity, as the missing flow lowers the pressure behind it too."""
-
-BEFORE_LOWEST = 0.03
-"""Distance of the rupture from the place of the largest suction, over the length of the cavity."""
+PLACES, HALVINGS = 8, 50
+"""Places for each node, and halvings of the range of the flux, with which a cavity in the gap of the full film is sought."""
 
 FIRST_SUCTION = 0.3
 """Largest first suction of the cavity behind an exit, over the largest with which a film could begin anew."""
@@ -51,13 +49,16 @@ LONGEST, SHORTEST = 0.7, 1e-4
 """Longest and shortest step in the logarithm of the length."""
 
 FIRST_SLOPE, LEAST_SLOPE = -1.0, -0.1
-"""First and smallest slope of the logarithm of the suction by that of the length."""
+"""First slope behind an exit, and smallest, of the logarithm of the suction by that of the length."""
 
 FEW_STEPS = 8
 """Newton steps after which a state lies on a mesh that was made for another: it is solved once more."""
 
 NEAR = 0.02
-"""Difference of the logarithms of two pressures between which Newton's iteration finds the length."""
+"""Difference of the logarithms of two pressures between which Newton's iteration may find the length."""
+
+MOST_STEPS = 100
+"""Newton steps with a given length, whose steps are short."""
 
 MOST_LENGTHS = 20
 """Lengths after which a cavity is given up."""
@@ -76,22 +77,44 @@ def paths_to_cavity(groups: Groups, article: Callable[[Groups], Path[State]]) ->
 
 def ruptured(groups: Groups, full: State) -> State | None:
     """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None."""
-    pressure = groups.model.cavity_pressure
-    x = np.sort(full.mesh.nodes)
-    nodal = full.fields(x)[1]
-    below = np.flatnonzero(nodal <= max(pressure, nodal.min()))
-    x = np.linspace(x[max(below[0] - 1, 0)], x[min(below[-1] + 1, len(x) - 1)], LOOKED_AT)
-    suction = full.fields(x)[1]
-    between = x[suction < pressure]
-    if not len(between):
+    found = _in_gap(groups, full)
+    return None if found is None else _of_pressure(groups, *found)
+
+
+def _in_gap(groups: Groups, full: State) -> tuple[SeenFrom, float] | None:
+    """Return the cavity in the gap of the full film, or None if the pressure does not fall to that of the cavity there.
+
+    The film ruptures where the pressure no longer falls, at the flux with which it is that of the cavity there; it begins anew
+    where the pressure, integrated from behind with the same flux, has fallen so far.  The second value is the slope of the
+    logarithm of the suction by that of the length.
+    """
+    nodes, film, wanted = full.mesh.nodes[: -full.mesh.order], full.equations.film, groups.model.cavity_pressure
+    x = np.interp(np.arange(0, nodes.size - 1, 1 / PLACES), np.arange(nodes.size), nodes)
+    log_gap, pressure = full.fields(x)
+    gap, inlet = np.exp(log_gap), int(np.argmax(pressure))
+
+    def changes(flux_gap: float) -> Array:
+        slopes = film.gradient(gap, pressure if film.uses_pressure else None, flux_gap) * float(groups.speed)
+        return np.asarray(0.5 * (slopes[1:] + slopes[:-1]) * np.diff(x))
+
+    def rupture(flux_gap: float) -> tuple[int, float]:
+        change = changes(flux_gap)
+        falling = inlet + int(np.argmax(change[inlet:] < 0))
+        at = falling + int(np.argmax(change[falling:] > 0))
+        return at, float(pressure[0] + change[:at].sum())
+
+    low, high = float(gap.min()), full.flux_gap
+    for _ in range(HALVINGS):
+        flux_gap = 0.5 * (low + high)
+        low, high = (flux_gap, high) if rupture(flux_gap)[1] > wanted else (low, flux_gap)
+    at = rupture(flux_gap)[0]
+    from_behind = pressure[-1] - np.cumsum(changes(flux_gap)[::-1])[::-1]
+    fallen = at + np.flatnonzero(from_behind[at:] <= wanted)
+    if not len(fallen):
         return None
-    lowest, stretch = float(x[np.argmin(suction)]), float(between[-1] - between[0])
-    for part in CAVITY_PARTS:
-        length = part * stretch
-        found = _of_pressure(groups, SeenFrom(full, lowest - BEFORE_LOWEST * length, length, pressure))
-        if found is not None:
-            return found
-    return None
+    end = int(fallen[-1])
+    length, change = float(x[end + 1] - x[at]), float(changes(flux_gap)[end])
+    return SeenFrom(full, float(x[at]), length, wanted, flux=flux_gap), change / float(x[end + 1] - x[end]) * length / wanted
 
 
 def _behind_exit(groups: Groups, state: State) -> State | None:
@@ -107,14 +130,17 @@ def _behind_exit(groups: Groups, state: State) -> State | None:
     suction = np.append(np.cumsum(cells[::-1])[::-1], 0.0)
     first = min(-groups.model.cavity_pressure, FIRST_SUCTION * float(suction.max()))
     length = float(distance[np.flatnonzero(suction >= first)[-1]])
-    return _of_pressure(groups, SeenFrom(state, state.exit, length, -first))
+    return _of_pressure(groups, SeenFrom(state, state.exit, length, -first), FIRST_SLOPE)
 
 
-def _of_pressure(groups: Groups, guess: SeenFrom) -> State | None:
-    """Return a coarse state whose cavity has the pressure of the groups, from a guess with a cavity of some length."""
+def _of_pressure(groups: Groups, guess: SeenFrom, slope: float) -> State | None:
+    """Return a coarse state whose cavity has the pressure of the groups, from a guess with a cavity of some length.
+
+    ``slope`` is about that of the logarithm of the suction by that of the length.
+    """
     wanted = math.log(-groups.model.cavity_pressure)
     lengths, pressures, exits = [], [], []
-    last, step = None, 0.0
+    last, step, drift = None, 0.0, 0.0
     for _ in range(MOST_LENGTHS):
         state = _of_length(groups, guess)
         if state is not None and state.root.steps > FEW_STEPS:
@@ -125,14 +151,18 @@ def _of_pressure(groups: Groups, guess: SeenFrom) -> State | None:
             pressures.append(math.log(-state.groups.model.cavity_pressure))
             exits.append(state.exit)
             missing = wanted - pressures[-1]
-            if abs(missing) < NEAR and (found := settled(groups, state)) is not None:
+            found = settled(groups, state) if abs(missing) < NEAR else None
+            if found is not None and found.prediction_error <= SETTLED:
                 return found
-            slope, drift = FIRST_SLOPE, 0.0
             if len(lengths) > 1:
                 apart = lengths[-1] - lengths[-2]
                 slope, drift = (pressures[-1] - pressures[-2]) / apart, (exits[-1] - exits[-2]) / apart
             step = missing / min(slope, LEAST_SLOPE)
             step = math.copysign(min(LONGEST, abs(step)), step)
+            short = max((a for a, p in zip(lengths, pressures, strict=True) if p > wanted), default=-math.inf)
+            long = min((a for a, p in zip(lengths, pressures, strict=True) if p <= wanted), default=math.inf)
+            if not short < lengths[-1] + step < long:
+                step = 0.5 * (short + long) - lengths[-1]
         else:
             step *= 0.5
         if last is None or abs(step) < SHORTEST:

@@ -62,6 +62,13 @@ MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
 FAR_FROM_GUESS = 1.0
 """Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too."""
 
+SETTLED = 0.2
+"""Relative change of the gap from one mesh to the one made for its state up to which both are the same state: on coarse meshes
+the exit of a film that carries little may be wrong by many of the film's own lengths."""
+
+ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE = 12, 1e-4
+"""Nodes per panel and tolerance of the meshes where these differ."""
+
 LOOKED_AT = 4001
 """Points at which the end of the full film is searched."""
 
@@ -368,12 +375,17 @@ def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, t
 
 
 def settled(groups: Groups, guess: Guess) -> State | None:
-    """Return a coarse state on a mesh made for it, or None."""
-    state = _coarse(groups, guess)
-    if state is None or not state.outcome.ok:
-        return None
-    again = _coarse(groups, state)
-    return again if again is not None and again.outcome.ok else None
+    """Return a coarse state on a mesh made for it, or None; one of a finer mesh where the coarse ones disagree."""
+    found = None
+    for order, tolerance in ((ORDER, MESH_TOLERANCE), (ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE)):
+        state = _coarse(groups, guess, order, tolerance)
+        again = None if state is None or not state.outcome.ok else _coarse(groups, state, order, tolerance)
+        if again is None or not again.outcome.ok:
+            break
+        found = again
+        if again.prediction_error <= SETTLED:
+            break
+    return found
 
 
 def _ended(groups: Groups, full: Path[State]) -> State | None:
