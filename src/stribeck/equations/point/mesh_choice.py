@@ -39,6 +39,10 @@ THINNED_BEYOND, TORN_BEYOND, MOST_FARTHER = 1e-3, 1e-7, 6
 """Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
 the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim."""
 
+FAINTEST = 1e-9
+"""Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
+break and heal by chance.  The friction that is lost beyond a nearer rim is stated."""
+
 POWER_FARTHER = 1
 """Panels beyond the usual rim for a power law."""
 
@@ -258,10 +262,17 @@ def farther_panels(speed: float, model: Model) -> int:
             part = lost(film.law, far_rate(film.law, film.slide, speed, REACH * ratio ** (needed / FAR_PANELS)))
             if part <= most * per_panel**needed:
                 break
+    if model.cavitation is Cavitation.EXIT:
+        needed = min(needed, math.floor(_panels_to((speed / FAINTEST) ** (1 / 3))))
     if model.cavity_pressure < 0.0:
         radius = (0.8 * speed / (QUIET * -model.cavity_pressure)) ** (1 / 3)
-        needed = max(needed, FAR_PANELS * math.log(radius / REACH) / math.log(ratio))
+        needed = max(needed, _panels_to(radius))
     return int(np.clip(math.ceil(needed), 0, MOST_FARTHER))
+
+
+def _panels_to(radius: float) -> float:
+    """Return how many panels beyond the usual rim reach to a radius."""
+    return FAR_PANELS * math.log(radius / REACH) / math.log(REACH / 2.0)
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw, least: float = -0.4) -> bool:
