@@ -66,6 +66,22 @@ def test_the_film_with_a_cavity_becomes_the_full_film_as_its_pressure_falls():
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("suction", [1e-9, 1e-15, 1e-18])
+def test_the_friction_with_a_cavity_becomes_that_of_a_film_that_ends_as_its_pressure_rises(suction):
+    """The film behind begins anew at ``x_r = (4 speed / 3 suction)^(1/3)`` from afar, and its drag goes as ``1/x_r``."""
+    groups = sb.Groups(speed=5.7e-2, load=0.4, roughness=5e-3)
+    ending = sb.solve(groups, cavitation="exit")
+    anew = sb.solve(groups, cavitation="reform", cavity_pressure=-suction * groups.speed)
+    where = (4 / (3 * suction)) ** (1 / 3)
+    assert anew.reformation_position == pytest.approx(where, rel=2e-3)
+    # The factor is that found at 1e-12, where both films agree to 1e-9 but for it.
+    drag = 0.2158 / where
+    wrong = 2 * (ending.friction.relative_error + anew.friction.relative_error)
+    assert anew.friction / ending.friction - 1 == pytest.approx(drag, rel=1e-2, abs=wrong)
+    for name in ("central_gap", "minimum_gap", "exit_position"):
+        assert getattr(anew, name) == pytest.approx(getattr(ending, name), rel=2e-6)
+
+
 def test_the_drag_of_the_fluid_is_linear_in_the_sliding_about_that_of_rolling():
     drags = [sb.solve(GROUPS, slide_to_roll=ratio).viscous_balanced for ratio in (0.0, 0.01, 0.02)]
     assert drags[2] - drags[1] == pytest.approx(drags[1] - drags[0], rel=1e-6)

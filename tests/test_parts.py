@@ -114,6 +114,7 @@ def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
         ({"cavitation": "sommerfeld"}, "must be one of 'none', 'exit'"),
         ({"cavity_pressure": "-1 atm"}, "needs cavitation = 'reform'"),
         ({"cavity_pressure": "1 atm"}, "zero or below"),
+        ({"cavitation": "reform", "cavity_pressure": "-1e-30 Pa"}, "give 0, or -[0-9.]+e-1[0-9] Pa or less"),
         ({"slide_to_roll": 1e3}, "slide_to_roll"),
         ({"solid": "rubber"}, "sb.solids"),
     ],

@@ -28,6 +28,9 @@ __all__ = ["DEFAULT", "NAMES", "Parts", "WithParts", "signature_with_parts"]
 LARGEST_RATIO = 100.0
 """Largest slide-to-roll ratio: beyond it the surfaces move against each other and entrain hardly any fluid."""
 
+LEAST_SUCTION = 1e-20
+"""Smallest suction of a cavity that is not at the ambient pressure [p_Hz]: its film begins anew some 1e8 half-widths away."""
+
 
 @dataclass(frozen=True, init=False)
 class Parts:
@@ -135,6 +138,12 @@ class Parts:
             raise InputError(
                 f"slide_to_roll = {self.slide_to_roll:g} on a {self.solid.name}: below -2 the substrate moves against the "
                 "flow, and its memory with it; give -2 or more, or an elastic solid."
+            )
+        if 0 < -self.cavity_pressure < LEAST_SUCTION * units.pressure:
+            unit, highest = "p_Hz" if units.pressure == 1.0 else "Pa", -LEAST_SUCTION * units.pressure
+            raise InputError(
+                f"cavity_pressure = {self.cavity_pressure:g} {unit} is the ambient pressure but for rounding: the film would begin "
+                f"anew 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
             )
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed

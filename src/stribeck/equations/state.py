@@ -94,6 +94,9 @@ FORGOTTEN = 30.0
 TAIL_OF_ERROR = 0.2
 """Tolerance of a mesh for an error of one."""
 
+SEES_CONTACT = 16.0
+"""Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels]."""
+
 SAME_FRAME = 1.5
 """Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
 
@@ -489,7 +492,8 @@ def mesh_for(
         places = [0.0] if restart == math.inf else [0.0, restart]
         reach = 2 * max(reach, places[-1])
     if ends and start is not None:
-        start = replace(start, edges=ungraded(start.edges, [x * to_guess for x in places]) / to_guess)
+        lengths = {x * to_guess: math.inf if x else SEES_CONTACT * scale * to_guess for x in places}
+        start = replace(start, edges=ungraded(start.edges, lengths) / to_guess)
     kinks = NOWHERE
     if (broken or closed_at is not None) and tolerance < COARSE:
         about = Mesh(base_edges(scale, reach), order) if start is None else start

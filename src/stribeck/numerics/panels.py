@@ -11,7 +11,7 @@ Here are nodes, weights, interpolation, the running integral and the choice of p
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -426,15 +426,20 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
     return replace(mesh, edges=np.unique(np.concatenate(added)))
 
 
-def ungraded(edges: Array, places: Sequence[float]) -> Array:
-    """Return edges without those by which panels halve towards each of ``places``."""
-    for place in places:
+def ungraded(edges: Array, places: Mapping[float, float]) -> Array:
+    """Return edges without those by which panels halve towards each of ``places``, up to the length that it is given with.
+
+    The coarsest panels of :func:`base_edges` halve towards zero too: without them one panel would reach from there to the end
+    of a long cavity, with no node where the bodies touch.
+    """
+    for place, longest in places.items():
         for side in (-1.0, 1.0):
             distance = side * (edges - place)
             beyond = np.sort(distance[distance > 0])
             ratios = beyond[1:] / beyond[:-1]
             halving = np.abs(ratios - 2) < 1e-9
             count = len(halving) if halving.all() else int(np.argmin(halving))
+            count = min(count, int((beyond[1:] <= longest).sum()))
             if count:
                 edges = edges[(distance <= 0) | (distance >= beyond[count])]
     return edges
