@@ -29,11 +29,13 @@ from command_line import (
     environment,
     run_python,
 )
+from rich.console import Console
 
 import stribeck as sb
 from stribeck.cli import arguments
 from stribeck.cli import progress as progress_module
 from stribeck.cli.reports import explain
+from stribeck.cli.reports.state_and_curve import print_solution
 from stribeck.cli.reports.words import digits
 from stribeck.quantities.outcome import Outcome
 
@@ -163,6 +165,18 @@ def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys)
         assert scaled[definition]["contact"] == pytest.approx(0.5 * plain[definition]["contact"], rel=1e-14)
         assert scaled[definition]["viscous"] == pytest.approx(0.1 * plain[definition]["viscous"], rel=1e-14)
     assert scaled["hersey_number"] == pytest.approx(0.01 * plain["hersey_number"], rel=1e-14)
+
+
+def test_the_largest_error_printed_counts_that_of_the_friction(capsys):
+    thinning = {"fluid": sb.fluids.Carreau("1 ms", 0.6)}
+    solution = sb.solve(sb.load_case(PDMS).contact, **thinning)
+    friction = max(solution.friction(definition=each).relative_error for each in ("balanced", "published"))
+    assert friction > solution.error_estimate
+    print_solution(Console(width=200), solution, "")
+    out = capsys.readouterr().out
+    assert (
+        f"Largest estimated relative error: {friction:.1e} of the friction, {solution.error_estimate:.1e} of the rest." in out
+    )
 
 
 def test_solve_prints_values_with_units_errors_and_outcome_and_a_note_where_there_is_one(capsys, tmp_path):

@@ -51,6 +51,45 @@ def test_the_curve_says_its_range_minimum_and_notes(curve):
     assert all(note in repr(curve) for note in curve.notes)
 
 
+PARTS = {
+    "fluid": sb.fluids.Carreau("1 ms", 0.6),
+    "cavitation": "reform",
+    "cavity_pressure": "-80 kPa",
+    "solid": sb.solids.Layer("1 mm", 0.5),
+    "slide_to_roll": 0.7,
+}
+
+
+def test_a_contact_a_state_and_a_curve_name_fluid_cavitation_solid_and_motion():
+    contact = CONTACT.replace(**PARTS)
+    said = (
+        "fluid carreau, relaxation time 1 ms, exponent 0.6, infinite viscosity 0 Pa*s, solid bonded layer, thickness 1 mm, "
+        "poisson ratio 0.5, cavitation reform, cavity pressure -80 kPa, slide to roll 0.7"
+    )
+    for result in (sb.solve(contact), sb.stribeck_curve(contact, points=5), contact):
+        assert f"model</th><td style='text-align:left'>{said}<" in result._repr_html_()
+        assert result is contact or f"model: {said}\n" in repr(result)
+    names = {"LineContact": sb.LineContact, "Fluid": sb.fluids.Fluid, "Carreau": sb.fluids.Carreau, "Layer": sb.solids.Layer}
+    assert eval(repr(contact), names) == contact and eval(repr(CONTACT), names) == CONTACT
+    assert "parts" not in repr(CONTACT) and "cavitation" not in repr(CONTACT)
+
+
+def test_a_state_of_groups_names_its_parts_in_hertz_units():
+    found = sb.solve(sb.Groups(speed=3e-4, load=0.1, roughness=1e-3), fluid=sb.fluids.Barus(0.3), cavitation="exit")
+    said = "fluid newtonian + barus, pressure coefficient 0.3, solid half-plane, cavitation exit (Hertz units)"
+    assert f"model: {said}\n" in repr(found)
+
+
+def test_a_state_says_the_error_of_its_friction_where_that_is_the_larger(state):
+    friction = sb.Friction(contact=0.1, viscous=0.2, total=0.3, error=0.003)
+    assert friction.relative_error == pytest.approx(0.01, rel=1e-15) and state.friction.relative_error < state.error_estimate
+    assert sb.Friction(contact=-0.1, viscous=-0.2, total=-0.3, error=0.003).relative_error == friction.relative_error
+    fast = sb.solve(CONTACT, fluid=PARTS["fluid"])
+    assert fast.friction.relative_error > fast.error_estimate
+    assert f"of the friction {fast.friction.relative_error:.1e} (rtol 1e-06)" in repr(fast)
+    assert "of the friction" not in repr(state)
+
+
 def test_a_notebook_gets_a_table_in_which_no_text_is_code(result):
     html = result._repr_html_()
     assert html.count("<tr>") == html.count("</tr>") > 5

@@ -141,9 +141,12 @@ class Contact(ABC):
         return dict(self.inputs())
 
     def _repr_html_(self) -> str:
+        from stribeck.contacts.with_parts import model_words
+
         rows = [(self.INPUTS.quantities[name].label, si_text(value, name, 4, self.INPUTS)) for name, value in self.inputs()]
         law = "exponential" if self.law is None else self.law.name
-        return card_html(type(self).__name__, Card("inputs", [*rows, ("contact law", law)]))
+        model = [("model", words)] if (words := model_words(self.groups, self)) else []
+        return card_html(type(self).__name__, Card("inputs", [*rows, ("contact law", law), *model]))
 
     def replace(self, **changes: Any) -> Self:
         """Return a copy with some of the inputs changed.

@@ -88,6 +88,11 @@ class Friction(float):
         return made
 
     @property
+    def relative_error(self) -> float:
+        """Estimated relative error of the sum [-]; zero where friction is."""
+        return self.error / abs(self) if self else 0.0
+
+    @property
     def contact_share(self) -> float:
         """Part of the friction that asperities cause [-]; zero without friction."""
         return float(friction_share(self.contact, self.viscous))
@@ -130,6 +135,12 @@ class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
         made = np.asarray(total).view(cls)
         made.contact, made.viscous, made.error, made._other = contact, viscous, error, other
         return made
+
+    @property
+    def relative_error(self) -> Array:
+        """Estimated relative error of each sum [-]; zero where friction is."""
+        size = np.abs(self.total)
+        return np.divide(self.error, size, out=np.zeros(size.shape), where=size > 0)
 
     @property
     def total(self) -> Array:

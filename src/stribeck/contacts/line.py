@@ -24,7 +24,7 @@ from stribeck.quantities.units import InputError
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class LineContact(WithParts):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 

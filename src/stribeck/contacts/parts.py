@@ -142,8 +142,8 @@ class Parts:
         if 0 < -self.cavity_pressure < LEAST_SUCTION * units.pressure:
             unit, highest = "p_Hz" if units.pressure == 1.0 else "Pa", -LEAST_SUCTION * units.pressure
             raise InputError(
-                f"cavity_pressure = {self.cavity_pressure:g} {unit} is the ambient pressure but for rounding: the film would begin "
-                f"anew 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
+                f"cavity_pressure = {self.cavity_pressure:g} {unit} is the ambient pressure but for rounding: the film would "
+                f"begin anew 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
             )
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed
@@ -155,6 +155,13 @@ class WithParts(Contact):
     """A contact with parts, each by its name."""
 
     parts: Parts
+
+    def __repr__(self) -> str:
+        """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
+        shown = {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
+        shown |= {name: value for name, value in self.parts.items().items() if value != getattr(DEFAULT, name)}
+        shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
     @property
     def _part_names(self) -> frozenset[str]:

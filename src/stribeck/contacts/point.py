@@ -41,7 +41,7 @@ class HamrockDowsonNumbers(NamedTuple):
     load: float
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class PointContact(WithParts):
     r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -11,14 +12,35 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import NAMES, Parts
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ, FilmUnits
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 
-__all__ = ["check_solid", "hertz_units", "model_at", "models_beside", "part_attributes", "with_parts"]
+__all__ = [
+    "check_solid",
+    "hertz_units",
+    "in_words",
+    "model_at",
+    "model_words",
+    "models_beside",
+    "part_attributes",
+    "with_parts",
+]
+
+UNITS_BY_LAST_WORD = {
+    "time": "time",
+    "pressure": "pressure",
+    "stress": "pressure",
+    "viscosity": "viscosity",
+    "thickness": "length",
+    "coefficient": "pressure coefficient",
+}
+"""Dimensions of the numbers of fluids and solids, by the last word of their names."""
 
 STEP = 1e-5
 """Change of a logarithm to both sides by which a model is differentiated."""
@@ -109,6 +131,41 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
     if model.cavitation is Cavitation.REFORM:
         found["cavity_pressure"] = cavity_pressure
     return found | {"slide_to_roll": slide_to_roll}
+
+
+def model_words(groups: Groups, contact: Contact | None) -> str:
+    """Return those parts of a model that are neither the article's nor among the inputs; empty if there are none.
+
+    Parameters
+    ----------
+    groups : Groups
+        The groups.
+    contact : LineContact or PointContact, optional
+        Their contact, whose numbers are said in SI units; without it they are in Hertz units, and said to be.
+
+    Returns
+    -------
+    str
+        Such as ``"fluid carreau, relaxation time 1 ms, exponent 0.5, infinite viscosity 0 Pa*s, cavitation exit"``.
+    """
+    inputs = () if contact is None else contact.INPUTS.names
+    found: dict[str, float | str] = {}
+    for name, value in part_attributes(groups, contact).items():
+        if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
+            continue
+        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
+        found[name.removeprefix(owner)] = value
+    return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
+
+
+def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
+    """Return names and values in words, in SI units with these."""
+    said = []
+    for name, value in parameters.items():
+        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
+        text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
+        said.append(f"{name.replace('_', ' ')} {text}")
+    return ", ".join(said)
 
 
 def _at_speed(film: Any, speeds: Array) -> Any:

@@ -18,6 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.with_parts import model_words
 from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
@@ -451,12 +452,14 @@ class StribeckCurve(Exported, Shown, ByValue):
         if not len(self):
             return Card(f"no points over {self.over}", (), (self.outcome.value,))
         points = f"{len(self)} points" if len(self) == self.requested else f"{len(self)} of {self.requested} points"
+        model = model_words(self.groups, self.contact)
         rows = [
             ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
             *((mark.name, f"{mark.friction:.4g} at {self._path.where(mark.value)}") for mark in self.transitions),
             ("regimes", ", ".join(dict.fromkeys(self.regimes))),
             ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
             ("contact law", self.solutions[0].law),
+            *([("model", model)] if model else []),
             ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})"),
         ]
         ends = self._path.where(float(self.values[0]), float(self.values[-1]))

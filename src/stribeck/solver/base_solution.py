@@ -17,7 +17,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
-from stribeck.contacts.with_parts import part_attributes
+from stribeck.contacts.with_parts import model_words, part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.contact_values import refuse_former
@@ -275,8 +275,12 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
             si = "" if self.contact is None else f", {format_si(value * self.contact.hertz.indentation, 'length', 4)}"
             rows.append((words, f"{value:.4g} u_Hz{si}"))
         rows += [("Lambda", f"{self.lambda_ratio:.4g}"), ("contact law", self.law)]
+        model = model_words(self.groups, self.contact)
+        rows += [("model", model)] if model else []
         groups = ", ".join(f"{name} {float(getattr(self.groups, name)):.4g}" for name in ("speed", "load", "roughness"))
-        rows += [("groups", groups), ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})")]
+        error = friction.relative_error
+        of_friction = f", of the friction {error:.1e}" if error > self.error_estimate else ""
+        rows += [("groups", groups), ("estimated error", f"{self.error_estimate:.1e}{of_friction} (rtol {self.rtol:g})")]
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 

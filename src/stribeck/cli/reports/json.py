@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.checks.check import Checks
-from stribeck.cli.reports.words import Sensitivities, hersey_of, part_error, regime_now, strongest
+from stribeck.cli.reports.words import Sensitivities, hersey_of, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.with_parts import part_attributes
@@ -187,7 +187,7 @@ def regimes_json(
         "fluid_load_share": solution.fluid_load_share,
         "fluid_load_share_error": solution.errors["fluid_load_share"],
         "contact_friction_share": friction.contact_share,
-        "contact_friction_share_error": part_error(friction),
+        "contact_friction_share_error": friction.relative_error,
         "friction": friction.total,
         "friction_error": friction.error,
         "definition": curve.definition,

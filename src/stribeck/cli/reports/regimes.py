@@ -9,7 +9,6 @@ from stribeck.cli.exits import say
 from stribeck.cli.reports.words import (
     Sensitivities,
     mark_texts,
-    part_error,
     print_head,
     print_outcome,
     print_table,
@@ -69,7 +68,7 @@ def print_regimes(
     say(
         console,
         f"{regime_now(solution, curve.definition).capitalize()} lubrication at {speed}: friction {friction.total:.4g} "
-        f"({format_share(friction.contact_share, part_error(friction))} from asperities); the fluid carries "
+        f"({format_share(friction.contact_share, friction.relative_error)} from asperities); the fluid carries "
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load.",
     )
     for line in ways_to(margins):
@@ -87,7 +86,9 @@ def print_regimes(
         )
     _print_sensitivities(console, contact, sensitivities)
     notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
-    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes, checks)
+    error = max(solution.error_estimate, curve.error_estimate)
+    others = {"friction": max(friction.relative_error, float(curve.friction.relative_error.max(initial=0.0)))}
+    print_outcome(console, curve.outcome.value, error, notes, checks, others)
 
 
 def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sensitivities) -> None:

@@ -66,8 +66,10 @@ def print_solution(
     for row in _solution_rows(solution, boundary_friction, beta):
         table.add_row(*(row[i] for i in columns))
     print_table(console, table)
-    film = getattr(solution, "minimum_gap_error", 0.0)  # of a ball, whose tolerance does not hold it
-    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks, film)
+    # The tolerance holds neither the minimum film of a ball nor the sum of the parts of friction.
+    friction = max(solution.friction(boundary_friction, beta, each).relative_error for each in DEFINITIONS)
+    others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}
+    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks, others)
 
 
 def _solution_rows(
@@ -76,8 +78,7 @@ def _solution_rows(
     errors = solution.errors
     for definition in DEFINITIONS:
         f = solution.friction(boundary_friction, beta, definition)
-        relative = f.error / f.total if f.total > 0 else 0.0
-        yield f"friction coefficient ({definition})", digits(f.total, relative), "", error_text(relative)
+        yield f"friction coefficient ({definition})", digits(f.total, f.relative_error), "", error_text(f.relative_error)
         yield "  from asperities", part(f.contact, f.error), "", ""
         yield "  from the fluid", part(f.viscous, f.error), "", ""
     rows = solution.outputs.rows
@@ -147,6 +148,7 @@ def print_curve(
         print_table(console, table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")
-    print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes, checks)
+    friction = {"friction": float(curve.friction.relative_error.max(initial=0.0))}
+    print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes, checks, friction)
     for name in files:
         say(console, f"Written: {name}")

@@ -12,9 +12,9 @@ from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import PURE_SLIDING, Definition, Friction
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import part_attributes
+from stribeck.contacts.with_parts import in_words, model_words
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_bound, format_si
 from stribeck.quantities.input_rows import ROWS
@@ -31,25 +31,10 @@ if TYPE_CHECKING:
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that a designer can change; alpha and beta follow from the surface."""
 
-UNITS_BY_LAST_WORD = {
-    "time": "time",
-    "pressure": "pressure",
-    "stress": "pressure",
-    "viscosity": "viscosity",
-    "thickness": "length",
-    "coefficient": "pressure coefficient",
-}
-"""Dimensions of the numbers of fluids and solids, by the last word of their names."""
-
 WIDTH = 100
 """Smallest width of a table, in columns."""
 
 Sensitivities = dict[str, float]
-
-
-def part_error(friction: Friction) -> float:
-    """Return the absolute error of that part."""
-    return friction.error / friction.total if friction.total > 0 else 0.0
 
 
 def regime_now(solution: BaseSolution, definition: Definition) -> str:
@@ -140,31 +125,9 @@ def print_head(
     say(console, f"Groups: {', '.join(constant)}.")
     if groups.law is not None:
         say(console, law_sentence(groups.law))
-    parts = _beside_the_article(part_attributes(groups, contact), contact)
-    if parts:
-        say(console, f"Model: {_numbers(parts, contact is not None)}{'' if contact is not None else ' (Hertz units)'}.")
-
-
-def _beside_the_article(parts: Mapping[str, float | str], contact: Contact | None) -> dict[str, float | str]:
-    """Return those parts of a model that are neither the article's nor among the inputs, without the name of what has them."""
-    inputs = () if contact is None else contact.INPUTS.names
-    found = {}
-    for name, value in parts.items():
-        if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
-            continue
-        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
-        found[name.removeprefix(owner)] = value
-    return found
-
-
-def _numbers(parameters: Mapping[str, float | str], si: bool = False) -> str:
-    """Return names and values in words, in SI units with these."""
-    said = []
-    for name, value in parameters.items():
-        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
-        text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
-        said.append(f"{name.replace('_', ' ')} {text}")
-    return ", ".join(said)
+    model = model_words(groups, contact)
+    if model:
+        say(console, f"Model: {model}.")
 
 
 def law_sentence(law: AsperityLaw) -> str:
@@ -180,16 +143,23 @@ def law_sentence(law: AsperityLaw) -> str:
     str
         Such as ``"Contact law: persson (alpha 2.09, beta 0.0143)."``
     """
-    numbers = _numbers(law.parameters)
+    numbers = in_words(law.parameters)
     return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 
 
 def print_outcome(
-    console: Console, outcome: str, error: float, notes: Sequence[str], checks: Checks | None = None, of_film: float = 0.0
+    console: Console,
+    outcome: str,
+    error: float,
+    notes: Sequence[str],
+    checks: Checks | None = None,
+    others: Mapping[str, float] | None = None,
 ) -> None:
-    """Print how a solve ended, its error, that of the minimum film if larger, and what :func:`print_first` leaves."""
-    film = f" That of the minimum film: {of_film:.1e}." if of_film > error else ""
-    say(console, f"{outcome} Largest estimated relative error: {error:.1e}.{film}")
+    """Print how a solve ended, its error, those of other quantities that are larger, and what :func:`print_first` leaves."""
+    larger = sorted(((value, name) for name, value in (others or {}).items() if value > error), reverse=True)
+    errors = [f"{value:.1e} of the {name}" for value, name in larger]
+    found = ", ".join([*errors, f"{error:.1e} of the rest" if errors else f"{error:.1e}"])
+    say(console, f"{outcome} Largest estimated relative error: {found}.")
     for note in notes:
         if checks is None or not checks.covers(note):
             say(console, f"Note: {note}", "yellow")
