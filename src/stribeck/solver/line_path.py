@@ -80,6 +80,9 @@ SPREAD = 1.0
 BETWEEN_MESHES = 0.2
 """Part of the tolerance by which states between two meshes may be less resolved than those for which these were made."""
 
+TRUNCATED = 2.0
+"""What a series misses in the middle of an interval, over its last term there."""
+
 UNSEEN = 2.0
 """Stated error over the largest of three corrections with the Jacobian of a neighbour, for what they do not see."""
 
@@ -416,7 +419,7 @@ class LineProblem:
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
         """Return the largest difference between ``values()`` and states corrected at ``parts``, where a law is not smooth."""
         same = left.point.state.mesh is right.point.state.mesh
-        found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
+        found = np.zeros(POSITION + 1) if same else BETWEEN_MESHES * self.tolerance + self._apart(left, right)
         if self.certain or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
@@ -429,6 +432,24 @@ class LineProblem:
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
         return found
+
+    def _apart(self, left: Expansion, right: Expansion) -> Array:
+        """Return half the difference of the series of both meshes in the middle, where observables are the mean of both.
+
+        What the series miss by their order is not counted.
+        """
+        if not (self.moves and _alike(left, right)):
+            return np.zeros(POSITION + 1)
+        order = min(left.order, right.order)
+        steps = (0.5 * (right.coordinate - left.coordinate) * np.array([1.0, -1.0])[:, None]) ** np.arange(order + 1)
+        terms = np.stack([left.series[: order + 1], right.series[: order + 1]]) * steps[:, :, None]
+        values = terms.sum(axis=1)
+        with np.errstate(all="ignore"):  # a series may lead to no number
+            apart = np.abs(values[1] - values[0]) - TRUNCATED * np.abs(terms[:, -2:]).max(axis=1).sum(axis=0)
+        scales = self.scales(values.mean(axis=0)[None], np.array([0.5 * (left.coordinate + right.coordinate)]))[0]
+        found = 0.5 * np.maximum(np.nan_to_num(apart), 0.0) / scales
+        found[READ] = found[ROW["central_gap"]], 0.0  # the minimum has no series
+        return np.asarray(found)
 
     def _corrected(self, left: Expansion, right: Expansion, parts: Array) -> Array:
         """Return the observables of states between two expansions, ascending, corrected with the Jacobian of the nearer one.
