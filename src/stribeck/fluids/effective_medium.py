@@ -26,6 +26,7 @@ from stribeck.fluids.flow_factors import (
     FLOOR,
     check_alpha,
     lifted,
+    milder_roughness,
     nominal_separation,
     scaled_roughness,
     with_sigma,
@@ -106,7 +107,7 @@ class EffectiveMedium(FlowFactors):
 
     def milder(self, part: float) -> Self:
         """Return the factors of a part of the roughness."""
-        return with_sigma(self, max(part, 1e-9) * (self.sigma or 0.0))
+        return with_sigma(self, milder_roughness(self.sigma or 0.0, part))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return phi_x and its slope."""

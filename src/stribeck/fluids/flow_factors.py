@@ -26,7 +26,7 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["FLOOR", "PatirCheng", "lifted", "nominal_separation", "scaled_roughness"]
+__all__ = ["FLOOR", "PatirCheng", "lifted", "milder_roughness", "nominal_separation", "scaled_roughness"]
 
 FLOOR = 1e-4
 """Pressure flow factor that is left where the formula ends at zero: without any flow there is no pressure gradient."""
@@ -34,6 +34,9 @@ FLOOR = 1e-4
 OF_FIT, SMOOTHNESS = 0.5, 4
 """Part of the way from the end of the fits to their zero on which they go over into an exponential, and how many derivatives
 go over: with the first alone, the series of a curve converge on a twentieth of their length while the film passes there."""
+
+MILDNESS, SMOOTHEST, MOST_DECAYS = 3.0, 1e-9, 300.0
+"""Decays of the roughness at half of the way from smooth walls, the least part of that way, and the most decays."""
 
 Factors = TypeVar("Factors", bound=FlowFactors)
 
@@ -157,7 +160,7 @@ class PatirCheng(FlowFactors):
 
     def milder(self, part: float) -> Self:
         """Return the factors of a part of the roughness."""
-        return with_sigma(self, max(part, 1e-9) * (self.sigma or 0.0))
+        return with_sigma(self, milder_roughness(self.sigma or 0.0, part))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
@@ -343,6 +346,14 @@ def scaled_roughness(alpha: float | None, units: FilmUnits) -> float:
     if alpha is None:
         raise InputError("flow factors of groups need alpha, the coefficient of the contact law: about 2, as PatirCheng(2.0).")
     return alpha * units.decay_length / units.gap
+
+
+def milder_roughness(sigma: float, part: float) -> float:
+    """Return a part of a roughness: nearly none at part 0, all at 1, and every power of ten between.
+
+    The flow closes where the roughness becomes as high as the film, which may be a thousandth of it.
+    """
+    return sigma * math.exp(-min(MILDNESS * (1 - part) / max(part, SMOOTHEST), MOST_DECAYS))
 
 
 def with_sigma(factors: Factors, sigma: float) -> Factors:

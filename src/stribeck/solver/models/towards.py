@@ -50,6 +50,9 @@ FINER = (12, 1e-5)
 """Nodes per panel and tolerance of the mesh if coarse ones fail."""
 MOST_STEPS = 100
 
+SOON_LOST = 40
+"""The same where a shorter step along a path costs less."""
+
 FREE_STEPS = 15
 """The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones."""
 
@@ -114,8 +117,8 @@ class Work:
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """What :func:`march` asks for a state."""
 
-Way = tuple[Callable[[Film, float], Film], int, float]
-"""How a fluid changes into another with its part, nodes per panel and tolerance of the mesh."""
+Way = tuple[Callable[[Film, float], Film], int, float, int, float]
+"""How a fluid changes into another with its part, nodes per panel and tolerance of the mesh, most Newton steps, first part."""
 
 
 @dataclass(frozen=True)
@@ -269,8 +272,12 @@ def _milder(film: Film, part: float) -> Film:
     return film.milder(part)
 
 
-WAYS: tuple[Way, ...] = ((_blend, ORDER, MESH_TOLERANCE), (_milder, ORDER, MESH_TOLERANCE), (_milder, *FINER))
-"""In the order in which they are tried."""
+WAYS: tuple[Way, ...] = (
+    (_blend, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0),
+    (_milder, ORDER, MESH_TOLERANCE, SOON_LOST, 0.25),
+    (_milder, *FINER, MOST_STEPS, 1.0),
+)
+"""In the order in which they are tried; the whole change at once is tried on each mesh."""
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
@@ -314,14 +321,16 @@ def extended(path: Path[State], state: State) -> Path[State]:
     return replace(path, coordinates=coordinates, states=states, outcome=Outcome.CONVERGED)
 
 
-def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
+def _coarse(
+    groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE, max_steps: int = MOST_STEPS
+) -> State | None:
     """Return a coarse state from a guess, or None."""
     ends = groups.model.cavitation is Cavitation.EXIT
     operators = _operators(groups, guess, order, tolerance)
     if operators is None:
         return None
     if not ends:
-        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MOST_STEPS)
+        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, max_steps)
     state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, FREE_STEPS)
     return state if state.outcome.ok else _with_exit_sought(groups, guess, state, order, tolerance)
 
@@ -452,7 +461,7 @@ def _seen_from_exit(state: State) -> SeenFrom:
 def _blended(groups: Groups, path: Path[State], start: State, way: Way) -> Path[State]:
     """Return the path on which fluid and solid change into those of the groups in some way."""
     own, plain = groups.model, start.groups.model
-    film_at, order, tolerance = way
+    film_at, order, tolerance, most, first = way
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
         film: Film = own.film
@@ -461,12 +470,13 @@ def _blended(groups: Groups, path: Path[State], start: State, way: Way) -> Path[
             film = film_at(film, part) if film != plain.film else film
             solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
         here = replace(groups, model=replace(plain, film=film, solid=solid))
-        state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
+        state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance, most)
         if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
             return state
-        return _coarse(here, state, order, tolerance)
+        return _coarse(here, state, order, tolerance, most)
 
-    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
+    steps = replace(BLENDING, first=first)
+    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, steps, history=[(0.0, start)])
     again = settled(found.states[-1].groups, found.states[-1]) if found.outcome.ok else None
     return found if again is None else extended(found, again)
 
