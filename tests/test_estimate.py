@@ -195,6 +195,29 @@ def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(name, solv
     assert errors[-1] < 1e-10
 
 
+@pytest.mark.quick
+def test_a_state_that_holds_its_own_inverse_is_as_exact_and_that_is_the_inverse_of_its_jacobian():
+    groups = sb.Groups(*STATES["mixed"])
+    start = cold_start(groups).states[-1]
+    own, other = (converge(start, groups, 1e-6, own_inverse=each) for each in (True, False))
+    state, units = own.state, own.state.equations.units(own.state.y)
+    assert own.outcome.ok
+    assert own.estimate.total < 2 * other.estimate.total
+    np.testing.assert_allclose(own.values.array(), other.values.array(), rtol=1e-8)
+    column = state.equations.jacobian(state.y, units) @ np.ones_like(units)
+    np.testing.assert_allclose(state.root.inverse(column), -1.0, atol=1e-7)
+
+
+@pytest.mark.quick
+def test_a_second_step_begins_with_the_residual_where_the_first_one_ended():
+    near = state_on(sb.Groups(*STATES["mixed"]), 14, 1e-4)
+    groups = replace(near.groups, speed=1.05 * near.groups.speed)
+    rough, exact = (solve_state(groups, near.equations.operators, near, newton) for newton in (0.3, 1e-11))
+    first = rough.corrected()
+    np.testing.assert_allclose(first.corrected().y[exact.equations.layout.gap], exact.gap, rtol=1e-9)
+    assert np.abs(first.gap / rough.gap - 1).max() > 1e-6
+
+
 def test_meshes_grow_no_more_where_only_noise_of_the_gaps_is_left(monkeypatch):
     sizes = []
 

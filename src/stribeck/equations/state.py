@@ -226,9 +226,9 @@ class State:
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
-        inverse = self.equations.inverse(self.y)
-        y = self.y + self.equations.units(self.y) * inverse(self.equations.residual(self.y))
-        return replace(self, y=y, root=replace(self.root, x=y, inverse=inverse))
+        inverse, r = self.equations.inverse(self.y), self.root.residual
+        y = self.y + self.equations.units(self.y) * inverse(self.equations.residual(self.y) if r is None else r)
+        return replace(self, y=y, root=replace(self.root, x=y, residual=None, inverse=inverse))
 
     def without_inverse(self) -> State:
         """Return the state without Newton's last inverse, which is as large as an operator and serves only its neighbour."""

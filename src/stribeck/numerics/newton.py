@@ -218,8 +218,8 @@ class Root:
         Size of the last undamped step; nan before the first.
     contraction : float
         Size of the last step over that of the one before it; nan with fewer than two.
-    residual_norm : float
-        Largest absolute value of the residual at ``x``.
+    residual : ndarray, shape (n,), or None
+        The residual at ``x``; None if it was not evaluated there.
     inverse : Inverse or None
         The last one; None if none could be made.
     """
@@ -230,7 +230,7 @@ class Root:
     factorisations: int
     last_step: float
     contraction: float
-    residual_norm: float
+    residual: Array | None
     inverse: Inverse | None
 
     @property
@@ -288,8 +288,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
     reusable = chord is not None and inverse is not None
 
     def root(outcome: Outcome) -> Root:
-        norm = float(np.abs(r).max())
-        return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, norm, inverse)
+        return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, r, inverse)
 
     def step(inverse: Inverse, r: Array) -> Array:
         dx = inverse(r)

@@ -61,8 +61,8 @@ class Corrector:
     It keeps the operators of the current mesh, which cost as much as several states.  Its meshes resolve the gap to
     ``gap_part`` of the usual tolerance where the gap is read off.
 
-    With ``own_inverse`` states on a kept mesh are verified with the inverse of their own Jacobian, and hold it; all others
-    hold none.  That of a neighbour, with which the iteration ends, may be wrong by half in what a defect does.
+    With ``own_inverse`` states are verified with the inverse of their own Jacobian, and hold it; else they hold none.  That of
+    a neighbour, with which the iteration ends, may be wrong by half in what a defect does.
     """
 
     def __init__(
@@ -93,7 +93,9 @@ class Corrector:
         path = first_path(with_positive_gap(groups)[0])
         if path.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        return self._adopt(converge(path.states[-1], groups, self.rtol, spread=FIRST_SPREAD)) if path.outcome.ok else None
+        if not path.outcome.ok:
+            return None
+        return self._adopt(converge(path.states[-1], groups, self.rtol, spread=FIRST_SPREAD, own_inverse=self.own_inverse))
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
         """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
@@ -124,7 +126,8 @@ class Corrector:
                 guess = state
         part = 1.0 if base.model.cavitation is Cavitation.NONE else MOVING
         tail, gap_tail = self.tolerances
-        return self._adopt(converge(guess, groups, self.rtol, (part * tail, part * gap_tail), spread=spread))
+        tolerances = part * tail, part * gap_tail
+        return self._adopt(converge(guess, groups, self.rtol, tolerances, spread=spread, own_inverse=self.own_inverse))
 
     def _on_kept_mesh(self, guess: Guess, base: Groups, spread: float) -> State:
         """Return the state on the current mesh; only a rough one if it is far from the guess and needs a finer mesh anyhow."""
@@ -134,7 +137,7 @@ class Corrector:
             return rough
         if rough.prediction_error > FAR_OFF and not self._is_resolved(rough, spread):
             return rough
-        if self.own_inverse and rough.root.last_step * rough.root.contraction <= self.rtol:  # Newton's step squares it
+        if self.own_inverse and rough.root.last_step * rough.root.contraction <= newton_tolerance(self.rtol, own_inverse=True):
             return rough
         state = solve_state(base, self.operators, rough, newton_tolerance(self.rtol), MOST_STEPS, rough.root.inverse)
         return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
@@ -201,7 +204,8 @@ class Corrector:
             self.tolerances = point.tolerances or self.tolerances
             self._relax()
             self.since_check = 0
-        return self._kept(point)
+        kept = self._kept(point)
+        return point if self.own_inverse else kept
 
 
 def _cavity_may_vanish(groups: Groups) -> bool:

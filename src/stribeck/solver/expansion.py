@@ -204,7 +204,8 @@ def expand_article(
             r[at.offset] = weights @ pressure
             r[at.flux_gap] = equations.flux_scale * (weights @ gradient[k])
             step = units * inverse(r)
-            corrections.append(float(np.abs(step[at.gap]).max()))
+            if k == 1:
+                corrections.append(float(np.abs(step[at.gap]).max()))
             w[k] += step
             flux_backwards[-1 - k] = w[k, at_flux]
             of_logs = rates * step[at.gap]

@@ -414,7 +414,7 @@ class LineProblem:
             operators = Operators(operators.mesh, groups.model)
         scale = float(y[of.state.equations.layout.flux_gap.start]) ** 2
         equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
-        return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
+        return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, None, None), 0.0)
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
         """Return the largest difference between ``values()`` and states corrected at ``parts``, where a law is not smooth."""

@@ -80,12 +80,14 @@ def converge(
     tolerances: tuple[float, float] | None = None,
     profile_tolerance: float = math.inf,
     spread: float = 0.0,
+    own_inverse: bool = False,
 ) -> RefinedState:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
     ``profile_tolerance`` is the tail of the gap between the nodes, on which no observable depends; ``spread`` is the
-    distance from its minimum up to which the gap is resolved as well as there.
+    distance from its minimum up to which the gap is resolved as well as there.  With ``own_inverse`` the state holds the
+    inverse of its own Jacobian: its step, by which the iteration ends, squares what error the one before leaves.
     """
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
@@ -95,6 +97,7 @@ def converge(
     last: tuple[int, Array] | None = None
     halvings = 0
     outcome = Outcome.REFINEMENT_LIMIT
+    newton = newton_tolerance(rtol, own_inverse)
     for _ in range(MAX_REFINEMENTS):
         try:
             mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings, spread)
@@ -102,7 +105,7 @@ def converge(
             profile_tolerance *= 10.0
             tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
             continue
-        state = solve_state(base, Operators(mesh, base.model), guess, newton_tolerance(rtol))
+        state = solve_state(base, Operators(mesh, base.model), guess, newton)
         if not state.outcome.ok:
             outcome = state.outcome
             if best.state is not None or tail > COARSER * first:
@@ -111,6 +114,7 @@ def converge(
             continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
+        state = state.corrected() if own_inverse else state
         fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
         [estimate] = error_estimates(state.stacked, [values], fine)
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
@@ -170,9 +174,13 @@ def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
     return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
 
 
-def newton_tolerance(rtol: float) -> float:
-    """Return the size of the last Newton step, after which the error of the iteration is far below ``rtol``."""
-    return max(1e-11, 1e-2 * rtol)
+def newton_tolerance(rtol: float, own_inverse: bool = False) -> float:
+    """Return the size of the last Newton step, after which the error of the iteration is far below ``rtol``.
+
+    With ``own_inverse`` it is that before one more step, with the inverse of the Jacobian there, which squares the error.
+    """
+    last = max(1e-11, 1e-2 * rtol)
+    return math.sqrt(last) if own_inverse else last
 
 
 def values_of(state: State, groups: Groups) -> Observables:
