@@ -352,6 +352,6 @@ def test_a_root_lies_between_two_signs():
         return math.exp(x) - 3.0
 
     assert root_between(function, 0.0, 5.0, 1e-10) == pytest.approx(math.log(3.0), abs=1e-10)
-    assert len(calls) < 25
+    assert len(calls) <= 10  # by bisection it takes 36
     assert root_between(lambda x: x, 0.0, 1.0, 1e-10) == 0.0
     assert root_between(lambda x: x * x + 1, 0.0, 1.0, 1e-10) is None

@@ -134,11 +134,10 @@ def chebyshev_basis(tau: Array, count: int) -> Array:
     x = 2.0 * tau - 1.0
     if not np.iscomplexobj(x):
         return np.asarray(np.cos(np.arccos(np.clip(x, -1.0, 1.0))[:, None] * np.arange(count)))
-    found = np.empty((count, *tau.shape), dtype=x.dtype)
-    found[0] = 1.0
-    if count > 1:
-        found[1] = x
-    twice = 2.0 * x
-    for k in range(2, count):
-        found[k] = twice * found[k - 1] - found[k - 2]
-    return np.asarray(found.T)
+    found = []  # complex places come one by one: numbers are faster than arrays of one
+    for each in x.tolist():
+        row = [1.0, each]
+        for _ in range(2, count):
+            row.append(2.0 * each * row[-1] - row[-2])
+        found.append(row[:count])
+    return np.array(found)

@@ -39,8 +39,11 @@ FASTER = 4.0  # growth of the part of a monotone step, from one to the next
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
 
-MOST_HALVINGS = 100
-"""Steps of the search for a root of one unknown."""
+MOST_PLACES = 100
+"""Places at which a function of one unknown is evaluated in search of its root."""
+
+INVERSE_POINTS = 4
+"""Last places through which the next one is interpolated."""
 
 
 class Inverse(Protocol):
@@ -366,7 +369,7 @@ def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: fl
 
 
 def root_between(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float | None:
-    """Return where a function vanishes between two places at which its signs differ, by regula falsi (Illinois).
+    """Return where a function vanishes between two places at which its signs differ, by inverse interpolation and bisection.
 
     Parameters
     ----------
@@ -382,19 +385,35 @@ def root_between(function: Callable[[float], float], low: float, high: float, to
     float or None
         The place; None where the signs are the same.
     """
-    a, b, value_a, value_b = low, high, function(low), function(high)
-    if value_a == 0.0 or value_b == 0.0:
-        return a if value_a == 0.0 else b
-    if not value_a * value_b < 0:
+    places, values = [low, high], [function(low), function(high)]
+    if 0.0 in values:
+        return places[values.index(0.0)]
+    if not values[0] * values[1] < 0:
         return None
-    for _ in range(MOST_HALVINGS):
-        c = b - value_b * (b - a) / (value_b - value_a)
+    falls = True
+    while high - low > tolerance and len(places) < MOST_PLACES:
+        c = _where_zero(places[-INVERSE_POINTS:], values[-INVERSE_POINTS:]) if falls else math.nan
+        if abs(c - places[-1]) <= tolerance:
+            return min(max(c, low), high)
+        c = c if low < c < high else 0.5 * (low + high)
         value = function(c)
-        if value == 0.0 or abs(c - b) <= tolerance:
+        if value == 0.0:
             return c
-        if value * value_b < 0:
-            a, value_a = b, value_b
+        falls = abs(value) <= 0.5 * abs(values[-1])
+        if value * values[0] > 0:
+            low = c
         else:
-            value_a *= 0.5
-        b, value_b = c, value
-    return b
+            high = c
+        places.append(c)
+        values.append(value)
+    return 0.5 * (low + high)
+
+
+def _where_zero(places: list[float], values: list[float]) -> float:
+    """Return the place for the value zero, on the polynomial of the value through all; nan if two values are equal."""
+    found = places
+    for k in range(1, len(places)):
+        if any(a == b for a, b in zip(values, values[k:], strict=False)):
+            return math.nan
+        found = [(b * x - a * y) / (b - a) for a, b, x, y in zip(values, values[k:], found, found[1:], strict=False)]
+    return found[0]
