@@ -162,6 +162,22 @@ def test_marks_are_read_off_a_coarse_curve_within_their_errors_and_polished_on_s
     assert len(solved) in (1, 2)
 
 
+def test_landmarks_of_a_coarse_curve_share_their_meshes(monkeypatch):
+    fine, coarse = (sb.stribeck_curve(load=2e-4, roughness=4e-8, points=3, rtol=rtol) for rtol in (1e-6, 1e-4))
+    meshes = []
+
+    def counted(*arguments):
+        meshes.append(arguments)
+        return converge(*arguments)
+
+    monkeypatch.setattr(line_path, "converge", counted)
+    for mark in coarse.transitions:
+        exact = fine.landmark(mark.name)
+        assert mark.value == pytest.approx(exact.value, rel=mark.error + exact.error)
+    assert len(coarse.transitions) == 4
+    assert len(meshes) <= 4  # one for each at most; two states are solved for each
+
+
 def test_a_curve_like_another_needs_few_meshes_no_cold_start_and_is_the_same(monkeypatch):
     before, moved = sb.stribeck_curve(CONTACT, points=200, rtol=1e-4), CONTACT.replace(load="31 N/m")
     begun, meshes = [], []

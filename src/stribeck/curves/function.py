@@ -38,10 +38,13 @@ def _beside(path: SolvedPath, s: float) -> tuple[LineProblem, Any, Any]:
 
 
 @one_blas_thread
-def solved_at(path: SolvedPath, s: float, rtol: float | None = None) -> RefinedState:
-    """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
+def solved_at(path: SolvedPath, s: float, rtol: float | None = None, near: RefinedState | None = None) -> RefinedState:
+    """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path.
+
+    The mesh of ``near``, a state solved close by, is tried first.
+    """
     problem, left, right = _beside(path, s)
-    return problem.point_at(left, right, s, rtol)
+    return problem.point_at(left, right, s, rtol, near)
 
 
 def within(path: SolvedPath, found: Array, errors: Array, rtol: float) -> Flags:

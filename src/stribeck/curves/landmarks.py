@@ -42,6 +42,9 @@ STEP = 1e-20
 WIDTH = 1e-3
 """Step along the coordinate for other derivatives."""
 
+NEAR = 0.5
+"""Distance along the coordinate up to which the mesh of one landmark may serve another."""
+
 MOST_POLISHES = 4
 """Most states solved for one landmark: each squares the error."""
 
@@ -93,6 +96,7 @@ class Landmarks:
         self.moves = bool(coordinate.groups_at(float(path.coordinates[0])).speed > 0)
         self.places = places_of(path)
         self.rows = path.smooth(self.places)
+        self.solved: dict[float, RefinedState] = {}
 
     def place(self, mark: Transition, rubbing: float, beta: float, definition: Definition, accepted: float) -> Place | None:
         """Return where a transition or the minimum lies, for coefficients of the friction; None where the path holds none."""
@@ -174,6 +178,13 @@ class Landmarks:
         used = slopes != 0
         return float(np.abs(slopes[used]) @ sizes[used])
 
+    def _solved_at(self, s: float, rtol: float) -> RefinedState:
+        """Return the state at a coordinate; the mesh of the nearest one solved before for a landmark is tried first."""
+        near = min(self.solved, key=lambda each: abs(each - s), default=math.inf)
+        point = solved_at(self.path, s, rtol, self.solved[near] if abs(near - s) <= NEAR else None)
+        self.solved[s] = point
+        return point
+
     @one_blas_thread
     def _polished(
         self,
@@ -194,7 +205,7 @@ class Landmarks:
             solution: Solution | None = CurvePoint(self.coordinate, self.path, s, row, errors, self.rtol)
         else:
             for _ in range(MOST_POLISHES):
-                point = solved_at(self.path, s, min(self.rtol, accepted))
+                point = self._solved_at(s, min(self.rtol, accepted))
                 if point.state is None or point.values is None:
                     raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
                 step = -of(point) / slope

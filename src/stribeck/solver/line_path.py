@@ -39,7 +39,7 @@ from stribeck.solver.expansion import (
     residuals,
 )
 from stribeck.solver.path import KNOT_PART, Expansion, rate
-from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
+from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
 EXACT_ORDER, ORDER = (18, 20), (14, 16)
 """Highest orders of series for tolerances of 1e-7 and below: for films of the article if the contact law has an exact series,
@@ -106,6 +106,9 @@ OFFSET_FLOOR = 5e-3
 
 SIMILAR = 0.5
 """Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
+
+WORTH_VERIFYING = 5.0
+"""Error of a state of a path over a smaller tolerance up to which its mesh may hold that beside: a fourth was found there."""
 
 SAME = 1e-9
 """Relative difference of groups, and of places, that are the same."""
@@ -387,24 +390,45 @@ class LineProblem:
             return point.state
         return self._guess(s, self.groups_at(s), [left, right])[0]
 
-    def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
-        """Return the state between two expansions, on the mesh of the nearer one."""
-        guess = self.guess_at(left, right, s)
-        return solve_state(guess.groups, guess.equations.operators, guess, newton_tolerance(self.rtol))
+    def point_at(
+        self, left: Expansion, right: Expansion, s: float, rtol: float | None = None, near: RefinedState | None = None
+    ) -> RefinedState:
+        """Return the verified state between two expansions.
 
-    def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
-        """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
+        It lies on the mesh of a state ``near`` or of the nearer expansion if that holds the tolerance, else on one of its own.
+        """
         rtol = self.tolerance if rtol is None else rtol
-        state, groups = self.state_at(left, right, s), self.groups_at(s)
-        end = on(state.mesh, (left, right))
-        if state.outcome.ok and end is not None:
-            point = verify(state, groups, end.fine, rtol)
-            if point.outcome.ok:
+        groups = self.groups_at(s)
+        if near is not None and near.state is not None and near.groups.model == groups.model:
+            point = self._verified(near.state, with_positive_gap(groups)[0], groups, near.fine, rtol, near.state.root.inverse)
+            if point is not None:
                 return point
-        if state.groups.model.cavitation is groups.model.cavitation:
-            return converge(state, groups, rtol)
-        point = converge(state, replace(groups, model=state.groups.model), rtol)
+        guess = self.guess_at(left, right, s)
+        end = on(guess.mesh, (left, right))
+        if end is not None and end.refined.estimate is not None and end.refined.estimate.total <= WORTH_VERIFYING * rtol:
+            point = self._verified(guess, guess.groups, groups, end.fine, rtol)
+            if point is not None:
+                return point
+        tail, gap_tail = mesh_tolerances_for(rtol)
+        tolerances = tail, GAP_PART * gap_tail
+        if guess.groups.model.cavitation is groups.model.cavitation:
+            return converge(guess, groups, rtol, tolerances)
+        point = converge(guess, replace(groups, model=guess.groups.model), rtol, tolerances)
         return replace(point, groups=groups) if keeps_cavity(point, groups) else from_cold(groups, rtol)
+
+    def _verified(
+        self,
+        guess: State,
+        base: Groups,
+        groups: Groups,
+        fine: FineOperators | None,
+        rtol: float,
+        kept: Inverse | None = None,
+    ) -> RefinedState | None:
+        """Return the state of ``base`` on the mesh of a guess; None if that does not hold the tolerance."""
+        state = solve_state(base, guess.equations.operators, guess, newton_tolerance(rtol), kept=kept)
+        point = verify(state, groups, fine, rtol) if state.outcome.ok and fine is not None else None
+        return point if point is not None and point.outcome.ok else None
 
     def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
         """Return the state with unknowns ``w``, which hold logarithms of gaps, on the mesh of a point."""

@@ -185,10 +185,12 @@ class ReformingLine(LineProblem):
             return nearest
         return point.state
 
-    def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
+    def point_at(
+        self, left: Expansion, right: Expansion, s: float, rtol: float | None = None, near: RefinedState | None = None
+    ) -> RefinedState:
         """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
         if not has_cavity(left.point.state) and not has_cavity(right.point.state):
-            return super().point_at(left, right, s, rtol)
+            return super().point_at(left, right, s, rtol, near)
         rtol = self.tolerance if rtol is None else rtol
         point, groups = self._solved(s, [left, right]), self.groups_at(s)
         if point is None or point.state is None:
