@@ -124,6 +124,15 @@ def test_parts_that_are_none_or_do_not_go_together_are_refused_by_name(parts, sa
         _ = contact(**parts).groups
 
 
+def test_what_fails_in_a_property_of_a_contact_is_not_hidden_as_an_unknown_name(monkeypatch):
+    known = contact()
+    with pytest.raises(AttributeError, match="'LineContact' object has no attribute 'raduis'"):
+        _ = known.raduis
+    monkeypatch.setattr(sb.LineContact, "hertz", property(lambda self: self.parts.no_such_thing))
+    with pytest.raises(AttributeError, match="'Parts' object has no attribute 'no_such_thing'"):
+        _ = known.hertz
+
+
 @pytest.mark.quick
 def test_an_unknown_part_is_refused_as_a_keyword():
     with pytest.raises(TypeError, match="did you mean 'slide_to_roll'"):

@@ -185,6 +185,8 @@ def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed(solid):
         (lambda: Prony([1.0], [1.0, 2.0]), "as many"),
         (lambda: Prony([1.0, 1.0], [1.0, 2.0]), "differ"),
         (lambda: TwoBodies(first_share=1.2), "first_share"),
+        (lambda: TwoBodies(None, 3), "second = 3; give one of sb.solids"),
+        (lambda: StandardLinearSolid("10 ms", 2.0, Layer), "base = .*Layer.*; give one of sb.solids"),
     ],
 )
 def test_impossible_solids_are_refused_by_name(make, said):

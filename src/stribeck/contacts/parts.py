@@ -20,7 +20,7 @@ from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, part_value, with_part_value
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
 __all__ = ["DEFAULT", "NAMES", "Parts", "WithParts", "signature_with_parts"]
@@ -79,7 +79,7 @@ class Parts:
             "cavitation": _cavitation(cavitation),
             "cavity_pressure": 0.0 if cavity_pressure is None else to_si(cavity_pressure, "pressure", "cavity_pressure"),
             "flow_factors": as_flow_factors(flow_factors),
-            "solid": _solid(solid),
+            "solid": None if solid is None else as_solid("solid", solid),
             "slide_to_roll": PURE_SLIDING if slide_to_roll is None else to_si(slide_to_roll, "number", "slide_to_roll"),
         }
         for name, value in values.items():
@@ -213,9 +213,8 @@ class WithParts(Contact):
     def __getattr__(self, name: str) -> Any:
         """Return a number of the fluid or the solid by its name, in SI units."""
         found = part_value(self.parts, name) if name in PART_INPUTS else None
-        if found is None:
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
-        return found
+        # Of a property that fails Python asks here, and would show none of what failed.
+        return object.__getattribute__(self, name) if found is None else found
 
     @property
     def film_units(self) -> FilmUnits:
@@ -273,12 +272,6 @@ def _cavitation(value: str | Cavitation | None) -> Cavitation:
     except ValueError:
         known = ", ".join(repr(str(each)) for each in Cavitation)
         raise InputError(f"cavitation = {show(value)} must be one of {known}.") from None
-
-
-def _solid(solid: Solid | None) -> Solid | None:
-    if solid is None or (hasattr(solid, "deflection") and not isinstance(solid, type)):
-        return solid
-    raise InputError(f"solid = {show(solid)}; give one of sb.solids such as Layer('2 mm'), or leave it out: a half-space.")
 
 
 NAMES = frozenset(field.name for field in fields(Parts))

@@ -23,6 +23,8 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.panels import HalfTail, Mesh, reference
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.solid import Solid
 
 FAR_ACCURACY = 4e-13
 """Error of a panel's own Gauss rule for the logarithm from which a target counts as far: rho**(-2 order) for a distance of
@@ -306,3 +308,12 @@ class HalfPlane:
     def far_gap(self, x: Array) -> Array:
         """Return ``x**2/2 - ln|x|/2``: a load of pi/2 on the half-plane."""
         return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+
+
+def as_solid(name: str, solid: Solid | None) -> Solid:
+    """Return what users give as the body of that name, a half-plane for none; refuse what is no body."""
+    if solid is None:
+        return HalfPlane()
+    if hasattr(solid, "deflection") and not isinstance(solid, type):
+        return solid
+    raise InputError(f"{name} = {show(solid)}; give one of sb.solids such as Layer('2 mm'), or leave it out: a half-space.")

@@ -14,7 +14,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.half_plane import as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["TwoBodies"]
@@ -36,7 +36,7 @@ class TwoBodies:
     Raises
     ------
     InputError
-        Where the share is impossible.
+        Where the share is impossible, or a body is none.
     """
 
     first: Solid
@@ -47,7 +47,7 @@ class TwoBodies:
         share = to_si(first_share, "number", "first_share")
         if not 0 <= share <= 1:
             raise InputError(f"first_share = {show(first_share)} must lie between 0 and 1: E* over the modulus of the first.")
-        bodies = {"first": HalfPlane() if first is None else first, "second": HalfPlane() if second is None else second}
+        bodies = {"first": as_solid("first", first), "second": as_solid("second", second)}
         for name, value in {**bodies, "first_share": share}.items():
             object.__setattr__(self, name, value)
 

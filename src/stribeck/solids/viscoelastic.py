@@ -28,7 +28,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.half_plane import as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction", "memory"]
@@ -100,7 +100,7 @@ class StandardLinearSolid(_Viscoelastic):
         values = {"time": _positive("time", time), "ratio": to_si(ratio, "number", "ratio")}
         if not values["ratio"] > 1:
             raise InputError(f"ratio = {show(ratio)} must be above 1: the modulus at once over that of the relaxed body.")
-        for name, value in {**values, "base": HalfPlane() if base is None else base}.items():
+        for name, value in {**values, "base": as_solid("base", base)}.items():
             object.__setattr__(self, name, value)
 
     @property
@@ -160,7 +160,7 @@ class Prony(_Viscoelastic):
         g = tuple(to_si(each, "number", "moduli") for each in moduli)
         if min(g) <= 0 or len(set(tau)) < len(tau):
             raise InputError(f"moduli = {show(moduli)} must be above zero, and the times differ from each other.")
-        for name, value in {"times": tau, "moduli": g, "base": HalfPlane() if base is None else base}.items():
+        for name, value in {"times": tau, "moduli": g, "base": as_solid("base", base)}.items():
             object.__setattr__(self, name, value)
 
     @property
