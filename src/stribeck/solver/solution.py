@@ -227,13 +227,21 @@ class Solution(BaseSolution):
 
     @property
     def hysteresis_friction(self) -> float:
-        """Friction by the losses of a viscoelastic solid over the slope a/R [-], beside :meth:`friction`; else zero."""
-        solid = self.groups.model.solid
+        """Friction by the losses of a viscoelastic solid over the slope a/R [-], beside :meth:`friction`; else zero.
+
+        It is what the drags of both walls lack of the moment of the pressure (theory.md, section 12), which wide panels hold
+        better than the slope of the surface.  With friction factors the drags are others, and that slope is taken.
+        """
+        solid, (exit, dilation) = self.groups.model.solid, self.origin
         if not getattr(solid, "uses_speed", False):
             return 0.0
+        if self.groups.model.film.parameters.get("friction_factors") != "true":
+            x = exit + dilation * self.mesh.nodes
+            moment = dilation * (x * (self._pressures[0] + self._pressures[1])) @ self.mesh.weights
+            drags = self.observables.viscous_balanced - self.observables.viscous_upper
+            return float(-drags / (2 * math.sqrt(float(self.groups.load))) - 2 / math.pi * moment)
         from stribeck.solids.viscoelastic import hysteresis_friction
 
-        dilation = self.origin[1]
         mesh = replace(self.mesh, edges=dilation * self.mesh.edges, scale=dilation * self.mesh.scale)
         return hysteresis_friction(mesh, solid, self._pressures[0] + self._pressures[1])
 
