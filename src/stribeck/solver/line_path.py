@@ -250,9 +250,7 @@ class LineProblem:
             self.failure = refined
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
-        similar = self._similar(s)
-        known = near if similar is None else [similar]
-        return self._expanded(s, refined, min((one.radius for one in known), default=2.0))
+        return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
 
     def _same(self, s: float, groups: Groups) -> Expansion | None:
         """Return the state of a similar contact that has these groups, as where only its friction or viscosity differs."""
@@ -268,15 +266,10 @@ class LineProblem:
         self.corrector.move_to(point.state.equations.operators, point.fine)
         return replace(found, coordinate=s)
 
-    def _similar(self, s: float) -> Expansion | None:
-        """Return the nearest state of a similar contact, if its series reaches here; its radius is about that here."""
-        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
-        return None if found is None or abs(found.coordinate - s) > SIMILAR * found.radius else found
-
     def _from_similar(self, s: float, groups: Groups, near: Sequence[Expansion]) -> RefinedState | None:
         """Return the state from the nearest one of a similar contact, on its mesh; None if there is none, or it fails."""
-        found = self._similar(s)
-        if found is None:
+        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
+        if found is None or abs(found.coordinate - s) > SIMILAR * found.radius:
             return None
         point: LinePoint = found.point
         w, doubt = beyond(point.unknowns, s - found.coordinate)
