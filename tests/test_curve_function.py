@@ -17,7 +17,7 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables_of_stacked
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
-from stribeck.solver import corrector
+from stribeck.solver import corrector, line_path
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.expansion import expand_article
 from stribeck.solver.line_path import LineProblem
