@@ -19,7 +19,7 @@ from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import corrector, line_path
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.expansion import expand_article
+from stribeck.solver.expansion import expand_any_film, expand_article
 from stribeck.solver.line_path import LineProblem
 from stribeck.solver.refinement import converge, verify
 
@@ -191,6 +191,15 @@ def test_a_curve_like_another_needs_few_meshes_no_cold_start_and_is_the_same(mon
     speeds = np.geomspace(1.01 * max(curve.values[0], anew.values[0]), 0.99 * min(curve.values[-1], anew.values[-1]), 40)
     one, two = curve.at(speeds), anew.at(speeds)
     assert (np.abs(one.friction - two.friction) <= one.friction_error + two.friction_error).all()
+
+
+def test_a_curve_like_one_beside_expands_each_state_once_as_the_radius_is_known(monkeypatch):
+    """Samples at a distance from the radius of the neighbour along the curve were wrong for one state in three."""
+    expanded, barus = [], CONTACT.replace(fluid=sb.fluids.Barus("20 1/GPa"))
+    before = sb.stribeck_curve(barus, points=200, rtol=1e-4)
+    monkeypatch.setattr(line_path, "expand_any_film", lambda *around: expanded.append(around) or expand_any_film(*around))
+    curve = sb.stribeck_curve(barus.replace(load="30.3 N/m"), points=200, rtol=1e-4, like=before)
+    assert len(expanded) == curve.states
 
 
 def test_a_curve_is_sampled_anew_without_a_state(curve):

@@ -107,6 +107,9 @@ OFFSET_FLOOR = 5e-3
 SIMILAR = 0.5
 """Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
 
+BESIDE = 0.3
+"""Distance of a similar contact in the logarithms of its groups, across the path, up to which its series converge as far."""
+
 WORTH_VERIFYING = 5.0
 """Error of a state of a path over a smaller tolerance up to which its mesh may hold that beside: a fourth was found there."""
 
@@ -179,12 +182,15 @@ class LineProblem:
 
     def _shift(self, one: Expansion) -> float:
         """Return the way along the path to the groups that are nearest to those of a state of a similar contact."""
-        there, here, d = one.point.refined.groups, self.groups_at(one.coordinate), np.array(self.direction)
+        d = np.array(self.direction)
+        return float(d @ self._logs_from(one) / (d @ d))
+
+    def _logs_from(self, one: Expansion) -> Array:
+        """Return the logarithms of the groups of a state of a similar contact over those that have its coordinate here."""
+        there, here = one.point.refined.groups, self.groups_at(one.coordinate)
         # A speed or a roughness of zero is none along the whole path.
-        apart = [
-            float(getattr(there, name) or 1.0) / float(getattr(here, name) or 1.0) for name in ("speed", "load", "roughness")
-        ]
-        return float(d @ np.log(apart) / (d @ d))
+        each = ((getattr(there, name), getattr(here, name)) for name in ("speed", "load", "roughness"))
+        return np.log([float(a or 1.0) / float(b or 1.0) for a, b in each])
 
     @cached_property
     def held(self) -> Flags:
@@ -250,7 +256,15 @@ class LineProblem:
             self.failure = refined
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
+        similar = self._similar(s)
+        if similar is not None and (np.abs(self._logs_from(similar)) < BESIDE).all():
+            near = [similar]
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
+
+    def _similar(self, s: float) -> Expansion | None:
+        """Return the nearest state of a similar contact, if its series reaches here."""
+        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
+        return None if found is None or abs(found.coordinate - s) > SIMILAR * found.radius else found
 
     def _same(self, s: float, groups: Groups) -> Expansion | None:
         """Return the state of a similar contact that has these groups, as where only its friction or viscosity differs."""
@@ -268,8 +282,8 @@ class LineProblem:
 
     def _from_similar(self, s: float, groups: Groups, near: Sequence[Expansion]) -> RefinedState | None:
         """Return the state from the nearest one of a similar contact, on its mesh; None if there is none, or it fails."""
-        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
-        if found is None or abs(found.coordinate - s) > SIMILAR * found.radius:
+        found = self._similar(s)
+        if found is None:
             return None
         point: LinePoint = found.point
         w, doubt = beyond(point.unknowns, s - found.coordinate)
