@@ -174,6 +174,9 @@ def test_landmarks_of_a_coarse_curve_share_their_meshes(monkeypatch):
     for mark in coarse.transitions:
         exact = fine.landmark(mark.name)
         assert mark.value == pytest.approx(exact.value, rel=mark.error + exact.error)
+        assert mark.error < 10 * exact.error
+        stated = [each.solution.friction().error for each in (mark, exact)]
+        assert mark.friction == pytest.approx(exact.friction, abs=sum(stated))
     assert len(coarse.transitions) == 4
     assert len(meshes) <= 4  # one for each at most; two states are solved for each
 

@@ -198,21 +198,21 @@ class Landmarks:
         s = root_between(at, low, high, LOCATION_TOLERANCE)
         if s is None:
             return None
-        width = min(WIDTH, 0.1 * (high - low))
+        width, rtol = min(WIDTH, 0.1 * (high - low)), min(self.rtol, accepted)
         slope = (at(s + width) - at(s - width)) / (2 * width)
         (row,), (errors,) = self.path.at(np.array([s]))
         if within(self.path, row[None], errors[None], accepted)[0]:
-            solution: Solution | None = CurvePoint(self.coordinate, self.path, s, row, errors, self.rtol)
+            solution: Solution | None = CurvePoint(self.coordinate, self.path, s, row, errors, rtol)
         else:
             for _ in range(MOST_POLISHES):
-                point = self._solved_at(s, min(self.rtol, accepted))
+                point = self._solved_at(s, rtol)
                 if point.state is None or point.values is None:
                     raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
                 step = -of(point) / slope
                 if abs(step) <= LOCATION_TOLERANCE or not abs(step) < high - low:
                     break
                 s = s + step
-            solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
+            solution = solution_of(point, self.coordinate.contact_at(s), rtol)
         assert solution is not None
         row[:POSITION], known = solution.observables.array(in_article=False), solution.counted_errors
         errors[: len(known)] = known
