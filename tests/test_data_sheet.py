@@ -9,6 +9,7 @@ from command_line import EXAMPLES, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
+from stribeck.data_sheet.content import _inputs
 from stribeck.quantities.given.conversions import CONVERSIONS, GIVEN, read_given
 from stribeck.quantities.given.uncertain import split_error
 from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
@@ -268,3 +269,60 @@ def test_what_no_solver_knows_is_printed_as_a_bound():
     found = sb.Uncertainty(TRUE, {}, (), {"mixed": 1 - 5e-5, "hydrodynamic": 5e-5}, shares, "atlas")
     assert found.probabilities == "mixed 100 %, hydrodynamic < 0.1 %"
     assert found.sources == ("Sources of the variance of friction: roughness 99 %, contact-law beta 0.99 %.",)
+
+
+LAYER = {"solid": sb.solids.Layer("0.3 mm", 0.5)}
+THINNING = {"fluid": sb.fluids.Carreau("1 ms", 0.5)}
+
+
+@pytest.mark.parametrize(
+    ("parts", "name", "error"),
+    [(LAYER, "layer_thickness", 0.3), (THINNING, "relaxation_time", 0.5), (THINNING, "exponent", 0.1)],
+)
+def test_errors_of_numbers_of_fluid_and_solid_propagate(parts, name, error):
+    contact = TRUE.replace(speed="10 mm/s", **parts)
+    found = sb.propagate(contact, {name: error}, transitions=False)
+    assert found.contributions == {name: pytest.approx(1)}
+    reach = math.exp(1.96 * math.sqrt(math.log1p(error**2)))
+    ends = [sb.solve(contact.replace(**{name: getattr(contact, name) * each}), rtol=1e-5) for each in (1 / reach, reach)]
+    assert found["friction"].interval_95 == pytest.approx(sorted(each.friction().total for each in ends), rel=0.03)
+
+
+def test_a_pressure_coefficient_of_a_ball_has_a_share_in_the_variance():
+    ball = sb.PointContact.from_groups(
+        sb.Groups(1e-2, 1e-2, 5e-4, geometry="point"), radius=0.01, modulus=1e6, viscosity=0.1, alpha=2.0, beta=0.1,
+        boundary_friction=0.8, slide_to_roll=0.6,
+    ).replace(fluid=sb.fluids.Barus("500 1/GPa"))  # fmt: skip
+    found = sb.propagate(ball, {"alpha_p": "20 %", "roughness": 1e-4})
+    assert found.contributions["pressure_coefficient"] > 1e-3
+    assert "pressure coefficient of the viscosity" in str(found)
+
+
+@pytest.mark.quick
+def test_errors_that_numbers_of_a_law_cannot_have_are_refused():
+    with pytest.raises(sb.InputError, match="this contact has none: it belongs to a fluid that thins"):
+        sb.propagate(TRUE, {"relaxation_time": 0.1})
+    with pytest.raises(sb.InputError, match="the error of exponent = 0.8 is too large"):
+        sb.propagate(TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.8)), {"exponent": 0.2})
+
+
+@pytest.mark.quick
+def test_a_case_takes_errors_of_numbers_of_fluid_and_solid(tmp_path):
+    path = tmp_path / "case.toml"
+    parts = '[fluid]\nmodel = "carreau"\nrelaxation_time = "1 ms +- 0.2 ms"\nexponent = "0.5 +- 10 %"\n[solid]\n'
+    path.write_text(case_text({}) + "\n" + parts + 'layer_thickness = { value = "2 mm", error = "5 %" }\n')
+    case = sb.load_case(path)
+    assert case.errors == pytest.approx({"relaxation_time": 0.2, "exponent": 0.1, "layer_thickness": 0.05})
+    assert (case.contact.relaxation_time, case.contact.exponent, case.contact.layer_thickness) == (1e-3, 0.5, 2e-3)
+    path.write_text(case_text({}) + "\n" + parts.replace("0.2 ms", "x ms") + 'layer_thickness = "2 mm"\n')
+    with pytest.raises(sb.InputError, match=r"\[fluid\] .*relaxation_time"):
+        sb.load_case(path)
+
+
+@pytest.mark.quick
+def test_the_inputs_of_a_report_name_fluid_and_solid_and_their_errors(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({}) + "\n" + '[fluid]\nmodel = "carreau"\nrelaxation_time = "1 ms +- 20 %"\nexponent = 0.5\n')
+    last = _inputs(sb.load_case(path))[-1]
+    assert "fluid carreau, relaxation time 1 ms, exponent 0.5" in last.value
+    assert last.error == "relaxation time ± 20 %"

@@ -77,7 +77,9 @@ def slope_of_solved(contact, name):
 
 
 @pytest.mark.parametrize(
-    ("model", "inputs"), [("barus", ("load", "modulus")), ("flow", ("roughness",))], ids=["barus", "flow factors"]
+    ("model", "inputs"),
+    [("barus", ("load", "modulus", "pressure_coefficient")), ("flow", ("roughness",))],
+    ids=["barus", "flow factors"],
 )
 def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_them(model, inputs):
     contact = ball_with(model)

@@ -62,7 +62,7 @@ class Case:
     facts : dict
         The ``[check]`` table, for :func:`stribeck.check`, in SI units.
     errors : dict
-        Relative standard errors of the inputs that have one.
+        Relative standard errors of the inputs that have one, numbers of the fluid and the solid among them.
     conversions : tuple of str
         Conversions of data-sheet inputs, one sentence each.
     tables : dict

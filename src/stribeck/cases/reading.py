@@ -19,9 +19,10 @@ from stribeck.files.toml import read_toml
 from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.given.conversions import read_given
-from stribeck.quantities.given.uncertain import split_error
+from stribeck.quantities.given.uncertain import has_error, split_error
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.quantities.units import InputError
+from stribeck.quantities.part_inputs import PART_INPUTS
+from stribeck.quantities.units import DIMENSIONS, InputError
 
 __all__ = ["check_case", "contact_inputs", "geometry_of", "group_inputs", "load_case"]
 
@@ -85,6 +86,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         problems.append(f"[contact] {problem}")
     inputs = INPUT_TABLES[geometry]
     model = file_model(geometry)
+    part_errors = _split_part_errors(table, problems)
     table, parts, wrong = take_parts(table, geometry)
     problems += wrong
     fit = FitSettings(geometry=geometry)
@@ -125,7 +127,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         notes=checked["notes"],
         fit=fit,
         facts={**preset_facts(tables), **facts},
-        errors=errors,
+        errors={**errors, **part_errors},
         conversions=(*conversions, *preset_said(tables, contact.viscosity)),
         tables=tables,
         **checked["solver"],
@@ -159,6 +161,22 @@ def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
             found[name] = dict(found[name])
             geometry = check_geometry(found[name].pop("geometry"))
     return geometry, found
+
+
+def _split_part_errors(table: dict[str, Any], problems: list[str]) -> dict[str, float]:
+    """Put numbers of fluid and solid without their errors in the place of those with them, and return the errors."""
+    errors: dict[str, float] = {}
+    for name, row in PART_INPUTS.items():
+        numbers = table.get(row.table)
+        if isinstance(numbers, dict) and has_error(numbers.get(row.key)):
+            try:
+                value, error = split_error(row.key, numbers[row.key], row.dimension)
+            except InputError as problem:
+                problems.append(f"[{row.table}] {problem}")
+                value, error = row.typical if DIMENSIONS[row.dimension].unit else float(row.typical), None
+            table[row.table] = numbers | {row.key: value}
+            errors |= {} if error is None else {name: error}
+    return errors
 
 
 def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> tuple[dict[str, float], tuple[str, ...]]:

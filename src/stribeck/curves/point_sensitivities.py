@@ -12,6 +12,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import model_at, models_beside
+from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
@@ -43,7 +44,7 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
     PointSolution
         The state.
     dict of str to float
-        By name of the input; nan where there is no friction.
+        By name of the input, numbers of the fluid and the solid among them; nan where there is no friction.
     """
     groups, beta, mu0 = contact.groups, contact.beta, contact.boundary_friction
     state = next_state(None, groups, rtol)
@@ -80,8 +81,9 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
         direct |= {name: -exponent * by_edge for name, exponent in WIDTH_EXPONENTS.items()}
     friction = total(values) or math.nan
     found = {}
-    for name, _ in contact.inputs():
-        moved = sum(n * slope for n, slope in zip(contact.INPUTS.exponents[name], by_groups.values(), strict=True))
+    numbers = {name: (0.0, 0.0, 0.0) for name in PART_INPUTS if getattr(contact, name, None)}
+    for name, exponents in {**{name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}, **numbers}.items():
+        moved = sum(n * slope for n, slope in zip(exponents, by_groups.values(), strict=True))
         found[name] = (moved + by_model.get(name, 0.0) + direct.get(name, 0.0)) / friction
     return solution, found
 
@@ -93,7 +95,8 @@ def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], G
         return replace(groups, model=model_at(contact, name, step))
 
     # Sliding changes no field of these films: it enters through the closed forms of the friction alone.
-    names = (name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll")
+    names = [name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll"]
+    names += [name for name in PART_INPUTS if getattr(contact, name, None)]
     return {name: partial(along, name) for name in names if models_beside(contact, name) is not None}
 
 

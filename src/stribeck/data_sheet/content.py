@@ -16,12 +16,14 @@ from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
+from stribeck.contacts.with_parts import model_words
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_share, format_si
+from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margin_limits import scanned_rtol
 from stribeck.regimes.margins import regime_margins
@@ -198,7 +200,11 @@ def _inputs(case: Case) -> tuple[InputLine, ...]:
         source = next((sources[each] for each in names if each in sources), "")
         shown = "" if error is None else f"± {format_percent(error)}"
         lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
-    return tuple(lines)
+    words = model_words(case.contact.groups, case.contact)
+    uncertain = [
+        f"{row.label} ± {format_percent(case.errors[name])}" for name, row in PART_INPUTS.items() if name in case.errors
+    ]
+    return (*lines, *([InputLine("model", words, ", ".join(uncertain), "")] if words else []))
 
 
 def _sources(path: Path) -> dict[str, str]:

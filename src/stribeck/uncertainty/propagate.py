@@ -20,10 +20,12 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.given.uncertain import relative_error
+from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
 from stribeck.quantities.units import InputError, show
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import films_of, states_by_inputs, states_of
+from stribeck.uncertainty.states import NODE, films_of, states_by_inputs, states_of
 
 __all__ = ["RTOLS", "kept_errors", "moving_with", "propagate"]
 
@@ -66,6 +68,7 @@ def propagate(
         The contact.
     errors : mapping
         Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
+        Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     transitions : bool
@@ -79,7 +82,7 @@ def propagate(
     Raises
     ------
     InputError
-        If an input is unknown, or its error no positive number.
+        If an input is unknown, its error no positive number, or so large that the input leaves its range.
     SolveError
         If a state cannot be solved.
 
@@ -169,28 +172,44 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
     Raises
     ------
     InputError
-        If an input is unknown, or its error no positive number.
+        If an input is unknown, its error no positive number, or so large that the input leaves its range.
     """
+    rows = fitted_rows(contact.INPUTS)
     found: dict[str, float] = {}
     for name, error in errors.items():
-        kept, exponent = THROUGH.get(name, (name, 1.0))
-        known = contact.INPUTS.names
-        if kept not in known:
-            near = difflib.get_close_matches(name, known, n=1)
+        kept, exponent = THROUGH.get(name, (PART_LETTERS.get(name, name), 1.0))
+        value = getattr(contact, kept, None) if kept in rows else None
+        if value is None and kept in PART_INPUTS:
+            raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[kept].of}.")
+        if value is None:
+            known = [each for each in rows if hasattr(contact, each)]
+            near = difflib.get_close_matches(name, rows, n=1)
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
             raise InputError(f"errors has {show(name)}, which is no input of a contact; {hint}")
-        value = getattr(contact, kept)
         if value == 0:
             raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")
         if isinstance(error, str) or hasattr(error, "magnitude"):
-            relative = relative_error(name, value, error, contact.INPUTS.quantities[kept].dimension)
+            relative = relative_error(name, value, error, rows[kept].dimension)
         elif isinstance(error, bool) or not isinstance(error, int | float) or not 0 < error < 3:
             raise InputError(f"the error of {name} = {show(error)} must be a number such as 0.2, which is 20 %, or text.")
         else:
             relative = float(error)
         sigma = exponent * math.sqrt(math.log1p(relative**2))
         found[kept] = math.hypot(found.get(kept, 0.0), sigma)
-    return {name: found[name] for name in contact.INPUTS.names if name in found}
+    for name in found.keys() & PART_INPUTS.keys():
+        _check_range(PART_INPUTS[name], getattr(contact, name), found[name])
+    return {name: found[name] for name in rows if name in found}
+
+
+def _check_range(row: PartInput, value: float, sigma: float) -> None:
+    """Refuse an error with which the states that are solved beside the middle would leave the range of a number."""
+    low, high = row.range
+    for end, bound in ((value * math.exp(-NODE * sigma), low), (value * math.exp(NODE * sigma), high)):
+        if not low <= end <= high:
+            raise InputError(
+                f"the error of {row.name} = {format_si(value, row.dimension, 3)} is too large: states are solved at "
+                f"{NODE:.3g} standard errors beside it, which reaches {end:.3g}, past its bound {bound:g}; give a smaller one."
+            )
 
 
 def moving_with(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.files.datasets import Column, listed, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.formats import format_percent, format_share, format_si
+from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import DIMENSIONS
 
 if TYPE_CHECKING:
@@ -186,7 +187,7 @@ class Uncertainty(Exported):
     @property
     def sources(self) -> tuple[str, ...]:
         """The share of each input in the variance of friction, a sentence; none for a model without derivatives."""
-        labels = self.contact.INPUTS.quantities
+        labels = fitted_rows(self.contact.INPUTS)
         named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
         return (f"Sources of the variance of friction: {parts}.",) if parts else ()
