@@ -57,11 +57,12 @@ def with_friction(state, row):
     film, mesh, y = state.equations.film, state.mesh, state.y
     gap, flux = state.gap, state.flux_gap
     pressure = state.equations.pressures(y)[1] if film.uses_pressure else None
-    tractions = film.tractions(gap, pressure, flux)
-    streaks = Newtonian(slide=film.slide) if "phi_s" in row["case"] else film  # there the solver lets them fill h*/h
-    wake = streaks.cavity_tractions(gap, None if pressure is None else 0 * gap, flux)
+    tractions, torn = (
+        film.tractions(gap, pressure, flux),
+        film.cavity_traction(gap, None if pressure is None else 0 * gap, flux),
+    )
     scale = friction_scale(row["load"], row["speed"])
-    for name, traction, torn in zip(("mu_traction_1", "mu_traction_2"), tractions, wake, strict=True):
+    for name, traction in zip(("mu_traction_1", "mu_traction_2"), tractions, strict=True):
         found[name] = float(scale * (mesh.weights @ np.where(mesh.nodes < 0, traction, torn)))
     return found
 

@@ -114,8 +114,8 @@ def _walls(
     found[0][..., wet], found[1][..., wet] = film.tractions(*column)
     found[2][..., wet] = gap[..., wet] * film.gradient(*column)
     if torn is not None:
-        column = (gap[..., torn], None if pressure is None else pressure[..., torn], flux_gap)
-        found[0][..., torn], found[1][..., torn] = film.cavity_tractions(*column)
+        liquid = film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], flux_gap)
+        found[:2][..., torn] = liquid
     return found
 
 
@@ -148,12 +148,12 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
     found = np.zeros((3, *y.shape))
     published, lower, upper = found
     wet, dry = op.parts if op.has_exit else (slice(None), slice(0, 0))
-    of_torn: tuple[Slopes | None, Slopes | None] = (None, None)
+    torn = None
     if op.has_exit:
-        of_torn = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
+        torn = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
     of_walls = film.traction_slopes(h[..., wet], None if p is None else p[..., wet], h_star)
     of_sum, own = scale * stretch, op.mesh.weights
-    for row, (by_gap, by_pressure, by_flux, _), torn in zip((lower, upper), of_walls, of_torn, strict=True):
+    for row, (by_gap, by_pressure, by_flux, _) in zip((lower, upper), of_walls, strict=True):
         row[..., at.gap][..., wet] = by_gap
         row[..., at.flux_gap] = (by_flux @ own[wet])[..., None]
         if by_pressure is not None:

@@ -117,15 +117,15 @@ class Film(Protocol):
     def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
         """Return the derivatives of both tractions, those through G included."""
 
-    def cavity_tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
-        """Return the drag on the substrate and on the cylinder where the film is torn.
+    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return the drag on either wall where the film is torn.
 
-        The liquid fills the part of the width that carries m, ``m/h`` (over the density ratio) between smooth walls, from wall
-        to wall, and is sheared at the rate ``s/h`` without a pressure gradient: at the exit these are :meth:`tractions`.
+        The liquid fills the part ``m/h`` of the width (over the density ratio), from wall to wall, and is sheared at the rate
+        ``s/h`` without a pressure gradient.
         """
 
-    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
-        """Return the derivatives of :meth:`cavity_tractions`."""
+    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of :meth:`cavity_traction`."""
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return sentences on where this state leaves the range of the fluid's laws; mostly none."""

@@ -181,34 +181,18 @@ class Newtonian:
             Slopes(upper, eta_slope * upper_shear - by_pressure, -by_flux),
         )
 
-    def cavity_tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
-        r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h` in the part of the width that is wet, :math:`m/(\rho (h + s S))`."""
+    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""
         eta, _, rho, _ = self._of_pressure(pressure)
-        rate = self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * self._carried(gap)[0]))
-        factors = self.flow.friction(gap)
-        if factors is None:
-            return rate, rate
-        (f, _), (fs, _), _ = factors
-        return (f + fs) * rate, (f - fs) * rate
+        return np.asarray(self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * gap)))
 
-    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
-        """Return the derivatives of :meth:`cavity_tractions`."""
-        h = gap
+    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of :meth:`cavity_traction`."""
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
-        carried, carried_slope = self._carried(h)
-        partly = np.where(flux_gap < rho * carried, 1.0, 0.0)  # beyond the jump of a fit it can be more than the gap holds
-        factors, rate, found = self.flow.friction(h), self.slide * eta / h, []
-        for sign, traction in zip((1.0, -1.0), self.cavity_tractions(h, pressure, flux_gap), strict=True):
-            by_gap = -(1 + partly * carried_slope * h / carried) * traction / h
-            by_flux = partly * rate / (rho * carried)
-            if factors is not None:
-                (f, f_slope), (fs, fs_slope), _ = factors
-                wet = np.minimum(1.0, flux_gap / (rho * carried))
-                by_gap = by_gap + (f_slope + sign * fs_slope) * rate * wet
-                by_flux = by_flux * (f + sign * fs)
-            by_pressure = traction * (eta_slope - partly * rho_slope / rho) if self.uses_pressure else None
-            found.append(Slopes(by_gap, by_pressure, by_flux))
-        return found[0], found[1]
+        traction = self.cavity_traction(gap, pressure, flux_gap)
+        partly = np.where(flux_gap < rho * gap, 1.0, 0.0)  # shear flow factors can carry more than the gap holds
+        by_pressure = traction * (eta_slope - partly * rho_slope / rho) if self.uses_pressure else None
+        return Slopes(-(1 + partly) * traction / gap, by_pressure, partly * self.slide * eta / rho / gap**2)
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""
@@ -221,13 +205,6 @@ class Newtonian:
         assert pressure is not None
         log, log_slope = self.viscosity.log(pressure)
         return np.exp(log), log_slope, *self.density.ratio(pressure)
-
-    def _carried(self, gap: Array) -> tuple[Array, Array]:
-        """Return what the walls carry through a full gap, ``h + s S``, and its slope."""
-        if self.is_smooth:
-            return gap, ONE
-        carried, slope = self.flow.shear(gap)
-        return gap + self.slide * carried, 1 + self.slide * slope
 
     def _at(self, gap: Array, pressure: Array | None, flux_gap: Numbers, with_slopes: bool = False) -> _Column:
         """Return G and where asked for its derivatives, those known if the last on as many nodes were for the same film."""

@@ -162,14 +162,13 @@ class ShearThinning:
             found.append(Slopes(by_gap, self._by_pressure(local, traction, by_density, by_speed), by_flux, by_speed))
         return found[0], found[1]
 
-    def cavity_tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
-        """Return the stress at the rate ``s/h`` in the part of the width that is wet, on both walls."""
+    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return the stress at the rate ``s/h`` in the part of the width that is wet."""
         stress, _, eta, _, rho, _, wi = self._sheared(gap, pressure)
-        found = np.asarray(eta * stress / wi * np.minimum(1.0, flux_gap / (rho * gap)))
-        return found, found
+        return np.asarray(eta * stress / wi * np.minimum(1.0, flux_gap / (rho * gap)))
 
-    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
-        """Return the derivatives of :meth:`cavity_tractions`."""
+    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of :meth:`cavity_traction`."""
         stress, slope, eta, eta_slope, rho, rho_slope, wi = self._sheared(gap, pressure)
         wet = np.minimum(1.0, flux_gap / (rho * gap))
         partly = np.where(wet < 1, 1.0, 0.0)
@@ -179,8 +178,7 @@ class ShearThinning:
         if self.uses_pressure:
             by_pressure = eta_slope * (traction + by_speed) - partly * traction * rho_slope / rho
         by_gap = -eta * slope * self.slide / gap**2 * wet - partly * traction / gap
-        found = Slopes(by_gap, by_pressure, partly * eta * stress / wi / (rho * gap), by_speed)
-        return found, found
+        return Slopes(by_gap, by_pressure, partly * eta * stress / wi / (rho * gap), by_speed)
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""

@@ -2,10 +2,9 @@ r"""The wake of a ball: streaks of liquid from wall to wall in the cavity, with 
 
 Where the film is torn the pressure is the same everywhere and the liquid goes with the walls, so that along x
 
-.. math:: \phi \, C(h) = C(h_\mathrm{e}(y)), \qquad \phi \le 1
+.. math:: \phi \, h = h_\mathrm{e}(y), \qquad \phi \le 1
 
-with the gap :math:`h_\mathrm{e}` at which the film ruptures and the amount C that a full gap carries, the gap itself between
-smooth walls; :math:`\phi` is the part of the width that is wet.
+with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is the part of the width that is wet.
 """
 
 from __future__ import annotations
@@ -80,16 +79,10 @@ def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
     return Rupture(rings, angles, np.append(0.0, distances[order]), np.append(gaps[order][:1], gaps[order]))
 
 
-def shear_missing(
-    mesh: PolarMesh,
-    gap: Array,
-    fluid: Array,
-    carried: Callable[[Array], Array] = np.asarray,
-    sheared: Callable[[Array], Array] = np.ones_like,
-) -> Array:
+def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[Array], Array] = np.ones_like) -> Array:
     r"""Return the shear that is missing on each ring in the dry streaks of the wake, :math:`r \oint (1 - \phi) \, \tau/h`.
 
-    ``carried`` gives C, and ``sheared`` the drag of sliding over that of a fluid that does not thin, by the gap.
+    ``sheared`` gives the drag of sliding over that of a fluid that does not thin, by the gap.
     """
     found = np.zeros(mesh.rings)
     line = rupture_line(mesh, gap, fluid)
@@ -100,6 +93,6 @@ def shear_missing(
     waves = np.cos(angle[:, :, None] * np.arange(mesh.modes))
     h = np.exp(np.matmul(waves, coefficients.T[:, :, None])[:, :, 0])
     r = mesh.radii[line.rings]
-    wet = np.minimum(1.0, carried(line.gap_at(r[:, None] * np.sin(angle))) / carried(h))
+    wet = np.minimum(1.0, line.gap_at(r[:, None] * np.sin(angle)) / h)
     found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ WEIGHTS * line.angles * r  # both halves of the plane
     return found
