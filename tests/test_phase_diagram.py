@@ -146,7 +146,7 @@ def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
             row = diagram.isel(load=i, roughness=j)
             speed = float(row["speed_at_minimum"])
             low, middle, high = (solved(speed * math.exp(s), load, row["roughness"])[1].total for s in (-step, 0, step))
-            assert middle == pytest.approx(float(row["friction_at_minimum"]), rel=1e-7)
+            assert middle == pytest.approx(float(row["friction_at_minimum"]), rel=1e-6)  # to which marks are solved
             vertex = 0.5 * step * (low - high) / (low - 2 * middle + high)
             assert abs(vertex) < 2e-5
             assert middle < min(low, high)

@@ -466,7 +466,8 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     values, errors = interval.checked
     # The errors of the ends do not fall with the length.
     scales = problem.scales(values, left.coordinate + chebyshev_nodes(READ_AT) * interval.length)
-    of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
+    with np.errstate(over="ignore"):  # series that lead to no number count as wrong
+        of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
     excess = errors - of_ends > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
         return [interval]
