@@ -140,13 +140,16 @@ def test_transitions_lie_where_their_shares_are_passed(diagram):
 
 
 def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
+    """A mark of a coarse diagram is solved to 1e-6, that of a finer one to its tolerance."""
     step = 5e-3
+    finer = made(rtol=1e-7, points=POINTS | {"speed": 3})
     for i, load in enumerate(LOADS):
         for j in (0, 2):
             row = diagram.isel(load=i, roughness=j)
             speed = float(row["speed_at_minimum"])
             low, middle, high = (solved(speed * math.exp(s), load, row["roughness"])[1].total for s in (-step, 0, step))
-            assert middle == pytest.approx(float(row["friction_at_minimum"]), rel=1e-6)  # to which marks are solved
+            assert middle == pytest.approx(float(row["friction_at_minimum"]), rel=1e-6)
+            assert middle == pytest.approx(float(finer["friction_at_minimum"][i, j]), rel=1e-7)
             vertex = 0.5 * step * (low - high) / (low - 2 * middle + high)
             assert abs(vertex) < 2e-5
             assert middle < min(low, high)
