@@ -12,7 +12,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import model_at, models_beside
-from stribeck.quantities.part_inputs import PART_INPUTS
+from stribeck.quantities.part_inputs import part_names
 from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
@@ -81,8 +81,8 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
         direct |= {name: -exponent * by_edge for name, exponent in WIDTH_EXPONENTS.items()}
     friction = total(values) or math.nan
     found = {}
-    numbers = {name: (0.0, 0.0, 0.0) for name in PART_INPUTS if getattr(contact, name, None)}
-    for name, exponents in {**{name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}, **numbers}.items():
+    exponents_of = {name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}
+    for name, exponents in (exponents_of | dict.fromkeys(part_names(contact), (0.0, 0.0, 0.0))).items():
         moved = sum(n * slope for n, slope in zip(exponents, by_groups.values(), strict=True))
         found[name] = (moved + by_model.get(name, 0.0) + direct.get(name, 0.0)) / friction
     return solution, found
@@ -96,8 +96,7 @@ def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], G
 
     # Sliding changes no field of these films: it enters through the closed forms of the friction alone.
     names = [name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll"]
-    names += [name for name in PART_INPUTS if getattr(contact, name, None)]
-    return {name: partial(along, name) for name in names if models_beside(contact, name) is not None}
+    return {name: partial(along, name) for name in (*names, *part_names(contact)) if models_beside(contact, name) is not None}
 
 
 def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, name: str, step: float) -> PointObservables:

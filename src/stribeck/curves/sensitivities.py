@@ -19,7 +19,7 @@ from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
-from stribeck.quantities.part_inputs import PART_INPUTS
+from stribeck.quantities.part_inputs import PART_INPUTS, part_names
 from stribeck.quantities.units import InputError
 from stribeck.solver.line_path import as_in
 from stribeck.solver.solution import Solution
@@ -96,12 +96,12 @@ def friction_sensitivities(
         return SENSITIVITIES[groups.geometry](contact, rtol, definition)
     if groups.speed == 0:
         solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
-        through = dict.fromkeys((name for name in PART_INPUTS if getattr(contact, name, None)), 0.0)
+        through = dict.fromkeys(part_names(contact), 0.0)
     else:
         point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
-        names = [name for name in (*GROUP_EXPONENTS, *PART_INPUTS) if getattr(contact, name, None)]
+        names = [name for name in GROUP_EXPONENTS if getattr(contact, name, None)] + list(part_names(contact))
         names = names if groups.model != ARTICLE else []
         changes = {name: beside for name in names if (beside := models_beside(contact, name)) is not None}
         state = point.state  # of a film that may form anew, with a cavity or without

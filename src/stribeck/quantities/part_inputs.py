@@ -13,7 +13,7 @@ from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_value", "with_part_value"]
+__all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_names", "part_value", "with_part_value"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,6 +153,11 @@ PART_LETTERS = {letter: row.name for row in _ROWS for letter in row.letters}
 def fitted_rows(table: InputTable) -> dict[str, Input]:
     """Return all inputs of a geometry by name, numbers of laws among them."""
     return {**table.quantities, **PART_INPUTS}
+
+
+def part_names(contact: Any) -> tuple[str, ...]:
+    """Return the names of those numbers that a contact has and that are not zero."""
+    return tuple(name for name in PART_INPUTS if getattr(contact, name, None))
 
 
 def part_value(parts: Any, name: str) -> float | None:
