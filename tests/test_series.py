@@ -42,7 +42,9 @@ def test_products_quotients_and_exponentials_have_the_coefficients_of_the_closed
     below[[0, 2]] = 1.0, SINGULAR**-2
     np.testing.assert_allclose(product(factor, reciprocal(below)), coefficients(order), rtol=1e-13, atol=1e-16)
     columns = np.stack([factor, below], axis=1)  # each column is a series of its own
-    np.testing.assert_allclose(exponential(logarithm(columns)), columns, rtol=1e-13, atol=1e-15)
+    for each in columns.T:
+        np.testing.assert_allclose(exponential(logarithm(each)), each, rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(product(columns, columns[:, ::-1]), product(factor, below)[:, None] * [1, 1], rtol=1e-13)
     np.testing.assert_allclose(product(columns, reciprocal(columns))[1:], 0, atol=1e-15)
 
 

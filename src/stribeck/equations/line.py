@@ -44,7 +44,7 @@ from stribeck.numerics.running_integral import Volterra
 
 __all__ = ["LOAD", "Equations", "Operators"]
 
-COLUMNS = 32
+COLUMNS = 48
 """Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself."""
 
 MOST_GROWTH = 10.0
@@ -259,7 +259,6 @@ class Equations:
         matrix = np.empty((n + numbers, n + numbers), order="F")
         matrix[n:], matrix[:, n:] = 0.0, 0.0
         block, offset, flux = matrix[:n, :n], n, n + 1
-        np.multiply(scaled.deflection, -p_slope, out=block)
         matrix[offset, :n] = scaled.weights * p_slope
         of_pressure = None
         if by_p is not None:
@@ -271,12 +270,12 @@ class Equations:
             deflection = scaled.deflection_of_gradient if of_pressure is None else of_pressure[:n]
             load = scaled.load_of_gradient if of_pressure is None else of_pressure[n]
             assert deflection is not None
-            for first in range(0, n, COLUMNS):
-                part = slice(first, first + COLUMNS)
-                block[:, part] -= deflection[:, part] * (speed * g_h[part])
+            _combined(block, scaled.deflection, -p_slope, deflection, speed * g_h)
             matrix[:n, flux] = deflection @ (-speed * g_flux)
             matrix[offset, :n] += load * (speed * g_h)
             matrix[offset, flux] = speed * (load @ g_flux)
+        else:
+            np.multiply(scaled.deflection, -p_slope, out=block)
         np.einsum("ii->i", block)[...] += u
         matrix[:n, offset] = -v[0]
         for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
@@ -397,3 +396,18 @@ class Equations:
         fluxes = dy[..., at.flux_gap] / unit
         others = [np.abs(dy[..., block]).max() for block in (at.pressure, at.exit, at.dilation) if block.start < block.stop]
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
+
+
+def _combined(out: Array, first: Array, by_first: Array, second: Array, by_second: Array) -> None:
+    """Write two matrices in Fortran order, times a number for each column, the second taken from the first, into ``out``.
+
+    A few columns at a time are computed side by side in memory; in ``out``, whose columns have more rows, steps take longer.
+    """
+    scratch = np.empty((2, COLUMNS, len(out)))
+    for start in range(0, len(out), COLUMNS):
+        part = slice(start, start + COLUMNS)
+        found, taken = (each[: len(out) - start].T for each in scratch)
+        np.multiply(first[:, part], by_first[part], out=found)
+        np.multiply(second[:, part], by_second[part], out=taken)
+        found -= taken
+        out[:, part] = found

@@ -16,9 +16,11 @@ Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import mul
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -65,11 +67,11 @@ def exponential_term(slopes: Array, values: Array, k: int) -> Array:
 
 
 def exponential(logs: Array) -> Array:
-    """Return the series of the exponential of a series."""
-    found, slopes = np.exp(logs), (logs.T * np.arange(len(logs))).T
+    """Return the series of the exponential of a series of numbers."""
+    slopes, found = (logs * np.arange(len(logs))).tolist(), [math.exp(logs[0])]
     for k in range(1, len(logs)):
-        found[k] = exponential_term(slopes, found, k)
-    return found
+        found.append(sum(map(mul, slopes[1:], reversed(found))) / k)
+    return np.array(found)
 
 
 def along(rate: float, order: int) -> Array:
@@ -80,19 +82,24 @@ def along(rate: float, order: int) -> Array:
 
 
 def logarithm(values: Array) -> Array:
-    """Return the series of the logarithm of a series."""
-    found, slopes = np.log(values[:1]) + np.zeros_like(values), np.zeros_like(values)
-    for k in range(1, len(values)):
-        found[k] = (values[k] - exponential_term(slopes, values, k)) / values[0]
-        slopes[k] = k * found[k]
-    return found
+    """Return the series of the logarithm of a series of numbers."""
+    first, *others = values.tolist()
+    found, slopes = [math.log(first)], [0.0]
+    for k, value in enumerate(others, 1):
+        found.append((value - sum(map(mul, slopes[1:], reversed(others[: k - 1]))) / k) / first)
+        slopes.append(k * found[k])
+    return np.array(found)
 
 
 def product(a: Array, b: Array) -> Array:
-    """Return the series of a product of two."""
+    """Return the series of a product of two, of numbers or of rows."""
     if a.ndim == 1:
         return np.convolve(a, b)[: len(a)]
-    return np.stack([product_term(a, b, k) for k in range(len(a))])
+    padded = np.concatenate([np.zeros_like(b[1:]), b])
+    row, column = padded.strides
+    # Row j of window k is that of order j - (len(a) - 1 - k), zero below order zero.
+    windows = np.ndarray((len(a), *a.shape), buffer=padded, strides=(row, row, column))
+    return np.asarray(np.einsum("kjn,jn->kn", windows, a[::-1]))
 
 
 def integral_of_product(a: Array, b: Array, weights: Array) -> Array:
@@ -244,15 +251,15 @@ def beyond(series: Array, t: float) -> tuple[Array, float]:
     degree = min(DENOMINATOR, (order - 1) // 2)
     if degree < 2:
         return np.asarray(scaled.sum(axis=0)), 0.0
-    best, other = (_rational(scaled, each) for each in (degree, degree - 1))
+    best, other = _rational(scaled, degree, products := scaled @ scaled.T), _rational(scaled, degree - 1, products)
     return best, float(np.abs(best - other).max())
 
 
-def _rational(scaled: Array, degree: int) -> Array:
-    """Return the sum of a series as a rational function whose denominator has a degree."""
+def _rational(scaled: Array, degree: int, products: Array) -> Array:
+    """Return the sum of a series as a rational function whose denominator has a degree, from the products of its orders."""
     order = len(scaled) - 1
-    high = np.stack([scaled[order - degree + 1 - j : order + 1 - j].ravel() for j in range(degree + 1)])
-    gram = high @ high.T
+    high = order - degree + 1 + np.arange(degree) - np.arange(degree + 1)[:, None]
+    gram = products[high[:, None], high].sum(axis=2)
     rest = gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(degree)
     q = np.append(1.0, np.linalg.solve(rest, -gram[1:, 0]))
     parts = np.append(np.ones(order - 2 * degree), np.cumsum(q)[::-1] / q.sum())

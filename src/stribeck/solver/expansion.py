@@ -176,7 +176,9 @@ def expand_article(
         rates, logs = np.vstack([rates, contact.by_log_gap]), np.vstack([logs, contact.start])
     slopes, powers = np.zeros((2, order + 1, *rates.shape))
     powers[0] = np.exp(logs)
+    by_logs = rates * powers[0]
     gap, square, cube = (powers[:, row] for row in range(len(GAP_POWERS)))
+    gradient_by_log = by_logs[1] - start[at.flux_gap] * by_logs[2]
     gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = square[0] - cube[0] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
@@ -208,14 +210,13 @@ def expand_article(
                 corrections.append(float(np.abs(step[at.gap]).max()))
             w[k] += step
             flux_backwards[-1 - k] = w[k, at_flux]
-            of_logs = rates * step[at.gap]
-            of_powers = of_logs * powers[0]
-            powers[k] += of_powers
-            of_logs *= k
-            slopes[k] += of_logs
+            change = step[at.gap]
+            powers[k] += by_logs * change
+            slopes[k] += rates * (k * change)
             if contact is not None:
-                contact.add(k, step[at.gap])
-            of_gradient = of_powers[1] - start[at_flux] * of_powers[2] - step[at_flux] * cube[0]
+                contact.add(k, change)
+            of_gradient = gradient_by_log * change
+            of_gradient -= step[at_flux] * cube[0]
             gradient[k] += of_gradient
             flow[k] += speed[0] * of_gradient
     flux = w[:, at_flux]
