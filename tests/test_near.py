@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.solver.corrector import Corrector
+from stribeck.solver.along.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
 
 

@@ -18,9 +18,9 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.quantities.results import ByValue, Card, Shown, brief
+from stribeck.solver.along.line_path import POSITION, LineProblem
+from stribeck.solver.along.path import SolvedPath
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.line_path import POSITION, LineProblem
-from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import minimum_estimate, solution_of, state_notes

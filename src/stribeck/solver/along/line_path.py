@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,20 +15,18 @@ from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
-from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG, ROW, drag_scales
 from stribeck.equations.state import State, fall_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.newton import Inverse, Root
-from stribeck.numerics.panels import Mesh, interpolation_error
+from stribeck.numerics.panels import Mesh
 from stribeck.numerics.series import ROUNDING, beyond, interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
-from stribeck.solver.at_rest import shift_along, with_positive_gap
-from stribeck.solver.corrector import Corrector, from_cold, keeps_cavity
-from stribeck.solver.expansion import (
+from stribeck.solver.along.between import LinePoint, between, minimum_between, on
+from stribeck.solver.along.corrector import Corrector, from_cold, keeps_cavity
+from stribeck.solver.along.expansion import (
     Direction,
     Expanded,
     around_state,
@@ -38,7 +36,8 @@ from stribeck.solver.expansion import (
     observed,
     residuals,
 )
-from stribeck.solver.path import KNOT_PART, Expansion, rate
+from stribeck.solver.along.path import KNOT_PART, Expansion
+from stribeck.solver.at_rest import shift_along, with_positive_gap
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
 EXACT_ORDER, ORDER = (18, 20), (14, 16)
@@ -134,15 +133,6 @@ UNLIMITED = [POSITION, ROW["exit_position"], ROW["reformation_position"]]
 ANY_MESH = Mesh(np.array([-1.0, 0.0, 1.0]), 2)
 
 
-class LinePoint(NamedTuple):
-    """A solved state, the coefficients of its unknowns, and the operators of its mesh."""
-
-    refined: RefinedState
-    state: State
-    unknowns: Array
-    fine: FineOperators
-
-
 class LineProblem:
     """The states of the line: ``groups_at(s)`` gives the groups at coordinate s, ``direction`` their derivatives.
 
@@ -225,7 +215,7 @@ class LineProblem:
         return np.append(values[:, :1].min(axis=0), np.ones(values.shape[1] - 1)) if values.size else np.empty(0)
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.along.path.Problem`."""
         groups = self.groups_at(s)
         same = self._same(s, groups)
         if same is not None:
@@ -516,52 +506,12 @@ class LineProblem:
             return a + parts[:, None] * (b - a), np.abs((b - a) / [a[0], 1.0]) + at_ends + np.zeros((len(parts), 1)), READ
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
         finer, coarser = sorted((left.point, right.point), key=lambda point: -point.state.mesh.size)
-        values, error = _minimum_on(left, right, finer, parts)
+        values, error = minimum_between(left, right, finer, parts)
         if finer.state.mesh is not coarser.state.mesh and (error > RESOLVED * self.tolerance).any():
-            others, of_others = _minimum_on(left, right, coarser, parts)
+            others, of_others = minimum_between(left, right, coarser, parts)
             better = of_others < error
             values, error = np.where(better, others, values), np.where(better, of_others, error)
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
-
-
-def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
-    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap.
-
-    The search covers the surroundings of its positions at both ends, and the whole mesh if it is not lowest there.
-    """
-    order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
-    weights = hermite_weights(order, parts)
-    scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
-    places = [end.point.state.minimum_position / _stretch(end.point, of) for end in ends]
-    low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
-    for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
-        a, b = (gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
-        with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
-            place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
-        if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
-            break
-    on_panels = missed_by(order, np.vstack([a, b]), rate(left, right)).reshape(-1, mesh.order).max(axis=1)
-    error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
-    for end, each, w in zip(ends, scaled, weights, strict=True):
-        if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
-            error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
-    position = place
-    if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
-        own, others = (numbers_on(end.point, each, of) for end, each in zip(ends, scaled, strict=True))
-        numbers = weights[0] @ own + weights[1] @ others
-        if at.dilation.stop > at.dilation.start:
-            position = position * numbers[:, at.dilation.start - at.numbers.start]
-        position = position + numbers[:, at.exit.start - at.numbers.start]
-    return np.stack([lowest, position]), error
-
-
-def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
-    """Return the interpolation error of logarithms of gaps at places on the mesh of a point."""
-    mesh = point.state.mesh
-    shapes = coefficients[:, point.state.equations.layout.gap].copy()
-    shapes[0] -= np.log(mesh.far)
-    own = shapes.reshape(len(shapes), mesh.panels, mesh.order)[:, mesh.locate(places)[0]]
-    return interpolation_error(np.einsum("rj,jrn->rn", weights, own))
 
 
 def _agree(one: Any, other: Any) -> bool:
@@ -575,11 +525,6 @@ def _agree(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
-    """Return the first point whose state lies on a mesh."""
-    return next((one.point for one in near if one.point.state.mesh is mesh), None)
-
-
 def _alike(*near: Expansion) -> bool:
     """Return whether states have the same unknowns: films that end, or begin anew, have more."""
     return len({end.point.state.groups.model.cavitation for end in near}) == 1
@@ -591,59 +536,3 @@ def as_in(state: State, model: Model) -> Model:
     if model.cavitation is cavitation:
         return model
     return replace(model, cavitation=cavitation, cavity_pressure=0.0)
-
-
-def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
-    """Return the unknowns between two expansions on the mesh of one of them, with the logarithms of gaps."""
-    order = min(left.order, right.order)
-    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
-    of_left, of_right = hermite_weights(order, parts)
-    return np.asarray(of_left @ a + of_right @ b)
-
-
-def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
-    """Return the coefficients of the unknowns at both ends, for an interval of length one."""
-    scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
-    return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
-
-
-def _stretch(point: LinePoint, of: LinePoint) -> float:
-    """Return by how much the coordinate of the mesh of a point is larger than that of another."""
-    own, other = point.state.mesh.restart, of.state.mesh.restart
-    return 1.0 if own == other else own / other
-
-
-def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return coefficients of the unknowns of a point on the mesh of another."""
-    mesh, other = point.state.mesh, of.state.mesh
-    if mesh is other:
-        return coefficients
-    at, there = point.state.equations.layout, of.state.equations.layout
-    found = np.empty((len(coefficients), there.size))
-    found[:, there.numbers] = numbers_on(point, coefficients, of)
-    found[:, there.gap] = gaps_on(point, coefficients, of, range(other.panels))
-    if there.pressure.stop > there.pressure.start:
-        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], _stretch(point, of) * other.nodes)
-    return found
-
-
-def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
-    """Return the coefficients of the logarithm of the gap on neighbouring panels of that mesh."""
-    mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
-    own = slice(panels.start * other.order, panels.stop * other.order)
-    if mesh is other:
-        return np.asarray(coefficients[:, at.gap][:, own])
-    nodes = _stretch(point, of) * other.nodes[own]
-    shapes = coefficients[:, at.gap].copy()
-    shapes[0] -= np.log(mesh.far)
-    found = mesh.interpolate(shapes, nodes)
-    found[0] += np.log(mesh.scale**2 + nodes**2)
-    return found
-
-
-def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return the coefficients of the unknowns that are numbers; the dilation is that of the mesh."""
-    at = point.state.equations.layout
-    found = coefficients[:, at.numbers].copy()
-    found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)
-    return found

@@ -1,0 +1,127 @@
+"""Unknowns and minimum gap between two expanded states of the line, which may lie on different meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.gap import minimum_gaps
+from stribeck.equations.state import State
+from stribeck.numerics.hermite import hermite_weights, missed_by
+from stribeck.numerics.panels import Mesh, interpolation_error
+from stribeck.solver.along.path import Expansion, rate
+from stribeck.solver.refinement import RefinedState
+
+
+class LinePoint(NamedTuple):
+    """A solved state, the coefficients of its unknowns, and the operators of its mesh."""
+
+    refined: RefinedState
+    state: State
+    unknowns: Array
+    fine: FineOperators
+
+
+def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
+    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap.
+
+    The search covers the surroundings of its positions at both ends, and the whole mesh if it is not lowest there.
+    """
+    order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
+    weights = hermite_weights(order, parts)
+    scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
+    places = [end.point.state.minimum_position / _stretch(end.point, of) for end in ends]
+    low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
+    for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
+        a, b = (gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
+        with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
+            place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
+        if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
+            break
+    on_panels = missed_by(order, np.vstack([a, b]), rate(left, right)).reshape(-1, mesh.order).max(axis=1)
+    error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
+    for end, each, w in zip(ends, scaled, weights, strict=True):
+        if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
+            error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
+    position = place
+    if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
+        own, others = (numbers_on(end.point, each, of) for end, each in zip(ends, scaled, strict=True))
+        numbers = weights[0] @ own + weights[1] @ others
+        if at.dilation.stop > at.dilation.start:
+            position = position * numbers[:, at.dilation.start - at.numbers.start]
+        position = position + numbers[:, at.exit.start - at.numbers.start]
+    return np.stack([lowest, position]), error
+
+
+def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
+    """Return the interpolation error of logarithms of gaps at places on the mesh of a point."""
+    mesh = point.state.mesh
+    shapes = coefficients[:, point.state.equations.layout.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    own = shapes.reshape(len(shapes), mesh.panels, mesh.order)[:, mesh.locate(places)[0]]
+    return interpolation_error(np.einsum("rj,jrn->rn", weights, own))
+
+
+def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
+    """Return the first point whose state lies on a mesh."""
+    return next((one.point for one in near if one.point.state.mesh is mesh), None)
+
+
+def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
+    """Return the unknowns between two expansions on the mesh of one of them, with the logarithms of gaps."""
+    order = min(left.order, right.order)
+    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
+    of_left, of_right = hermite_weights(order, parts)
+    return np.asarray(of_left @ a + of_right @ b)
+
+
+def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
+    """Return the coefficients of the unknowns at both ends, for an interval of length one."""
+    scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
+    return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
+
+
+def _stretch(point: LinePoint, of: LinePoint) -> float:
+    """Return by how much the coordinate of the mesh of a point is larger than that of another."""
+    own, other = point.state.mesh.restart, of.state.mesh.restart
+    return 1.0 if own == other else own / other
+
+
+def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return coefficients of the unknowns of a point on the mesh of another."""
+    mesh, other = point.state.mesh, of.state.mesh
+    if mesh is other:
+        return coefficients
+    at, there = point.state.equations.layout, of.state.equations.layout
+    found = np.empty((len(coefficients), there.size))
+    found[:, there.numbers] = numbers_on(point, coefficients, of)
+    found[:, there.gap] = gaps_on(point, coefficients, of, range(other.panels))
+    if there.pressure.stop > there.pressure.start:
+        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], _stretch(point, of) * other.nodes)
+    return found
+
+
+def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
+    """Return the coefficients of the logarithm of the gap on neighbouring panels of that mesh."""
+    mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
+    own = slice(panels.start * other.order, panels.stop * other.order)
+    if mesh is other:
+        return np.asarray(coefficients[:, at.gap][:, own])
+    nodes = _stretch(point, of) * other.nodes[own]
+    shapes = coefficients[:, at.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    found = mesh.interpolate(shapes, nodes)
+    found[0] += np.log(mesh.scale**2 + nodes**2)
+    return found
+
+
+def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return the coefficients of the unknowns that are numbers; the dilation is that of the mesh."""
+    at = point.state.equations.layout
+    found = coefficients[:, at.numbers].copy()
+    found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)
+    return found
