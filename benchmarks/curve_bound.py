@@ -37,7 +37,7 @@ from stribeck.solver.solve import SolveError
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 
-OFFSET_FLOOR = 5e-3
+OFFSET_FLOOR = 0.1
 """The error of the offset is relative to it where it exceeds this."""
 
 BOXES = {"line": ((-4, -5), (0, 1)), "point": ((-6, -3), (np.log10(0.5), 0))}
