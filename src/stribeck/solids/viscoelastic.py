@@ -21,9 +21,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
@@ -34,6 +36,16 @@ from stribeck.solids.solid import Lengths, Solid, lengths_of
 __all__ = ["Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction", "memory"]
 
 MOST_TERMS = 40
+
+FORGOTTEN = 37.0
+"""Times after which what is left of a pressure is rounding."""
+
+AGES, SHARES = (0.5 * each for each in leggauss(24))
+AGES = AGES + 0.5
+"""Rule on [0, 1] for an exponential that falls to rounding, times what is smooth."""
+
+KEPT = 3
+"""Deflections of bases kept: of the meshes at both ends of an interval and of the finer one of an error estimate."""
 
 
 class _Viscoelastic:
@@ -56,7 +68,7 @@ class _Viscoelastic:
 
         Panels must reach to 30 of the largest Deborah number on both sides, and resolve the pressure.
         """
-        return np.asfortranarray(self.base.deflection(mesh) @ self._remembered(mesh))
+        return np.asfortranarray(_of_base(self.base, mesh) @ self._remembered(mesh))
 
     def _remembered(self, mesh: Mesh) -> Array:
         instant, rest = self._creep()
@@ -68,6 +80,12 @@ class _Viscoelastic:
     def far_gap(self, x: Array) -> Array:
         """Return that of the relaxed body."""
         return self.base.far_gap(x)
+
+
+@lru_cache(maxsize=KEPT)
+def _of_base(base: Solid, mesh: Mesh) -> Array:
+    """Return the deflection of a base, which is the same at all speeds."""
+    return base.deflection(mesh)
 
 
 @dataclass(frozen=True, init=False)
@@ -210,35 +228,48 @@ def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> 
 
 
 def memory(mesh: Mesh, deborah: float) -> Array:
-    """Return the matrix from nodal p to the nodal q with ``De q' + q = p``, zero far upstream.
-
-    On the panel through infinity q is smooth, but for what decays downstream of the others.
-    """
+    """Return the matrix from nodal p to the nodal q with ``De q' + q = p``, zero far upstream."""
     n, panels, rule = mesh.order, mesh.panels - 1, reference(mesh.order)
-    found = np.zeros((mesh.size, mesh.size))
+    found = np.empty((mesh.size, mesh.size))
     tail = slice(panels * n, mesh.size)
-    t = mesh.local[-1]
-    # With p = t**2 pi: dp/dx = -t**2 d(t**2 pi)/dt.
-    slope = -2 * np.diag(t) - (t**4)[:, None] * _nodal_derivative(n) / mesh.half_widths[-1] / t**2
-    far = np.linalg.inv(np.eye(n) + deborah * slope)
-    at_left = (rule.left_end / t**2) @ far / mesh.edges[-1] ** 2
-    at_right = (rule.left_end[::-1] / t**2) @ far / mesh.edges[-1] ** 2
-    carry = np.zeros(mesh.size)
-    carry[tail] = at_left  # q at the left edge, seen from the panel through infinity
+    at_left, far = _beyond_panels(mesh, deborah)
+    ratio = mesh.half_widths[:-1] / deborah
+    forgotten = np.linalg.inv(np.eye(n) + ratio[:, None, None] * rule.integral)  # what is left of q at the left edge
+    own = ratio[:, None, None] * (forgotten @ rule.integral)
+    arrived = forgotten.sum(axis=2)
+    passed = 1 - ratio * (arrived @ rule.weights)
+    gained = ratio[:, None] * (rule.weights - rule.weights @ own)
+    carry = np.zeros((panels + 1, mesh.size))  # q at the edges
+    carry[0, tail] = at_left  # seen from the panel through infinity
     for k in range(panels):
-        here = slice(k * n, (k + 1) * n)
-        ratio = mesh.half_widths[k] / deborah
-        solve = np.linalg.inv(np.eye(n) + ratio * rule.integral)
-        found[here] = np.outer(solve.sum(axis=1), carry)
-        found[here, here] += ratio * solve @ rule.integral
-        gained = -rule.weights @ found[here]
-        gained[here] += rule.weights
-        carry = carry + ratio * gained
-    found[tail, tail] = far
-    beyond = np.flatnonzero(t > 0) + panels * n
-    carry[tail] -= at_right
-    found[beyond] += np.outer(np.exp(-(mesh.nodes[beyond] - mesh.edges[-1]) / deborah), carry)
+        carry[k + 1] = passed[k] * carry[k]
+        carry[k + 1, k * n : (k + 1) * n] += gained[k]
+    np.multiply(arrived[:, :, None], carry[:-1, None, :], out=found[: tail.start].reshape(panels, n, mesh.size))
+    blocks = found[: tail.start, : tail.start].reshape(panels, n, panels, n)
+    blocks[range(panels), :, range(panels)] += own
+    behind = np.maximum(mesh.nodes[tail] - mesh.edges[-1], 0.0)
+    left = np.where(mesh.nodes[tail] > 0, np.exp(-behind / deborah), 0.0)
+    found[tail] = np.outer(left, carry[-1])
+    found[tail, tail] += far
     return found
+
+
+def _beyond_panels(mesh: Mesh, deborah: float) -> tuple[Array, Array]:
+    r"""Return what the pressure beyond the panels in x leaves of q at their left edge, and at the nodes there.
+
+    .. math:: q(x) = \int_0^{v} e^{-v} \, p(x - \mathrm{De} \, v) \, dv
+
+    By quadrature, from infinity or, behind the panels, from their right edge.  Collocation of the differential equation on the
+    panel through infinity would be singular at some De.
+    """
+    n, edge = mesh.order, float(mesh.edges[-1])
+    x = np.append(-edge, mesh.nodes[-n:])
+    ages = np.where(x > 0, np.minimum((x - edge) / deborah, FORGOTTEN), FORGOTTEN)[:, None] * AGES
+    t = 1 / (x[:, None] - deborah * ages)
+    basis = reference(n).interpolation((t / mesh.half_widths[-1]).ravel()).reshape(*t.shape, n)
+    weights = ages[:, -1:] / AGES[-1] * SHARES * np.exp(-ages) * t**2
+    q = np.matmul(weights[:, None, :], basis)[:, 0, :] * mesh.nodes[-n:] ** 2
+    return q[0], q[1:]
 
 
 def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
@@ -264,6 +295,7 @@ def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
     return float(2 / math.pi * (mesh.weights[:-n] * pressure[:-n]) @ slope.ravel())
 
 
+@lru_cache(maxsize=32)
 def _nodal_derivative(order: int) -> Array:
     """Return the matrix from nodal values to nodal derivatives on [-1, 1]."""
     rule = reference(order)
