@@ -1,6 +1,7 @@
 """Viscoelastic and combined solids: memory, hysteresis friction, dry contacts against an independent solver."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from test_model_parts import REFERENCE, observed
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.line import LOAD
+from stribeck.equations.operators import Operators, OperatorsOfRows
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.solids.half_plane import HalfPlane
@@ -186,6 +188,19 @@ def test_a_curve_along_which_a_body_remembers_more_and_more_of_the_panel_at_infi
     curve = sb.stribeck_curve(contact, speed=("0.1 mm/s", "1 m/s"), points=21)
     assert len(curve) == 21
     assert curve.error_estimate <= 1e-6
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("cavitation", ["none", "exit"])
+def test_rows_of_states_are_deflected_each_by_its_own_solid(cavitation):
+    groups = sb.solve(sb.Groups(1e-3, 0.1, 1e-2), cavitation=cavitation, solid=StandardLinearSolid(0.3, 2.0)).groups
+    mesh = replace(FINE, restart=math.inf)
+    solids = tuple(TwoBodies(StandardLinearSolid(time, 3.0), Layer(2.0), 0.4) for time in (0.1, 0.3, 2.0))
+    together = OperatorsOfRows(mesh, groups.model, solids)
+    pressure = bump(mesh.nodes + np.array([[0.1], [0.3], [0.0]]))
+    each = [Operators(mesh, replace(groups.model, solid=solid)) for solid in solids]
+    expected = [one.deflected(row, None) for one, row in zip(each, pressure, strict=True)]
+    np.testing.assert_allclose(together.deflected(pressure, None), expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.quick

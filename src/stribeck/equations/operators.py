@@ -232,6 +232,29 @@ class Operators:
         return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
 
 
+@dataclass(frozen=True, eq=False)
+class OperatorsOfRows(Operators):
+    """Operators of rows of states, each with a solid of its own, in a frame without dilation.
+
+    Attributes
+    ----------
+    solids : tuple of Solid
+        Of each row.
+    """
+
+    solids: tuple[Solid, ...] = ()
+
+    @cached_property
+    def deflections(self) -> Array:
+        """D of each row, shape (rows, size, size)."""
+        return np.stack([Operators(self.mesh, replace(self.model, solid=each)).deflection for each in self.solids])
+
+    def deflected(self, pressure: Array, d: Numbers | None) -> Array:
+        """Return the deflection of each row under its nodal pressure."""
+        assert d is None
+        return np.asarray(np.matmul(self.deflections, pressure[..., None])[..., 0])
+
+
 @lru_cache(maxsize=KEPT)
 def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
     """Return D at the dilations of a cell, each the deflection in x over d but for the logarithm of d.

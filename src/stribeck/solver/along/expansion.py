@@ -22,8 +22,9 @@ from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.gap import central_gap
-from stribeck.equations.line import LOAD, Equations, Operators
+from stribeck.equations.line import LOAD, Equations
 from stribeck.equations.observables import ROW, VISCOUS, beyond_panels, friction_scale, observables, observables_of_stacked
+from stribeck.equations.operators import Operators, OperatorsOfRows
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import reference
 from stribeck.numerics.series import (
@@ -354,8 +355,9 @@ def around_state(
     changes: dict[str, Any] = {}
     if groups.roughness > 0:
         changes = {"load": load, "decay_length": float(groups.roughness) * roughness / load**groups.scaling.roughness_exponent}
-    if not models:
-        return [Equations(equations.operators, speed, replace(law, **changes), equations.flux_scale)], load
+    one = equations.operators if not models else _of_rows(equations.operators, models)
+    if one is not None:
+        return [Equations(one, speed, replace(law, **changes), equations.flux_scale)], load
     each = []
     for row, model in enumerate(models):
         operators = Operators(equations.operators.mesh, model)
@@ -364,3 +366,12 @@ def around_state(
         here: dict[str, Any] = {name: float(value[row, 0]) for name, value in changes.items()}
         each.append(Equations(operators, float(speed[row, 0]), replace(law, **here), equations.flux_scale))
     return each, load
+
+
+def _of_rows(operators: Operators, models: Sequence[Model]) -> Operators | None:
+    """Return operators for rows of states whose models differ in their solids alone; None if more differs."""
+    model = operators.model
+    alike = all(replace(each, solid=model.solid) == model for each in models)
+    if not alike or operators.has_reformation:
+        return None
+    return OperatorsOfRows(operators.mesh, model, tuple(each.solid for each in models))
