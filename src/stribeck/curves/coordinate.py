@@ -5,6 +5,7 @@ One group varies, or one SI quantity of a contact, on a logarithmic scale; all e
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -53,10 +54,10 @@ class Coordinate:
         return found
 
     def _form(self, s: float) -> Groups:
-        contact = self.contact_at(s)
-        if contact is not None:
-            return contact.groups
-        assert isinstance(self.base, Groups)
+        if isinstance(self.base, Contact):
+            varying = copy.copy(self.base)  # nothing is checked again: of a model that varies, each series takes ten groups
+            object.__setattr__(varying, self.over, math.exp(s))
+            return varying.groups
         varied: dict[str, Any] = {self.over: math.exp(s)}
         return replace(self.base, **varied)
 
