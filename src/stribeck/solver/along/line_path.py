@@ -25,7 +25,7 @@ from stribeck.numerics.series import ROUNDING, beyond, interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.along.between import LinePoint, between, minimum_between, on
-from stribeck.solver.along.corrector import Corrector, from_cold, keeps_cavity
+from stribeck.solver.along.corrector import FIRST_SPREAD, Corrector, from_cold, keeps_cavity
 from stribeck.solver.along.expansion import (
     Direction,
     Expanded,
@@ -283,7 +283,7 @@ class LineProblem:
         base = with_positive_gap(groups)[0]
         guess = self.state(replace(base, model=as_in(point.state, base.model)), point, w)
         positions = [one.point.state.minimum_position for one in near]
-        spread = max((abs(guess.minimum_position - each) for each in positions), default=0.0)
+        spread = max((abs(guess.minimum_position - each) for each in positions), default=FIRST_SPREAD)
         self.corrector.move_to(guess.equations.operators, point.fine)
         refined = self.corrector.solve(guess, groups, SPREAD * spread)
         return refined if refined.outcome.ok else None
