@@ -591,6 +591,23 @@ assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & s
     assert answer.code == 0, answer.err
 
 
+@pytest.mark.parametrize(
+    ("arguments", "more"), [(["solve", *GROUPS], {"pydantic"}), (["solve", str(PDMS)], set())], ids=["groups", "case file"]
+)
+def test_solve_loads_no_more_than_it_needs(arguments, more):
+    unneeded = {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "nicegui"} | more
+    code = f"""
+import sys
+from stribeck.cli import main
+main({arguments!r})
+assert not {unneeded!r} & set(sys.modules)
+for name in ("special", "interpolate", "optimize", "sparse", "fft", "integrate", "stats"):
+    assert f"scipy.{{name}}" not in sys.modules, name
+"""
+    answer = run_python(code)
+    assert answer.code == 0, answer.err
+
+
 @pytest.mark.quick
 def test_shell_completion_can_be_installed(tmp_path):
     home = {"HOME": str(tmp_path), "SHELL": "/bin/bash", "XDG_DATA_HOME": str(tmp_path / "share")}
