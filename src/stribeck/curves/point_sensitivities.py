@@ -50,10 +50,9 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
     state = next_state(None, groups, rtol)
     solution = finish_point(state, contact)
     values: PointObservables = solution.observables
-    rubbing = mu0 * solution.is_sliding
 
     def total(found: PointObservables, beta: float = beta) -> float:
-        return rubbing * found.contact_load_share + found.viscous_friction(beta, definition)
+        return mu0 * found.sliding * found.contact_load_share + found.viscous_friction(beta, definition)
 
     def slope(name: str) -> float:
         """Return the derivative with respect to an argument of the closed forms that is not a group."""
@@ -74,7 +73,7 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
             ends = [total(_changed(values, changes, 0, step)) for step in (SMALL, -SMALL)]
             by_model[name] = (ends[0] - ends[1]) / (2 * SMALL)
     by_beta = (total(values, beta * math.exp(SMALL)) - total(values, beta * math.exp(-SMALL))) / (2 * SMALL)
-    direct = {"boundary_friction": rubbing * values.contact_load_share, "beta": by_beta}
+    direct = {"boundary_friction": mu0 * values.sliding * values.contact_load_share, "beta": by_beta}
     direct["slide_to_roll"] = slope("_slide_to_roll")
     if values._wetted_radius is not None:
         direct["wetted_radius"] = by_edge = slope("_wetted_radius")

@@ -154,14 +154,9 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         return OUTPUT_TABLES[self.groups.geometry]
 
     @property
-    def is_sliding(self) -> bool:
-        """Whether asperities rub: false if both surfaces move at the same speed."""
-        return getattr(self.contact, "slide_to_roll", 2.0) > 0
-
-    @property
+    @abstractmethod
     def _sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
-        return float(self.is_sliding)
 
     def _walls(self, beta: float) -> tuple[float, float]:
         """Return the viscous friction coefficients on the substrate and on the other body, nan where they are not known."""

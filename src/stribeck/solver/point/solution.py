@@ -209,6 +209,10 @@ class PointSolution(BaseSolution):
         slope = float(self.groups.slope() if self.contact is None else self.contact.slope)
         return self.observables.integral(slope)
 
+    @property
+    def _sliding(self) -> float:
+        return self.observables.sliding
+
     def _viscous(self, beta: float, definition: Definition) -> tuple[float, float]:
         errors = {name: float(error) for name, error in self.state.absolute_errors.items()}
         return self.observables.viscous_friction(beta, definition), self.observables.viscous_error(beta, errors, definition)

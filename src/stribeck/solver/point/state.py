@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
-from stribeck.contacts.friction import PURE_SLIDING, Definition
+from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.point import PointContact
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
@@ -179,6 +179,11 @@ class PointObservables:
                 found += self._within(2, by_pressure)
         return found
 
+    @property
+    def sliding(self) -> float:
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
+        return sliding_part(self._slide_to_roll)
+
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         r"""Return the viscous friction coefficient.
 
@@ -193,5 +198,5 @@ class PointObservables:
         if self._slide_to_roll == PURE_SLIDING:
             error += errors["J_balanced"]
         else:
-            error += 0.5 * self._slide_to_roll * errors["J_couette"] + errors["J_poiseuille"]
+            error += 0.5 * abs(self._slide_to_roll) * errors["J_couette"] + errors["J_poiseuille"]
         return 1.5 / math.pi * float(self._groups.slope(beta)) * error
