@@ -31,6 +31,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import STEP, check_solid, models_beside
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
@@ -50,7 +51,7 @@ class Prediction:
     Parameters
     ----------
     friction : ndarray, shape (n,)
-        Friction coefficient [-].
+        Size of the friction coefficient [-].
     jacobian : ndarray, shape (n, p)
         Derivatives by the logarithms of the free inputs [-].
     contact_share, fluid_share : ndarray, shape (n,)
@@ -94,6 +95,8 @@ class FrictionModel:
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
+        # Of each curve: a faster cylinder drags the substrate along.  What is measured is a size.
+        self.signs = np.array([math.copysign(1.0, self._rubbing(each)) for each in self.contacts])
         still = np.zeros(len(self.free))
         self.moving = tuple(self._moving(curve, still) for curve in range(len(data.curves)))
 
@@ -194,12 +197,15 @@ class FrictionModel:
             g, others = contact.groups, self.rule.of_contact(contact)
             per_value = {"speed": 1.0, "speed_viscosity": 1 / contact.viscosity, "hersey_number": self.rule.hersey(contact)}
             speed = float(g.speed) * per_value[self.data.abscissa]
-            rubbing = abs(float(self.rule.rubbing(g, others)))
-            rows[i] = (speed, float(g.load), float(g.roughness), rubbing * contact.boundary_friction, *others.values())
+            rubbing = abs(self._rubbing(contact)) * contact.boundary_friction
+            rows[i] = (speed, float(g.load), float(g.roughness), rubbing, *others.values())
         with np.errstate(divide="ignore"):
             found = np.log(rows)[curve]
         found[:, 0] += np.log(values)
         return np.asarray(found)
+
+    def _rubbing(self, contact: Contact) -> float:
+        return float(self.rule.rubbing(contact.groups, self.rule.of_contact(contact)))
 
     def start(self) -> tuple[Array, Array]:
         """Return where the curves of a ball begin, and what the fit changes.
@@ -256,7 +262,7 @@ class FrictionModel:
             groups = Groups(x[..., 0], x[..., 1], x[..., 2], **physics)
             inputs = dict(zip(self.rule.inputs, np.moveaxis(x[..., 4:], -1, 0), strict=True))
             contact, viscous = (term.reshape(groups.shape) for term in atlas.friction_terms(groups, inputs, definition))
-            found[inside] = x[..., 3] * contact + viscous
+            found[inside] = np.abs(self.signs[self.data.curve] * x[..., 3] * contact + viscous)
         return found
 
     def predict(self, theta: Array, parts_of: PartsOf | Between, at: tuple[Indices, Array] | None = None) -> Prediction:
@@ -295,25 +301,27 @@ class FrictionModel:
             return self.rule.viscous(moved, speed, load, {**taken, **fixed}, found.definition)
 
         still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
-        contact, fluid = x[:, 3] * found.values[0], viscous(still, no_group, no_input)
+        rubbing = self.signs[curve] * x[:, 3]
+        contact, fluid = rubbing * found.values[0], viscous(still, no_group, no_input)
         step = 1j * IMAGINARY
         by_groups = [
-            x[:, 3] * found.slopes[0, d] + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / IMAGINARY
+            rubbing * found.slopes[0, d] + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / IMAGINARY
             for d in range(3)
         ]
         by_model = np.zeros((len(x), len(self.free)))
         for k in np.nonzero(np.any(found.slopes[:, 3:], axis=(0, 2)))[0].tolist():
             through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / IMAGINARY
-            by_model[:, k] = x[:, 3] * found.slopes[0, 3 + k] + through
+            by_model[:, k] = rubbing * found.slopes[0, 3 + k] + through
         by_inputs = [viscous(still, no_group, step * row).imag / IMAGINARY for row in np.eye(len(inputs))]
-        errors = dict(zip(names, found.errors[1:], strict=True))
+        jacobian = np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A) + by_model
+        errors, share = dict(zip(names, found.errors[1:], strict=True)), friction_share(contact, fluid)
         return Prediction(
-            friction=contact + fluid,
-            jacobian=np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A) + by_model,
-            contact_share=contact / (contact + fluid),
-            fluid_share=fluid / (contact + fluid),
+            friction=np.abs(contact + fluid),
+            jacobian=np.copysign(1.0, contact + fluid)[:, None] * jacobian,
+            contact_share=share,
+            fluid_share=friction_share(fluid, contact),
             load_share=found.values[0],
-            error=np.abs(x[:, 3]) * found.errors[0]
+            error=x[:, 3] * found.errors[0]
             + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, found.definition),
         )
 
