@@ -278,5 +278,5 @@ def _inputs(groups: Groups, beta: float, slide_to_roll: float, wetted_radius: fl
 
 
 def _rubbing(groups: Groups, inputs: Mapping[str, Any]) -> float:
-    """Return the part of boundary_friction that acts."""
-    return abs(float(RULES[groups.geometry].rubbing(groups, inputs)))
+    """Return the part of boundary_friction that acts, with the sign of the sliding."""
+    return float(RULES[groups.geometry].rubbing(groups, inputs))

@@ -16,6 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import friction_share
 from stribeck.curves.regime import (
     BOUNDARY_FLUID_SHARE,
     HYDRODYNAMIC_CONTACT_SHARE,
@@ -143,7 +144,7 @@ class AtlasCurve(Drawn, Shown):
     @property
     def friction_error(self) -> Array:
         """Stated absolute error of the friction coefficient [-]."""
-        return self.table.error * self.friction
+        return self.table.error * np.abs(self.friction)
 
     @property
     def regimes(self) -> tuple[Regime, ...]:
@@ -157,8 +158,8 @@ class AtlasCurve(Drawn, Shown):
 
     @cached_property
     def minimum(self) -> Mark | None:
-        """The minimum friction, where its slope vanishes; None where the curve has none inside."""
-        i = int(np.argmin(self.friction))
+        """The minimum of the size of the friction; None where the curve has none inside."""
+        i = int(np.argmin(np.abs(self.friction)))
         if not 0 < i < len(self) - 1:
             return None
         return self._mark(Transition.MINIMUM, i - 1, i + 1, self._slope_at)
@@ -183,7 +184,7 @@ class AtlasCurve(Drawn, Shown):
         return tuple(sorted(found, key=lambda mark: mark.value))
 
     def local_minima(self) -> tuple[Mark, ...]:
-        """Return all minima of the friction inside the curve, those above the boundary plateau too."""
+        """Return all minima of the size of the friction inside the curve, those above the boundary plateau too."""
         slope = self._slope_at(self.values)
         crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
         return tuple(self._mark(Transition.MINIMUM, int(i), int(i) + 1, self._slope_at) for i in crossings)
@@ -217,9 +218,9 @@ class AtlasCurve(Drawn, Shown):
 
     @cached_property
     def _rubbing(self) -> float:
-        """The fraction of ``boundary_friction`` that acts."""
+        """``boundary_friction`` as far as it acts, with the sign of the sliding."""
         inputs = self._rule.of_contact(self.contact)
-        return self.boundary_friction * abs(float(self._rule.rubbing(self.groups_at(self.values[:1]), inputs)))
+        return self.boundary_friction * float(self._rule.rubbing(self.groups_at(self.values[:1]), inputs))
 
     def _inputs(self, groups: Groups) -> dict[str, Any]:
         """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
@@ -242,7 +243,7 @@ class AtlasCurve(Drawn, Shown):
         return np.asarray(self._rubbing * contact + viscous)
 
     def _slope_at(self, values: Array) -> Array:
-        """Return the derivative of the friction along the curve."""
+        """Return the derivative of the size of the friction along the curve."""
         groups = self.groups_at(values)
         inputs = self._inputs(groups)
         motion = {name: value for name, value in inputs.items() if name != "beta"}
@@ -254,14 +255,14 @@ class AtlasCurve(Drawn, Shown):
         for name, power in self._moving.items():
             moved = {**inputs, name: inputs[name] * (1 + 1j * IMAGINARY)}
             found = found + power * np.imag(atlas.friction_terms(groups, moved, self.definition)[1]) / IMAGINARY
-        return np.asarray(found)
+        return np.asarray(found * np.sign(self._friction_at(values)))
 
     def _fluid_at(self, values: Array) -> Array:
         return np.asarray(atlas.fluid_load_share(self.groups_at(values)))
 
     def _contact_part_at(self, values: Array) -> Array:
         contact = self._rubbing * np.asarray(atlas.contact_load_share(self.groups_at(values)))
-        return np.asarray(contact / np.maximum(self._friction_at(values), 1e-300))
+        return friction_share(contact, self._friction_at(values) - contact)
 
 
 def crossing(function: Callable[[Array], Array], low: float, high: float) -> float:

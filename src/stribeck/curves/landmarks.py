@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.regime import friction_share
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurvePoint, solved_at, within
@@ -25,7 +25,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
-__all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "places_of"]
+__all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "friction_at", "places_of"]
 
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located on states; their errors are added to it."""
@@ -82,6 +82,11 @@ class Place(NamedTuple):
     solution: Solution
 
 
+def friction_at(friction: Friction) -> float:
+    """Return the friction at a landmark, zero where it vanishes within its error."""
+    return friction.total if abs(friction.total) > friction.error else 0.0
+
+
 def places_of(path: SolvedPath) -> Array:
     """Return the coordinates of a path at which landmarks are searched for."""
     inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
@@ -113,24 +118,25 @@ class Landmarks:
             contact, other = parts(rows)
             return np.asarray(excess(mark, rows[:, ROW["fluid_load_share"]], friction_share(contact, other)))
 
-        def above_at(point: RefinedState) -> float:
-            assert point.values is not None
-            return float(above(point.values.array()[None])[0])
+        def total(rows: Array) -> Array:
+            return np.add(*parts(rows))
 
         if mark is not Transition.MINIMUM:
-            return self._first(above, above_at, accepted)
-        # At rest the friction is that of the dry contact along the whole curve.
-        return self._lowest(lambda rows: np.add(*parts(rows)), slope, accepted) if self.moves else None
+            return self._first(above, accepted)
+        if not self.moves:  # at rest the friction is that of the dry contact along the whole curve
+            return None
+        # Friction that changes its sign is least, by its size, where it vanishes.
+        return self._first(total, accepted) or self._lowest(total, slope, accepted)
 
     def _lowest(
         self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float], accepted: float
     ) -> Place | None:
-        """Return the minimum of a function of the observables inside the path, or None.
+        """Return the minimum of the size of a function of the observables inside the path, or None.
 
         It is read off the path where the errors of that are at most ``accepted``, else off a state.
         """
         places, values = self._known(function)
-        i = int(np.argmin(values))
+        i = int(np.argmin(np.abs(values)))
         if not 0 < i < len(places) - 1:
             return None
 
@@ -146,7 +152,7 @@ class Landmarks:
 
         return self._polished(slope, float(places[i - 1]), float(places[i + 1]), slope_of, doubt, accepted)
 
-    def _first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float], accepted: float) -> Place | None:
+    def _first(self, function: Callable[[Array], Array], accepted: float) -> Place | None:
         """Return the first zero of a function of the observables, ascending, or None; ``accepted`` as for :meth:`_lowest`."""
         places, values = self._known(function)
         crossings = np.nonzero(np.diff(np.sign(values)))[0]
@@ -156,6 +162,10 @@ class Landmarks:
 
         def value(s: float) -> float:
             return float(function(self.path.smooth(np.array([s])))[0])
+
+        def of(point: RefinedState) -> float:
+            assert point.values is not None
+            return float(function(point.values.array()[None])[0])
 
         def doubt(s: float, row: Array, errors: Array) -> float:
             return self._doubt(function, s, row, errors)

@@ -79,7 +79,7 @@ def plot_curve(
         label = _abscissa_of_values(curve)
         _draw_friction(ax, curve, curve.values)
         _strip(ax, curve, curve.values)
-        ax.set(xlabel=label, ylabel=r"friction coefficient $\mu$")
+        ax.set(xlabel=label, ylabel=_ordinate(curve))
         ax.legend(frameon=False, fontsize=8.5)
         return finish_figure(figure, path, force)
     by_speed = curve.over == "speed" and curve.contact is not None
@@ -95,7 +95,7 @@ def plot_curve(
     _strip(left, curve, x)
     left.set_xlabel(label)
     for axes in (left, right):
-        axes.set_ylabel(r"friction coefficient $\mu$")
+        axes.set_ylabel(_ordinate(curve))
     if by_speed and curve.contact is not None:
         per_hersey = RULES[curve.groups.geometry].hersey(curve.contact)
 
@@ -150,7 +150,7 @@ def plot_atlas_curve(
     lines = [[*_given(curve), read, f"stribeck {version('stribeck')}"]]
     figure, (axes,) = new_figure((6.8, 4.6), footer_lines(lines, [], 110), title=title or "Stribeck curve", ax=ax)
     _draw_friction(axes, curve, curve.values)
-    axes.set(xlabel=_abscissa_of_values(curve), ylabel=r"friction coefficient $\mu$")
+    axes.set(xlabel=_abscissa_of_values(curve), ylabel=_ordinate(curve))
     if ax is None:
         add_legend(figure, (axes,))
     else:
@@ -165,6 +165,11 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     return curve.values, _abscissa_of_values(curve)
 
 
+def _ordinate(curve: StribeckCurve | AtlasCurve) -> str:
+    """Return the label of the friction: below zero the substrate is dragged along, and the axis shows sizes."""
+    return r"size of friction coefficient $|\mu|$" if (np.asarray(curve.friction) < 0).any() else r"friction coefficient $\mu$"
+
+
 def _abscissa_of_values(curve: StribeckCurve | AtlasCurve) -> str:
     """Return the label of the coordinate."""
     if curve.contact is None:
@@ -175,8 +180,9 @@ def _abscissa_of_values(curve: StribeckCurve | AtlasCurve) -> str:
 
 
 def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, parts: bool = True) -> None:
-    """Draw friction, its parts, the regimes and the landmarks against x."""
-    total, error = curve.friction, curve.friction_error
+    """Draw the sizes of friction and its parts, the regimes and the landmarks against x."""
+    total, contact, viscous = map(np.abs, (np.asarray(curve.friction), curve.friction_contact, curve.friction_viscous))
+    error = curve.friction_error
     style: dict[str, Any] = {"marker": "o", "ms": 3.0} if len(curve) <= FEW else {}
     make_logarithmic(axes, "x", x)
     if (total > 0).any():
@@ -185,19 +191,19 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
     if parts:
         axes.plot(
             x,
-            curve.friction_contact,
+            contact,
             color=CONTACT,
             lw=1.5,
             ls=(0, (6, 2)),
             zorder=5,
             label="from asperities",
         )
-        axes.plot(x, curve.friction_viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
+        axes.plot(x, viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
     if (error > 0.01 * total).any():
         axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="estimated error")
     if (total > 0).any():
         low, high = total[total > 0].min(), total.max()
-        seen = [part.max() for part in (curve.friction_contact, curve.friction_viscous) if part.max() > 1e-4 * high]
+        seen = [part.max() for part in (contact, viscous) if part.max() > 1e-4 * high]
         axes.set_ylim(min([low / 10**DECADES_BELOW, *(part / 5 for part in seen)]), high * 3)
     if len(curve) > 1:
         axes.set_xlim(x.min(), x.max())
@@ -206,10 +212,10 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
         at = np.exp(np.interp(math.log(mark.value), np.log(curve.values), np.log(x)))
         if mark is curve.minimum:
             label = rf"minimum, $\mu$ = {mark.friction:.3g} at {_place(curve, mark.value)}"
-            axes.plot(at, mark.friction, "o", ms=8, color=MARK, mec="white", mew=1.2, zorder=6, label=label)
+            axes.plot(at, abs(mark.friction), "o", ms=8, color=MARK, mec="white", mew=1.2, zorder=6, label=label)
         elif "50 %" in mark.name:
             label = f"fluid carries half the load, at {_place(curve, mark.value)}"
-            axes.plot(at, mark.friction, "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
+            axes.plot(at, abs(mark.friction), "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
 
 
 def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:

@@ -18,7 +18,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE, friction_share
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress
-from stribeck.curves.landmarks import Landmark, places_of
+from stribeck.curves.landmarks import Landmark, friction_at, places_of
 from stribeck.curves.regime import Transition, check_transition, excess
 from stribeck.curves.result import StribeckCurve
 from stribeck.equations.point.observables import OBSERVABLES, SMOOTH
@@ -137,7 +137,7 @@ class PointCurve(StribeckCurve):
 
     def _mark(self, name: Transition, s: float) -> Landmark:
         solution, friction = self._at(s)
-        return Landmark(name, math.exp(s), friction.total, solution)  # type: ignore[arg-type]
+        return Landmark(name, math.exp(s), friction_at(friction), solution)  # type: ignore[arg-type]
 
     @cached_property
     def _at_unit(self) -> tuple[Groups, dict[str, Any], float]:
@@ -162,16 +162,23 @@ class PointCurve(StribeckCurve):
 
     @cached_property
     def minimum(self) -> Landmark | None:
-        """The friction minimum; None where the curve has none inside."""
+        """The minimum of the size of the friction; None where the curve has none inside."""
         if not bool(np.all(np.asarray(self.groups.speed) > 0)):
             return None
-        return self._lowest_of_points() if self._function is None else self._lowest_of_function()
+        if self._function is None:
+            places, total = np.log(self.values), np.asarray(self.friction)
+        else:
+            places = places_of(self._solved_path)
+            total = np.add(*self._parts_at(places)[1:])
+        # Friction that changes its sign is least, by its size, where it vanishes.
+        crossing = self._crossing(Transition.MINIMUM, places, total)
+        if crossing is not None:
+            return crossing
+        return self._lowest_of_points() if self._function is None else self._lowest_of_function(places, np.abs(total))
 
-    def _lowest_of_function(self) -> Landmark | None:
-        places = places_of(self._solved_path)
-        total = np.add(*self._parts_at(places)[1:])
-        i = int(np.argmin(total))
-        if not 0 < i < len(places) - 1 or np.ptp(total) <= self.rtol * total.max():
+    def _lowest_of_function(self, places: Array, size: Array) -> Landmark | None:
+        i = int(np.argmin(size))
+        if not 0 < i < len(places) - 1 or np.ptp(size) <= self.rtol * size.max():
             return None
 
         def slope(s: float) -> float:
@@ -190,13 +197,13 @@ class PointCurve(StribeckCurve):
             while high - low > MINIMUM_WIDTH:
                 new = 0.5 * (low + middle) if middle - low > high - middle else 0.5 * (middle + high)
                 first, second = sorted((middle, new))
-                if self._at(first)[1] < self._at(second)[1]:
+                if abs(self._at(first)[1]) < abs(self._at(second)[1]):
                     low, middle, high = low, first, second
                 else:
                     low, middle, high = first, second, high
             nodes = np.cos(np.pi * (np.arange(MINIMUM_NODES) + 0.5) / MINIMUM_NODES)
             centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            values = [math.log(self._at(centre + half * node)[1]) for node in nodes.tolist()]
+            values = [math.log(abs(self._at(centre + half * node)[1])) for node in nodes.tolist()]
             polynomial = np.polynomial.Chebyshev.fit(nodes, values, MINIMUM_NODES - 1, domain=[-1, 1])
             roots = [root.real for root in polynomial.deriv().roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 1]
             if not roots:
@@ -211,15 +218,16 @@ class PointCurve(StribeckCurve):
 
         Where the fluid causes the friction of the lowest point, and that is the last, the minimum may hide before it.
         """
-        total, i, places = np.asarray(self.friction), int(np.argmin(self.friction)), np.log(self.values).tolist()
+        size, places = np.abs(self.friction.total), np.log(self.values).tolist()
+        i = int(np.argmin(size))
         if 0 < i < len(self) - 1:
             return places[i - 1], places[i], places[i + 1]
-        if len(self) < 2 or self.friction_contact[i] > HYDRODYNAMIC_CONTACT_SHARE * float(total[i]):
+        if len(self) < 2 or abs(self.friction_contact[i]) > HYDRODYNAMIC_CONTACT_SHARE * float(size[i]):
             return None
         end, inner = places[i], places[1 if i == 0 else -2]
         while abs(end - inner) > MINIMUM_WIDTH:
             middle = 0.5 * (inner + end)
-            if self._at(middle)[1] < total[i]:
+            if abs(self._at(middle)[1]) < size[i]:
                 return min(inner, end), middle, max(inner, end)
             inner = middle
         return None
@@ -249,7 +257,10 @@ class PointCurve(StribeckCurve):
         return fluid, friction_share(contact, viscous)
 
     def _excess(self, name: Transition, s: float) -> float:
-        """Return by how much the criterion of a transition exceeds its threshold."""
+        """Return by how much the criterion of a transition exceeds its threshold; the friction, for where it vanishes."""
+        if name is Transition.MINIMUM:
+            at = np.array([s])
+            return self._at(s)[1].total if self._function is None else float(np.add(*self._parts_at(at)[1:])[0])
         if self._function is not None:
             fluid, share = self._shares_at(np.array([s]))
             return float(excess(name, fluid, share)[0])

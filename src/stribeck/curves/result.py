@@ -21,7 +21,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.with_parts import model_words
 from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
-from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
+from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place, friction_at
 from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
 from stribeck.quantities.outcome import Outcome
@@ -361,7 +361,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def minimum(self) -> Landmark | None:
-        """The friction minimum, on a state where the slope vanishes; None where the curve has none inside."""
+        """The minimum of the size of the friction, where it or its slope vanishes; None where the curve has none inside."""
         return self.landmark(Transition.MINIMUM)
 
     def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
@@ -399,7 +399,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         return {}
 
     def _landmark(self, name: Transition, place: Place) -> Landmark:
-        friction = place.solution.friction(self.boundary_friction, self.beta, self.definition).total
+        friction = friction_at(place.solution.friction(self.boundary_friction, self.beta, self.definition))
         return Landmark(name, math.exp(place.coordinate), friction, place.solution, place.error)
 
     @cached_property

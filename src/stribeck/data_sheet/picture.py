@@ -43,13 +43,13 @@ def draw_report(content: Content) -> Figure:
             axes.axvspan(low, high, color=TINTS[regime], lw=0, zorder=0)
         if contact.speed > 0:
             axes.axvline(contact.speed, color=MARK, lw=1.2, ls=(0, (4, 2)), label="this contact", zorder=2)
-    left.plot(speed, curve.friction, color=INK, lw=2, label="friction")
-    left.plot(speed, curve.friction_contact, color=CONTACT, lw=1.2, label="from asperities")
-    left.plot(speed, curve.friction_viscous, color=FLUID, lw=1.2, label="from the fluid")
-    shown = [curve.friction.total]
+    left.plot(speed, np.abs(curve.friction.total), color=INK, lw=2, label="friction")
+    left.plot(speed, np.abs(curve.friction_contact), color=CONTACT, lw=1.2, label="from asperities")
+    left.plot(speed, np.abs(curve.friction_viscous), color=FLUID, lw=1.2, label="from the fluid")
+    shown, is_signed = [np.abs(curve.friction.total)], bool((curve.friction.total < 0).any())
     if content.uncertainty is not None:
-        low, high = content.uncertainty["friction"].interval_95
-        middle = content.uncertainty["friction"].value
+        middle = abs(content.uncertainty["friction"].value)
+        low, high = sorted(map(abs, content.uncertainty["friction"].interval_95))
         left.errorbar(
             [contact.speed],
             [middle],
@@ -67,7 +67,7 @@ def draw_report(content: Content) -> Figure:
     values = np.concatenate(shown)
     make_logarithmic(left, "y", values)
     left.set_ylim(0.3 * values[values > 0].min(), 2 * values.max())
-    left.set_ylabel(r"friction coefficient $\mu$")
+    left.set_ylabel(r"size of friction coefficient $|\mu|$" if is_signed else r"friction coefficient $\mu$")
     height = 1e6 * contact.hertz.indentation
     right.plot(speed, height * curve.observable("central_gap"), color=INK, lw=2, label="central film")
     right.plot(speed, height * curve.observable("minimum_gap"), color=INK, lw=1.2, ls=(0, (5, 2)), label="minimum film")

@@ -225,7 +225,7 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
     terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
-    solid = boundary_friction * abs(float(rule.rubbing(groups, inputs))) * terms["balanced"][0]
+    solid = boundary_friction * float(rule.rubbing(groups, inputs)) * terms["balanced"][0]
     friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
@@ -289,9 +289,11 @@ def solved_curve(
 
 
 def _between(speed: Array, values: Array, at: Array) -> Array:
-    """Return positive values between those at some speeds."""
+    """Return values between those at some speeds, in logarithms unless some are negative."""
     from scipy.interpolate import PchipInterpolator
 
+    if (values < 0).any():
+        return np.asarray(PchipInterpolator(np.log(speed), values)(np.log(at)))
     tiny = 1e-300
     return np.exp(PchipInterpolator(np.log(speed), np.log(np.maximum(values, tiny)))(np.log(at)))
 
@@ -381,7 +383,7 @@ def _row(
             like=like,
         )
         is_slow = low == whole[0] or found.regimes[0] == "boundary"
-        rises = found.regimes[-1] == "hydrodynamic" and np.argmin(found.friction) < len(found) - 1
+        rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
         if is_slow and (rises or high == whole[1]):
             break
         like = found

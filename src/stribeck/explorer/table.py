@@ -70,10 +70,9 @@ def numbers(answer: Answer) -> list[Row]:
         friction = solution.friction(definition=definition)
         rows.append(_row(f"friction_{definition}", name, friction.total, friction.error))
     chosen = solution.friction(definition=answer.inputs.definition)
-    if chosen.total > 0:
-        rows.append(
-            _share("contact_friction_share", "Friction from asperities", chosen.contact_share, chosen.error / chosen.total)
-        )
+    if chosen.total != 0:
+        error = chosen.error / (abs(chosen.contact) + abs(chosen.viscous))
+        rows.append(_share("contact_friction_share", "Friction from asperities", chosen.contact_share, error))
     observed = solution.outputs.rows
     for each in (each for each in observed[::-1] if each.error == "absolute"):
         rows.append(_share(each.name, each.label.capitalize(), getattr(solution, each.name), errors[each.name]))

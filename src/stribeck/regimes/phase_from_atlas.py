@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import PURE_SLIDING, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import regime_numbers
+from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.threads import one_blas_thread
@@ -109,19 +109,19 @@ def transition_speeds(
 
     bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
     motion = {"slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
-    rubbing = boundary_friction * abs(float(RULES[groups.geometry].rubbing(groups, motion)))
+    rubbing = boundary_friction * float(RULES[groups.geometry].rubbing(groups, motion))
 
     def signs(s: Array, h: Array) -> Array:
         """Return what passes from below to above zero at each of the three, shape (3, ...)."""
         fluid, contact, viscous, slope = atlas.shares_and_friction(
             Groups(np.exp(s), groups.load, h, **groups.physics), boundary_friction, beta, definition, **motion
         )
-        solid = rubbing * contact
+        solid, total = np.abs(rubbing * contact), rubbing * contact + viscous
         return np.stack(
             [
                 np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
-                np.log(np.maximum(bound * viscous, 1e-300) / np.maximum(solid, 1e-300)),
-                slope / (np.abs(slope) + np.maximum(solid + viscous, 1e-300)),  # between -1 and 1
+                np.log(np.maximum(bound * np.abs(viscous), 1e-300) / np.maximum(solid, 1e-300)),
+                np.sign(total) * slope / (np.abs(slope) + np.maximum(np.abs(total), 1e-300)),  # of its size, between -1 and 1
             ]
         )
 
@@ -188,15 +188,15 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups, of: Contact |
     rule = RULES[groups.geometry]
     inputs = {**rule.of_contact(of), "beta": diagram.beta}
     share, viscous = atlas.friction_terms(groups, inputs, diagram.definition)
-    solid = diagram.boundary_friction * abs(float(rule.rubbing(groups, inputs))) * share
+    solid = diagram.boundary_friction * float(rule.rubbing(groups, inputs)) * share
     friction = solid + viscous
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
-    contact = solid / np.where(friction > 0, friction, 1.0)
+    contact = friction_share(solid, viscous)
     kappa, error = float(groups.relative_roughness), table_for(groups).error
     alpha = 1.0 if diagram.contact is None else diagram.contact.alpha
     values = {
         "friction": friction,
-        "friction_error": error * friction,
+        "friction_error": error * np.abs(friction),
         "fluid_load_share": fluid,
         "contact_friction_share": contact,
         "central_gap": central,

@@ -16,7 +16,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.friction import Definition, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
@@ -83,7 +83,8 @@ class _Slopes:
     """The normalised slope of friction along ln(speed), each value from a state solved there."""
 
     def __init__(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition, rtol: float) -> None:
-        self.groups, self.boundary_friction, self.beta, self.definition = groups, boundary_friction, beta, definition
+        self.groups, self.beta, self.definition = groups, beta, definition
+        self.rubbing = boundary_friction * sliding_part(2 * groups.model.film.slide)
         self.corrector = Corrector(self.at, rtol)
         self.points: dict[float, RefinedState] = {}
         self.found: dict[float, float] = {}
@@ -98,16 +99,16 @@ class _Slopes:
             if point is None or point.state is None or point.values is None:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
             self.points[s] = point
-            slope = float(friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)[0])
-            self.found[s] = slope / (self.beta * point.values.viscous_published)
+            slope = float(friction_slopes(point.state, self.rubbing, self.beta, self.definition)[0])
+            # Friction of the substrate that is the slower one is negative; its size counts.
+            slope *= math.copysign(1.0, self.friction(s))
+            self.found[s] = slope / (self.beta * abs(point.values.viscous_published))
         return self.found[s]
 
     def friction(self, s: float) -> float:
         values = self.points[s].values
         assert values is not None
-        return self.boundary_friction * values.contact_load_share + self.beta * float(
-            getattr(values, f"viscous_{self.definition}")
-        )
+        return self.rubbing * values.contact_load_share + self.beta * float(getattr(values, f"viscous_{self.definition}"))
 
 
 @refuse_former
@@ -238,7 +239,7 @@ def roughness_without_minimum(
         found = weakening(groups, boundary_friction, beta, definition, rtol=rtol)
         if criterion == "slope" or not found.present:
             return found.slope
-        return found.minimum_friction / boundary_friction - 1
+        return abs(found.minimum_friction) / boundary_friction - 1
 
     return _root(excess, rtol) / float(unit.relative_roughness)
 

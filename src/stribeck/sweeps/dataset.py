@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.curves.regime import regime_of
+from stribeck.contacts.regime import friction_share, regime_of
 from stribeck.files.datasets import new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.writing import PathLike
@@ -156,7 +156,7 @@ class Sweep(Exported, Shown, ByValue):
         numbers = [columns[name][0] for name in ("fluid_load_share", "friction_contact", "friction_balanced")]
         for i, (fluid, contact, total) in enumerate(zip(*numbers, strict=True)):
             if np.isfinite(total):
-                found[i] = regime_of(float(fluid), float(contact / total) if total > 0 else 0.0)
+                found[i] = regime_of(float(fluid), float(friction_share(contact, total - contact)))
         return found
 
 

@@ -81,13 +81,15 @@ def friction_chart(
     heights: list[float] = []
     if curve is not None:
         x = curve.speed * scale
-        solid, viscous = curve.contact, curve.friction[chosen] - curve.contact
-        heights += [*_range(curve.friction[chosen]), *_range(curve.friction[other])]
+        # Sizes: where the cylinder is the faster body the substrate is dragged along.
+        solid, viscous = np.abs(curve.contact), np.abs(curve.friction[chosen] - curve.contact)
+        size = {kind: np.abs(values) for kind, values in curve.friction.items()}
+        heights += [*_range(size[chosen]), *_range(size[other])]
         series += [
-            line("other", names[other], x, curve.friction[other], palette.grey, 1.2, [3, 3]),
+            line("other", names[other], x, size[other], palette.grey, 1.2, [3, 3]),
             line("contact", "from asperities", x, solid, palette.contact, 1.4, [7, 3]),
             line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
-            line("friction", names[chosen], x, curve.friction[chosen], palette.ink, 2.4),
+            line("friction", names[chosen], x, size[chosen], palette.ink, 2.4),
         ]
         if curve.stale:
             for old in series:
@@ -95,7 +97,7 @@ def friction_chart(
         series.append(_regime_bands(curve, answer.speeds, scale, palette))
     for i, (name, pinned, their_hersey) in enumerate(pins):
         factor = 1.0 if inputs.abscissa == "speed" else their_hersey
-        values = pinned.friction[chosen]
+        values = np.abs(pinned.friction[chosen])
         heights += _range(values)
         series.append(line(f"pin{i}", name, pinned.speed * factor, values, palette.pins[i % 6], 1.8, PIN_DASHES[i % 6]))
     for i, found in enumerate(measured):
@@ -103,7 +105,7 @@ def friction_chart(
         symbol = ("circle", "diamond", "triangle")[i % 3]
         places = found.places(contact, inputs.abscissa) * scale
         series.append(points(f"measured{i}", found.name, places, found.friction, symbol, palette.ink))
-    friction = answer.solution.friction(definition=chosen).total
+    friction = abs(answer.solution.friction(definition=chosen).total)
     heights += [friction] if friction > 0 else []
     low, high = _friction_limits(heights)
     minimum = None if curve is None else curve.transition("minimum")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.explorer.charts.palette import LIGHT, PIN_DASHES
 from stribeck.explorer.curves import hersey_scale
@@ -64,7 +66,7 @@ def figure_of(shown: View, what: str) -> Any:
     added = []
     for i, (name, pinned, hersey) in enumerate(shown.pins):
         style: Any = {"color": LIGHT.pins[i % 6], "ls": (0, PIN_DASHES[i % 6])}
-        added += axes.plot(pinned.speed * hersey, pinned.friction[inputs.definition], lw=1.4, label=name, **style)
+        added += axes.plot(pinned.speed * hersey, np.abs(pinned.friction[inputs.definition]), lw=1.4, label=name, **style)
     for each in shown.measured:
         places = each.places(inputs.contact, "hersey") * hersey_scale(inputs.contact)
         added += axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=LIGHT.ink, label=each.name)
