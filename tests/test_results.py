@@ -218,6 +218,17 @@ def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
         sb.fluids.PRESETS["glycerine"]
 
 
+def test_what_fails_in_a_property_of_a_result_is_not_hidden_as_an_unknown_name(state, curve, monkeypatch):
+    many = sb.solve_batch(CONTACT, speed=["1 mm/s", "2 mm/s"], rtol=1e-3)
+    for result, name in ((state, "regime"), (curve.solutions[3], "regime"), (curve.at(CONTACT.speed), "errors"), (many, "ok")):
+        with pytest.raises(AttributeError, match=f"{type(result).__name__}.* has no attribute 'no_such_thing'"):
+            result.no_such_thing  # noqa: B018
+        monkeypatch.setattr(type(result), name, property(lambda self: self.a_number.no_such_thing))
+        monkeypatch.setattr(type(result), "a_number", 1.0, raising=False)
+        with pytest.raises(AttributeError, match="'float' object has no attribute 'no_such_thing'"):
+            getattr(result, name)
+
+
 def test_the_words_of_the_regimes_command_are_there_in_python(capsys):
     from stribeck.cli import main
 

@@ -75,7 +75,8 @@ class BatchSolution(Exported, Shown, ByValue):
         """Return an observable under its own name."""
         if not name.startswith("_") and name != "values" and name in self.values:
             return self.values[name]
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
+        # Of a property that fails Python asks here, and would show none of what failed.
+        return object.__getattribute__(self, name)  # type: ignore[no-any-return]
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""

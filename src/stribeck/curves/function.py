@@ -240,7 +240,8 @@ class CurveValues(Shown, ByValue):
         """Return an observable under its own name."""
         if name != "values" and name in self.values:
             return self.values[name]
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
+        # Of a property that fails Python asks here, and would show none of what failed.
+        return object.__getattribute__(self, name)
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""

@@ -170,7 +170,8 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         """Return an observable under its own name."""
         if not name.startswith("_") and name != "observables" and name in self._own:
             return float(getattr(self.observables, name))
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
+        # Of a property that fails Python asks here, and would show none of what failed.
+        return object.__getattribute__(self, name)  # type: ignore[no-any-return]
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""
