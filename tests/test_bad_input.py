@@ -70,10 +70,10 @@ def assert_refused(capsys, folder, tokens, *parts):
 BAD_CONTACTS = {
     "unknown key": ({"radios": '"10 mm"'}, "[contact] radios = '10 mm' is not a known key; did you mean radius"),
     "missing key": ({"viscosity": None}, "[contact] viscosity is missing; add a viscosity"),
-    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; expected a speed such as '0.1 m/s'"),
+    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; expected a speed such as '1 mm/s'"),
     "load in newtons": (
         {"load": '"30 N"'},
-        "load = '30 N' is a force; expected a load per unit length such as '50 N/m': a force is the load of a ball",
+        "load = '30 N' is a force; expected a load per unit length such as '30 N/m': a force is the load of a ball",
     ),
     "unknown unit": ({"viscosity": '"50 mPaxs"'}, "viscosity = '50 mPaxs' has the unknown unit"),
     "no unit": ({"radius": '"10"'}, "radius = '10' has no unit; add one"),

@@ -106,7 +106,7 @@ def test_another_unit_keeps_the_value():
     ("name", "text", "sentence"),
     [
         ("load", "-3", "load = '-3 N/m' must be positive."),
-        ("load", "3 mm", "load = '3 mm' is a length; expected a load per unit length such as '50 N/m'."),
+        ("load", "3 mm", "load = '3 mm' is a length; expected a load per unit length such as '30 N/m'."),
         ("load", "1,500", "load = '1,500' may be 1.500 or 1500; write one of them, without a comma."),
         ("load", "1,5,0", "has a comma; write a decimal point"),
         (

@@ -1,6 +1,7 @@
 """Fluid, cavitation, flow factors, solid and motion as users give them: units, scaling, names, refusals."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ import stribeck as sb
 from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.with_parts import part_attributes, with_parts
 from stribeck.fluids.presets import celsius
+from stribeck.quantities.inputs import LINE, POINT, quantity
+from stribeck.quantities.units import DIMENSIONS
 
 CONTACT = {
     "radius": "10 mm",
@@ -134,6 +137,22 @@ def test_what_fails_in_a_property_of_a_contact_is_not_hidden_as_an_unknown_name(
 
 
 @pytest.mark.quick
+def test_a_refusal_shows_an_example_that_the_input_may_have():
+    """It showed one of its dimension: 2.1 MPa for the pressure of a cavity, 10 mm for a roughness."""
+    for parts, said in (
+        ({"cavitation": "reform", "cavity_pressure": "1 m"}, "such as '-101 kPa'"),
+        ({"roughness": "1 s"}, "such as '1 um'"),
+        ({"solid": "Layer"}, "such as Layer\\('2 mm'\\)"),
+    ):
+        with pytest.raises(sb.InputError, match=said):
+            sb.LineContact(**CONTACT).replace(**parts)
+    for table in (LINE, POINT):
+        for name, row in table.quantities.items():
+            with pytest.raises(sb.InputError, match=re.escape(row.typical)):
+                quantity(name, "what", table)
+            assert quantity(name, row.typical if DIMENSIONS[row.dimension].unit else float(row.typical), table) > 0
+
+
 def test_an_unknown_part_is_refused_as_a_keyword():
     with pytest.raises(TypeError, match="did you mean 'slide_to_roll'"):
         sb.solve(sb.Groups(1e-3, 0.1, 0), slide_to_rol=1.0)

@@ -284,7 +284,7 @@ def _value(name: str, value: Any, inputs: InputTable) -> float:
     """Return what may be fitted in SI units."""
     if name not in PART_INPUTS:
         return quantity(name, value, inputs)
-    found = to_si(value, PART_INPUTS[name].dimension, name)
+    found = to_si(value, PART_INPUTS[name].dimension, name, PART_INPUTS[name].typical)
     if found <= 0:
         raise InputError(f"{name} = {show(value)} must be positive.")
     return found

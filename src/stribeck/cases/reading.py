@@ -170,7 +170,7 @@ def _split_part_errors(table: dict[str, Any], problems: list[str]) -> dict[str, 
         numbers = table.get(row.table)
         if isinstance(numbers, dict) and has_error(numbers.get(row.key)):
             try:
-                value, error = split_error(row.key, numbers[row.key], row.dimension)
+                value, error = split_error(row.key, numbers[row.key], row.dimension, row.typical)
             except InputError as problem:
                 problems.append(f"[{row.table}] {problem}")
                 value, error = row.typical if DIMENSIONS[row.dimension].unit else float(row.typical), None
@@ -194,7 +194,7 @@ def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> 
         table["surface"] = surface | {"h_rms": table["contact"].pop("roughness")}
     elif isinstance(surface, dict) and "h_rms" in surface:
         try:
-            height, error = split_error("h_rms", surface["h_rms"], "length")
+            height, error = split_error("h_rms", surface["h_rms"], "length", "1 um")
         except InputError as problem:
             problems.append(f"[surface] {problem}")
         else:

@@ -90,7 +90,7 @@ class RoughSurface:
         bend = _cut_off("roll_off", roll_off, "roll_off_wavelength", roll_off_wavelength)
         gamma = check_gamma(gamma)
         height = _length("h_rms", h_rms)
-        checked = SelfAffine(height, first, last, to_si(hurst, "number", "hurst"), bend)
+        checked = SelfAffine(height, first, last, to_si(hurst, "number", "hurst", "0.8"), bend)
         fields = {"h_rms": height, "hurst": checked.hurst, "q0": first, "q1": last, "roll_off": bend or first, "gamma": gamma}
         for name, value in fields.items():
             object.__setattr__(self, name, value)
@@ -121,7 +121,7 @@ def _cut_off(name: str, wavenumber: str | float | None, other: str, wavelength: 
 
 
 def _length(name: str, value: str | float) -> float:
-    length = to_si(value, "length", name)
+    length = to_si(value, "length", name, "1 um")
     if length <= 0:
         raise InputError(f"{name} = {show(value)} is not above zero; give a length such as '1 um'.")
     return length

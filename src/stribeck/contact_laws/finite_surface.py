@@ -61,7 +61,7 @@ class FiniteSurface:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be."""
-        if not to_si(self.alpha, "number", "alpha") > 0:
+        if not to_si(self.alpha, "number", "alpha", "2.0") > 0:
             raise InputError(f"alpha = {show(self.alpha)} must be a positive number, that of the contact law.")
         base = check_law(self.base)
         if base is not None and not has_endless_tail(base):

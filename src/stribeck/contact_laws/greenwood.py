@@ -237,7 +237,8 @@ class GreenwoodTripp(_GaussianHeights):
 
 def _asperities(density: Any, radius: Any, deviation: Any) -> tuple[float, float, float]:
     given = {"density": density, "radius": radius, "deviation": deviation}
-    found = [to_si(value, "per area" if name == "density" else "length", name) for name, value in given.items()]
+    kinds = ("per area", ""), ("length", "20 um"), ("length", "1 um")
+    found = [to_si(value, kind, name, example) for (name, value), (kind, example) in zip(given.items(), kinds, strict=True)]
     for (name, value), number in zip(given.items(), found, strict=True):
         if not number > 0:
             raise InputError(f"{name} = {show(value)} must be positive.")

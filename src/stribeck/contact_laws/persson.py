@@ -317,7 +317,7 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
 
 def check_gamma(gamma: object) -> float:
     """Return a reduction of the elastic energy as a float, from :data:`LOWEST_GAMMA` to 1."""
-    value = to_si(gamma, "number", "gamma")
+    value = to_si(gamma, "number", "gamma", "0.45")
     if not LOWEST_GAMMA <= value <= 1:
         raise InputError(f"gamma = {show(gamma)} must be from {LOWEST_GAMMA:g} to 1; 0.45 fits simulations.")
     return value

@@ -77,7 +77,9 @@ class Parts:
         values = {
             "fluid": as_fluid(fluid),
             "cavitation": _cavitation(cavitation),
-            "cavity_pressure": 0.0 if cavity_pressure is None else to_si(cavity_pressure, "pressure", "cavity_pressure"),
+            "cavity_pressure": 0.0
+            if cavity_pressure is None
+            else to_si(cavity_pressure, "pressure", "cavity_pressure", "-101 kPa"),
             "flow_factors": as_flow_factors(flow_factors),
             "solid": None if solid is None else as_solid("solid", solid),
             "slide_to_roll": PURE_SLIDING if slide_to_roll is None else to_si(slide_to_roll, "number", "slide_to_roll"),

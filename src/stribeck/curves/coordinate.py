@@ -133,7 +133,8 @@ def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
     """Return the ends or points of a range as ascending positive numbers."""
     items = [value] if isinstance(value, str) else list(value)
     if table is not None:
-        numbers = [to_si(item, table.quantities[over].dimension, over) for item in items]
+        row = table.quantities[over]
+        numbers = [to_si(item, row.dimension, over, row.typical) for item in items]
     else:
         try:
             numbers = [float(item) for item in items]
@@ -152,8 +153,8 @@ def given_values(over: Over, value: Any, contact: Contact | None) -> Array:
     many = _dimensions(over, value) > 0
     items = list(value) if many else [value]
     if contact is not None:
-        dimension = contact.INPUTS.quantities[over].dimension
-        found = np.array([to_si(item, dimension, over) for item in items])
+        row = contact.INPUTS.quantities[over]
+        found = np.array([to_si(item, row.dimension, over, row.typical) for item in items])
     else:
         try:
             found = np.array([float(item) for item in items])

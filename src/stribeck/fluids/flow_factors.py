@@ -125,7 +125,7 @@ class PatirCheng(FlowFactors):
         friction_factors: bool = False,
         argument: Literal["nominal", "mean"] = "nominal",
     ) -> None:
-        number = to_si(gamma, "number", "gamma")
+        number = to_si(gamma, "number", "gamma", "1")
         known = min(FACTORS, key=lambda each: abs(math.log(max(number, 1e-9) / each)))
         if not abs(number / known - 1) < 0.01:
             raise InputError(f"gamma = {show(gamma)}; Patir and Cheng give factors for 1/9, 1/6, 1/3, 1, 3, 6 and 9 only.")
@@ -334,7 +334,7 @@ def check_alpha(alpha: float | None) -> float | None:
     """Return a coefficient of the contact law, checked."""
     if alpha is None:
         return None
-    value = to_si(alpha, "number", "alpha")
+    value = to_si(alpha, "number", "alpha", "2.0")
     if value <= 0:
         raise InputError(f"alpha = {show(alpha)} must be above zero; it is that of the contact law, about 2.")
     return value

@@ -123,7 +123,7 @@ def celsius(temperature: str | float) -> float:
         if found is None:
             raise InputError(f"temperature = {show(temperature)}; write it as '25 degC' or '298 K'.")
         return float(found[1]) - (273.15 if found[2] == "K" else 0.0)
-    return to_si(temperature, "number", "temperature")
+    return to_si(temperature, "number", "temperature", "25")
 
 
 def water(temperature: str | float = 25.0) -> Liquid:
@@ -193,7 +193,7 @@ def _between(T: float, low: float, high: float) -> float:
 def _silicone(grade: str | float) -> Liquid:
     """Return a silicone oil (PDMS) of a grade: a number in cSt, or text with a unit."""
     given, is_text = grade, isinstance(grade, str)
-    grade = 1e6 * to_si(given, "kinematic", "grade") if is_text else to_si(given, "number", "grade")
+    grade = 1e6 * to_si(given, "kinematic", "grade", "100 cSt") if is_text else to_si(given, "number", "grade", "100")
     if not 5 <= grade <= 1000:
         raise InputError(f"grade = {show(given)} must lie between 5 and 1000 cSt; thicker silicone oils thin under shear.")
     density = 917 + 56 * (1 - math.exp(-math.log(grade / 5) / 1.6))

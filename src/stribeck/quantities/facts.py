@@ -93,7 +93,7 @@ def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
             near = difflib.get_close_matches(name, FACTS, n=1)
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FACTS)}."
             raise InputError(f"{name} = {show(value)} is not a fact that the checks use; {hint}")
-        number = to_si(value, FACTS[name].dimension, name)
+        number = to_si(value, FACTS[name].dimension, name, FACTS[name].typical)
         if not 0 <= number < math.inf:
             raise InputError(f"{name} = {show(value)} must be zero or positive.")
         found[name] = number

@@ -169,7 +169,7 @@ def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
         Where the value is impossible or its unit is wrong.
     """
     wanted = table.quantities[name]
-    result = to_si(value, wanted.dimension, name)
+    result = to_si(value, wanted.dimension, name, wanted.typical)
     if wanted.highest < math.inf and not 0 <= result <= wanted.highest:
         raise InputError(f"{name} = {show(value)} must be between 0 and {wanted.highest:g}.")
     if result < 0 or (result == 0 and not wanted.zero):

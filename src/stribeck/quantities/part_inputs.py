@@ -179,7 +179,7 @@ def with_part_value(parts: Any, name: str, value: str | float) -> Any:
     row = PART_INPUTS[name]
     if part_value(parts, name) is None:
         raise InputError(f"{name} = {show(value)}, but this contact has none: it belongs to {row.of}; give it to the contact.")
-    return _with(parts, row.path, to_si(value, row.dimension, name))
+    return _with(parts, row.path, to_si(value, row.dimension, name, row.typical))
 
 
 def _with(thing: Any, path: tuple[str, ...], value: float) -> Any:

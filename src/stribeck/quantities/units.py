@@ -11,7 +11,7 @@ import functools
 import math
 import numbers
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -129,7 +129,7 @@ _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _LONGEST_UNIT = 40
 
 
-def to_si(value: Any, dimension: str, name: str) -> float:
+def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:
     """Return ``value`` as a float in SI units.
 
     Parameters
@@ -141,6 +141,8 @@ def to_si(value: Any, dimension: str, name: str) -> float:
         One of the keys of :data:`DIMENSIONS`; ``"number"`` accepts bare numbers only.
     name : str
         What the value is called, for the error sentence.
+    example : str, optional
+        Such a value, as people write it, for the error sentence; one of its dimension if omitted.
 
     Returns
     -------
@@ -157,7 +159,7 @@ def to_si(value: Any, dimension: str, name: str) -> float:
     >>> to_si("2.5 um", "length", "roughness")
     2.5e-06
     """
-    kind = DIMENSIONS[dimension]
+    kind = replace(DIMENSIONS[dimension], example=example) if example else DIMENSIONS[dimension]
     value = _text_of_quantity(value, kind)
     exact = _from_text(value, kind, name) if isinstance(value, str) else value
     if isinstance(exact, bool) or not isinstance(exact, numbers.Real):

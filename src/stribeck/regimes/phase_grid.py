@@ -209,7 +209,8 @@ def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array
     """Return the values of one axis, ascending."""
     items = [value] if isinstance(value, str) or np.ndim(value) == 0 else list(value)
     if table is not None:
-        numbers = [to_si(item, table.quantities[name].dimension, name) for item in items]
+        row = table.quantities[name]
+        numbers = [to_si(item, row.dimension, name, row.typical) for item in items]
     else:
         try:
             numbers = [float(item) for item in items]

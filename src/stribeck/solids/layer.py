@@ -84,7 +84,7 @@ class Layer:
     poisson_ratio: float
 
     def __init__(self, thickness: str | float, poisson_ratio: float = 0.5) -> None:
-        d, nu = to_si(thickness, "length", "thickness"), to_si(poisson_ratio, "number", "poisson_ratio")
+        d, nu = to_si(thickness, "length", "thickness", "2 mm"), to_si(poisson_ratio, "number", "poisson_ratio")
         if not d > 0:
             raise InputError(f"thickness = {show(thickness)}; it must be above zero, such as '2 mm'.")
         if not 0 <= nu <= 0.5:

@@ -115,7 +115,7 @@ class StandardLinearSolid(_Viscoelastic):
     base: Solid
 
     def __init__(self, time: str | float, ratio: float, base: Solid | None = None) -> None:
-        values = {"time": _positive("time", time), "ratio": to_si(ratio, "number", "ratio")}
+        values = {"time": _positive("time", time), "ratio": to_si(ratio, "number", "ratio", "3")}
         if not values["ratio"] > 1:
             raise InputError(f"ratio = {show(ratio)} must be above 1: the modulus at once over that of the relaxed body.")
         for name, value in {**values, "base": as_solid("base", base)}.items():
@@ -304,7 +304,7 @@ def _nodal_derivative(order: int) -> Array:
 
 
 def _positive(name: str, value: str | float) -> float:
-    time = to_si(value, "time", name)
+    time = to_si(value, "time", name, "10 ms")
     if time <= 0:
         raise InputError(f"{name} = {show(value)} must be above zero, such as '10 ms'.")
     return time

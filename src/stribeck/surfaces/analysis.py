@@ -207,7 +207,7 @@ def analyse(
     gamma = check_gamma(gamma)
     shortest = None
     if resolution is not None:
-        shortest = to_si(resolution, "length", "resolution")
+        shortest = to_si(resolution, "length", "resolution", "1 um")
         if shortest <= 0:
             raise InputError(
                 f"resolution = {show(resolution)} is not above zero; give the shortest wavelength that is resolved."

@@ -204,7 +204,7 @@ def _from_channel(
             raise InputError(
                 f"{path} does not declare the distance between points; add --spacing '0.5 um' (in Python spacing='0.5 um')."
             )
-        step = to_si(spacing, "length", "spacing")
+        step = to_si(spacing, "length", "spacing", "0.5 um")
         arguments["physical_sizes"] = tuple(n * step / length for n in shape)
     elif spacing is not None:
         raise InputError(f"{path} declares the distance between its points; leave out spacing = {show(spacing)}.")

@@ -87,7 +87,7 @@ def read_text(
                 f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
                 "(in Python spacing='0.5 um')."
             )
-        step = to_si(spacing, "length", "spacing")
+        step = to_si(spacing, "length", "spacing", "0.5 um")
         z = table.values * z_factor
         # A row of the file is a line of the scan, and the first axis is along it.
         return Topography(z[:, 0] if columns == 1 else z.T, (step,) * (1 if columns == 1 else 2), source=path.name)

@@ -64,7 +64,7 @@ class Eyring(RateLaw):
     eyring_stress: float
 
     def __init__(self, stress: str | float) -> None:
-        value = to_si(stress, "pressure", "stress")
+        value = to_si(stress, "pressure", "stress", "5 MPa")
         if value <= 0:
             raise InputError(f"stress = {show(stress)} must be above zero; oils have about '5 MPa'.")
         set_numbers(self, eyring_stress=value)

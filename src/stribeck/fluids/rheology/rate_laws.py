@@ -261,7 +261,7 @@ class PowerLaw(RateLaw):
 
 
 def _infinite(value: str | float) -> float:
-    viscosity = to_si(value, "viscosity", "infinite_viscosity")
+    viscosity = to_si(value, "viscosity", "infinite_viscosity", "1 mPa*s")
     if viscosity < 0:
         raise InputError(f"infinite_viscosity = {show(value)} must be zero or positive: the viscosity at high rates.")
     return viscosity

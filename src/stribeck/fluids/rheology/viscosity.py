@@ -135,7 +135,7 @@ class Roelands(ViscosityLaw):
             ("reference_pressure", reference_pressure, "pressure", "196 MPa"),
             ("reference_viscosity", reference_viscosity, "viscosity", "63.1 uPa*s"),
         ):
-            number = to_si(value, dimension, name)
+            number = to_si(value, dimension, name, example)
             if number <= 0:
                 raise InputError(f"{name} = {show(value)} must be above zero; Roelands' fit has {example}.")
             object.__setattr__(self, name, number)
@@ -223,7 +223,7 @@ class DowsonHigginson(DensityLaw):
     limit: float
 
     def __init__(self, pressure: str | float = 0.59e9, limit: float = 1.34) -> None:
-        c, k = to_si(pressure, "pressure", "pressure"), to_si(limit, "number", "limit")
+        c, k = to_si(pressure, "pressure", "pressure", "0.59 GPa"), to_si(limit, "number", "limit", "1.34")
         if c <= 0:
             raise InputError(f"pressure = {show(pressure)} must be above zero; mineral oils have 0.59 GPa.")
         if k <= 1:

@@ -185,11 +185,11 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
     errors: dict[str, float] = {}
     problems = []
     for name, value in given.items():
-        dimension = _row(name, table).dimension if name in GIVEN or name in table.quantities else ""
+        kind = _row(name, table) if name in GIVEN or name in table.quantities else None
         values[name] = value
-        if dimension and has_error(value):
+        if kind is not None and has_error(value):
             try:
-                values[name], error = split_error(name, value, dimension)
+                values[name], error = split_error(name, value, kind.dimension, kind.typical)
                 errors[name] = error or 0.0
             except InputError as problem:
                 problems.append(str(problem))
@@ -294,7 +294,7 @@ def _slope(row: Conversion, numbers: list[float], i: int) -> float:
 def _si(each: GivenInput, value: Any) -> float:
     if each.dimension == "rotation" and isinstance(value, str) and _TURNS.search(value):
         raise InputError(f"{each.name} = {show(value)} may mean turns or radians per second; write it in rpm or rad/s.")
-    number = to_si(value, each.dimension, each.name)
+    number = to_si(value, each.dimension, each.name, each.typical)
     low, high = each.usual
     if number <= 0 or not low <= number <= high:
         allowed = f"between {low:g} and {high:g}, where the relation holds" if high < math.inf else "positive"

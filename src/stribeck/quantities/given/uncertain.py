@@ -24,7 +24,7 @@ def has_error(value: Any) -> bool:
     return isinstance(value, Mapping) or (isinstance(value, str) and re.search(_SIGN, value) is not None)
 
 
-def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | None]:
+def split_error(name: str, value: Any, dimension: str, example: str = "") -> tuple[Any, float | None]:
     """Return a value without its error, and that error relative to it.
 
     Parameters
@@ -36,6 +36,8 @@ def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | Non
         anything else has no error.
     dimension : str
         A key of :data:`stribeck.quantities.units.DIMENSIONS`.
+    example : str, optional
+        Such a value, for sentences; one of its dimension if omitted.
 
     Returns
     -------
@@ -54,7 +56,7 @@ def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | Non
     if isinstance(value, Mapping):
         if set(value) != {"value", "error"}:
             raise InputError(f"{name} = {show(dict(value))} must be a table of value and error, such as "
-                             f"{{ value = {show(DIMENSIONS[dimension].example)}, error = '20 %' }}.")  # fmt: skip
+                             f"{{ value = {show(example or DIMENSIONS[dimension].example)}, error = '20 %' }}.")  # fmt: skip
         center, error = value["value"], value["error"]
         if not (isinstance(error, str) and error.strip().endswith("%")):
             error = _number(f"the error of {name}", error, dimension)
@@ -68,7 +70,7 @@ def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | Non
         else:
             center = f"{number} {unit or last}"
             error = _number(f"the error of {name}", f"{size} {last or unit}", dimension)
-    known = _number(name, center, dimension)
+    known = _number(name, center, dimension, example)
     relative = _percent(name, error) if isinstance(error, str) else float(error) / known if known else math.inf
     if not 0 < relative <= LARGEST_ERROR:
         raise InputError(
@@ -83,14 +85,14 @@ def relative_error(name: str, value: float, error: Any, dimension: str) -> float
     return float(split_error(name, {"value": value, "error": error}, dimension)[1] or 0.0)
 
 
-def _number(name: str, value: Any, dimension: str) -> float:
+def _number(name: str, value: Any, dimension: str, example: str = "") -> float:
     """Return a value in SI units; a bare number as text counts where there is no unit."""
     if isinstance(value, str) and not DIMENSIONS[dimension].unit:
         try:
             return float(value)
         except ValueError:
             raise InputError(f"{name} = {show(value)} must be a bare number.") from None
-    return to_si(value, dimension, name)
+    return to_si(value, dimension, name, example)
 
 
 def _percent(name: str, text: str) -> float:
