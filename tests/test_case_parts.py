@@ -119,6 +119,15 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"fluid": {"model": "carreau"}}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
         ({"fluid": {"model": "eyring", "stress": "5 MPa", "exponent": 1}}, r"\[fluid\] exponent = 1 is given, but model"),
         ({"fluid": {"modle": "carreau"}}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
+        (
+            {"fluid": {"model": "eyring", "stress": "1e-300 Pa"}},
+            r"\[fluid\] stress = 1e-300: thinning would begin",
+        ),
+        (
+            {"fluid": {"pressure_coefficient": 1}},
+            r"\] pressure_coefficient = 1 is not .*mean pressure_visc",
+        ),
+        ({"solid": {"thickness": "2 mm"}}, r"\] thickness = '2 mm' is not a .* did you mean layer_th"),
         ({"fluid": {"name": "water"}}, r"\[fluid\] name = 'water' is not a known key; did you mean preset or model"),
         ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),
         ({"fluid": {"viscosity_law": "barus"}}, r"\[fluid\] pressure_viscosity is missing"),

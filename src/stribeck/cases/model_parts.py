@@ -101,6 +101,7 @@ CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
 ARGUMENTS = {
     "cavitation": ("cavitation", "model"),
     "cavity_pressure": ("cavitation", "pressure"),
+    "eyring_stress": ("fluid", "stress"),
     "infinite_viscosity": ("fluid", "infinite_viscosity"),
     "pressure_coefficient": ("fluid", "pressure_viscosity"),
     "ratio": ("solid", "modulus_ratio"),
@@ -109,7 +110,7 @@ ARGUMENTS = {
     "time": ("solid", "retardation_time"),
     "times": ("solid", "relaxation_times"),
 }
-"""Argument in Python with which the sentence of a problem may begin -> table and key of a case."""
+"""Argument in Python, with which the sentence of a problem may begin -> table and key of a case."""
 
 
 def in_file(problem: str, table: str) -> str:
@@ -150,9 +151,10 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
         try:
             if not isinstance(table, dict):
                 raise InputError(f"{name} = {show(table)} must be a table, [{name}].")
-            unknown = [key for key in table if key not in KEYS[name]]
+            unknown = [f"[{name}] {_unknown(key, table[key], KEYS[name])}" for key in table if key not in KEYS[name]]
             if unknown:
-                raise InputError("\n".join(_unknown(key, table[key], KEYS[name]) for key in unknown))
+                problems += unknown
+                continue
             parts |= read(table, rest.get("contact"))
         except InputError as problem:
             problems += [in_file(line, name) for line in str(problem).split("\n")]
@@ -174,7 +176,8 @@ def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[s
 
 
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
-    near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
+    named = ARGUMENTS.get(key, ("", ""))[1]  # as in Python
+    near = [named] if named in known else difflib.get_close_matches(key, known, n=1, cutoff=0.8)
     meant = near or [each for each in ("preset", "model") if key in NAMES and each in known]
     advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
     if key in CONTACT_KEYS:

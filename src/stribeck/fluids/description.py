@@ -13,6 +13,9 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["Fluid", "as_fluid", "as_flow_factors"]
 
+LONGEST_TIME = 1e100
+"""Largest relaxation time, and largest one over it, in Hertz units: squares of rates stay numbers."""
+
 
 @dataclass(frozen=True)
 class Fluid:
@@ -109,7 +112,20 @@ class Fluid:
             )
         from stribeck.fluids.shear_thinning import ShearThinning
 
-        return ShearThinning(self.rheology.scaled(units), viscosity, density, slide)
+        rheology = self.rheology.scaled(units)
+        _check_time(self.rheology, rheology.time)
+        return ShearThinning(rheology, viscosity, density, slide)
+
+
+def _check_time(given: RateLaw, time: float) -> None:
+    """Refuse a law whose rate at which thinning begins has no square in double precision."""
+    if not LONGEST_TIME**-1 <= time <= LONGEST_TIME:
+        name = next(iter(given.parameters), "relaxation_time")
+        value = given.parameters.get(name, given.time)
+        raise InputError(
+            f"{name} = {show(value)}: thinning would begin at {1 / max(time, 1e-300):.3g} of the shear rate that the contact "
+            f"has at speed group 1; the ratio must lie between {1 / LONGEST_TIME:g} and {LONGEST_TIME:g}. Check the unit."
+        )
 
 
 def as_fluid(fluid: Any) -> Fluid:
