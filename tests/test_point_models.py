@@ -159,7 +159,7 @@ def test_at_rest_a_layer_bears_the_load_with_more_pressure():
     ("parts", "sentence"),
     [
         ({"flow_factors": PatirCheng(2.0, gamma=3)}, "flow_factors = patir-cheng: on a ball they must be those of isotropic"),
-        ({"solid": Layer(0.01)}, "the layer is 0.01 times as thick as the Hertz radius"),
+        ({"solid": Layer(0.01)}, "solid = bonded layer: its thickness is 0.01 of the Hertz radius"),
     ],
 )
 def test_what_a_ball_does_not_have_is_refused_by_name(parts, sentence):
@@ -168,6 +168,18 @@ def test_what_a_ball_does_not_have_is_refused_by_name(parts, sentence):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize(
+    ("groups", "parts", "said"),
+    [
+        (Groups(1e-3, 0.1, 0.03, geometry="point"), {"flow_factors": PatirCheng(2.0)}, "fits above 0.5"),
+        (Groups(0.1, 0.1, 1e-3, geometry="point"), {"fluid": DowsonHigginson(1.0, 1.34)}, "no liquid is stretched so far"),
+    ],
+)
+def test_a_ball_says_where_its_film_leaves_the_range_of_a_law(groups, parts, said):
+    notes = sb.solve(groups, rtol=1e-2, **parts).notes
+    assert [said in note for note in notes if note.startswith("The fluid leaves the range of its laws")] == [True]
+
+
 def test_contacts_hold_fluid_and_cavitation_and_friction_names_the_wake():
     ball = sb.PointContact(
         radius="10 mm", modulus="2 MPa", load="10 mN", viscosity="0.1 Pa*s", entrainment_speed="0.1 m/s", slide_to_roll=1.0,

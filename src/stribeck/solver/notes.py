@@ -9,12 +9,14 @@ from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.fluids.fluid import Film
 from stribeck.quantities.formats import format_percent, format_si
 
 __all__ = [
     "ADVICE",
     "HARD",
     "cavitation_notes",
+    "fluid_notes",
     "law_notes",
     "matters",
     "minimum_note",
@@ -100,6 +102,27 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
         f"as at ambient pressure, which is "
         "not modelled: with such a fluid film, friction and regimes are not those given here.",
     )
+
+
+def fluid_notes(film: Film, gap: Array, pressure: Array, flux_gap: float) -> tuple[str, ...]:
+    """Return the sentences that say where a film leaves the range of its laws.
+
+    Parameters
+    ----------
+    film : Film
+        The film at the speed of the state.
+    gap, pressure : ndarray
+        Gap and fluid pressure at the nodes, in Hertz units.
+    flux_gap : float
+        The flux gap h* [u_Hz]; nan for a ball, whose flow along a line is not one number.
+
+    Returns
+    -------
+    tuple of str
+        The sentences; mostly none.
+    """
+    said = film.notes(gap, pressure if film.uses_pressure else None, flux_gap)
+    return tuple(f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said)
 
 
 def shape_notes(contact: Contact | None) -> tuple[str, ...]:

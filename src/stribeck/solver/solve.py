@@ -32,7 +32,7 @@ from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cavities.opening import ruptured
 from stribeck.solver.cold_start import first_paths
-from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
+from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 
@@ -388,11 +388,10 @@ def state_notes(
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
     if groups.speed > 0 and (contact is not None or groups.model != ARTICLE):
         solved = state()
-        film, fluid = solved.equations.film, solved.equations.pressures(solved.y)[1]
+        fluid = solved.equations.pressures(solved.y)[1]
         notes += [] if contact is None else cavitation_notes(contact, fluid)
         if not solved.equations.operators.is_article:
-            said = film.notes(solved.gap, fluid if film.uses_pressure else None, solved.flux_gap)
-            notes += [f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said]
+            notes += fluid_notes(solved.equations.film, solved.gap, fluid, solved.flux_gap)
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
     if floor > 0.1 * rtol:

@@ -21,7 +21,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
-from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
+from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve import SolveError, describe
 
@@ -435,6 +435,9 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
             np.array([state.lowest_pressure]),
             "Where it breaks at ambient pressure asperities carry 7 to 15 % of the load less in mixed lubrication.",
         )
+    if groups.speed > 0:
+        film = model.film.at(groups.speed)
+        notes += fluid_notes(film, state.nodal_gap.ravel(), state.nodal_fluid_pressure.ravel(), math.nan)
     wetted = values._wetted_radius
     if wetted is not None and wetted < NEAR_EDGE:
         notes.append(

@@ -226,13 +226,14 @@ def check_model(model: Model) -> None:
         )
     if type(model.solid) not in BODIES:
         raise InputError(
-            f"solid = {model.solid.name}: in the contact of a ball the soft body must be a half-space or a bonded layer."
+            f"solid = {model.solid.name}: in the contact of a ball the soft body must be a half-space or a bonded layer. "
+            "Other bodies are solved under a cylinder only."
         )
     thickness = getattr(model.solid, "thickness", math.inf)
     if thickness < THINNEST:
         raise InputError(
-            f"the layer is {thickness:.3g} times as thick as the Hertz radius of the half-space; on a ball the ratio must be "
-            f"{THINNEST:g} or more."
+            f"solid = {model.solid.name}: its thickness is {thickness:.3g} of the Hertz radius on a half-space; under a ball "
+            f"it must be {THINNEST:g} or more. Thinner layers are solved under a cylinder only."
         )
 
 
