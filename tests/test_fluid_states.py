@@ -234,6 +234,31 @@ def test_the_drag_of_a_rolling_film_of_a_power_law_is_known_better_than_from_its
     assert state.viscous_balanced == pytest.approx(3.8655423e-07, rel=1e-7)
 
 
+def power_law_states(exponent, time, longer=1e4):
+    """Return a state of a power law, and that of the same law whose viscosity is taken at a lower rate, and so its plateau."""
+    states = [
+        sb.solve(sb.Groups(1e-5 * by ** (1 - exponent), 0.1, 1e-3), fluid=sb.fluids.PowerLaw(by * time, exponent), rtol=1e-5)
+        for by in (1, longer)
+    ]
+    return *states, [note for note in states[0].notes if note.startswith("The fluid leaves the range of its laws")]
+
+
+def test_a_note_says_where_the_drag_of_a_power_law_hangs_on_its_plateau():
+    state, lower, notes = power_law_states(0.6, 1.0)
+    assert abs(state.central_gap / lower.central_gap - 1) < 1e-8
+    assert 1.03 < lower.friction().viscous / state.friction().viscous < 1.05
+    assert ["far outside the contact" in note for note in notes] == [True]
+    state, lower, notes = power_law_states(0.9, 1.0)
+    assert abs(lower.friction().viscous / state.friction().viscous - 1) < 3e-5
+    assert notes == []
+
+
+def test_a_note_says_where_the_inlet_feels_the_plateau_of_a_power_law():
+    state, lower, notes = power_law_states(0.5, 1e-8)
+    assert abs(state.central_gap / lower.central_gap - 1) > 1e-3
+    assert any("at a lower rate" in note for note in notes)
+
+
 def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
     """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the rate is zero."""
     groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), fluid=sb.fluids.Carreau(0.02, 0.5))

@@ -35,9 +35,11 @@ AT_REST = 1e-60
 FAR = 4.0
 """Factor by which a film may change before the local solutions of the last one are no good start."""
 
-
 NEAR = 0.3
 """Change of a wall rate over the larger one up to which first order is a good start."""
+
+FAR_ABOVE = 1e4
+"""Largest rate of a film over that of the plateau of a power law from which on the inlet does not feel the plateau."""
 
 
 class _Local(NamedTuple):
@@ -181,8 +183,16 @@ class ShearThinning:
         return Slopes(by_gap, by_pressure, partly * eta * stress / wi / (rho * gap), by_speed)
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
-        """Return where the state leaves the range of the laws."""
-        return notes_of(self.law, self.viscosity, self.density, gap=gap, pressure=pressure)
+        """Return where the state leaves the range of the laws, or shears a power law at hardly more than its plateau."""
+        said = notes_of(self.law, self.viscosity, self.density, gap=gap, pressure=pressure)
+        rate = self.law.time * float(self.speed) / float(gap.min())
+        if not 0 < self.law.plateau < 1 or rate > FAR_ABOVE * self.law.plateau:
+            return said
+        return (
+            *said,
+            f"U/h times the relaxation time is {rate:.1e} at most; where it is below {self.law.plateau:g} the viscosity of a "
+            "power law is constant here, which the inlet feels. Give the viscosity at a lower rate, with its longer time",
+        )
 
     def _of_pressure(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array, Array]:
         """Return viscosity, slope of its logarithm, density and its slope."""

@@ -44,6 +44,9 @@ LOWEST = 1e-8
 """Rate times relaxation time below which a power law has its plateau: without one, pressure and drag fall off so slowly far
 away that for n <= 1/2 the drag has no bound."""
 
+FAR_DRAG = 0.75
+"""Exponent below which the drag grows by more than about 1e-3 if the plateau begins at a rate 1e4 times lower."""
+
 MILDEST = 1e-3
 """What plateaus change by on the way from nearly Newtonian fluids."""
 
@@ -202,9 +205,11 @@ class PowerLaw(RateLaw):
 
     Notes
     -----
-    Below the rate :math:`10^{-8}/t` the viscosity is constant, which no film feels.  A pure power law is infinitely viscous
-    where nothing flows: its drag falls off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  There much of
-    the drag comes from far outside the contact, where no cylinder is a parabola; films and load shares do not.  If the
+    Below the rate :math:`10^{-8}/t` the viscosity is constant, which films do not feel where :math:`U/h` is above
+    :math:`10^{-4}/t`; a note says where it is not.  A pure power law is infinitely viscous where nothing flows: its drag falls
+    off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  Much of the drag comes from far outside the
+    contact, where no cylinder is a parabola, for n below :data:`FAR_DRAG` so much that a note says so; films and load shares
+    do not.  If the
     viscosity grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
     """
 
@@ -237,6 +242,15 @@ class PowerLaw(RateLaw):
     def plateau(self) -> float:
         """Rate below which the viscosity is constant."""
         return LOWEST
+
+    def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
+        """Return whether the drag is that of places where no surface is a parabola."""
+        if self.exponent >= FAR_DRAG:
+            return ()
+        return (
+            f"much of the drag of a power law with exponent {self.exponent:g} comes from far outside the contact, up to where "
+            "its viscosity is constant; take films and load shares, or give Carreau's law for the friction",
+        )
 
     def milder(self, part: float) -> Self:
         """Return the fluid whose viscosity is that to the power of the part."""
