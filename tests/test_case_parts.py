@@ -186,7 +186,7 @@ def test_all_problems_are_told_at_once():
 @pytest.mark.quick
 def test_data_of_a_ball_have_its_units_without_a_table_fit_too(tmp_path):
     case = sb.load_case(Path(__file__).parents[1] / "examples" / "tongue_model.toml")
-    (tmp_path / "rig.csv").write_text("speed [mm/s],friction,load [N]\n10,0.4,2\n20,0.3,2\n50,0.2,2\n")
+    (tmp_path / "rig.csv").write_text("mean speed [mm/s],friction,load [N]\n10,0.4,2\n20,0.3,2\n50,0.2,2\n")
     assert sb.read_measurements(tmp_path / "rig.csv", case.fit).inputs[0]["load"] == 2.0
 
 

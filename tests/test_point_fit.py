@@ -171,7 +171,9 @@ def test_units_of_a_fit_are_those_of_the_geometry(tmp_path):
     assert settings.curves["heavy"] == {"load": 20e-3, "slide_to_roll": 1.0}
     path.write_text(text)
     settings, data = sb.load_case(path).fit, tmp_path / "data.csv"
-    data.write_text("speed [mm/s],load [mN],friction\n" + "".join(f"{v},{n},{0.5 / v}\n" for n in (10, 20) for v in (1, 2, 3)))
+    data.write_text(
+        "mean speed [mm/s],load [mN],friction\n" + "".join(f"{v},{n},{0.5 / v}\n" for n in (10, 20) for v in (1, 2, 3))
+    )
     found = sb.read_measurements(data, settings)
     assert [each["load"] for each in found.inputs] == pytest.approx([0.01, 0.02])
     path.write_text(text.replace('["5 mN", "20 mN"]', '["5 N/m", "20 N/m"]'))

@@ -4,6 +4,8 @@ The layouts are made from public descriptions of ball-on-disc (mini traction mac
 """
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from command_line import call, case_text
 from fit_data import exact
 
 import stribeck as sb
-from stribeck.cases.fit_settings import check_fit_table
+from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.files import spreadsheet
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
@@ -82,6 +84,30 @@ def test_a_speed_that_may_be_mean_or_sum_is_asked_for(read):
     mean = read(text, columns={"entrainment_speed": "Speed"}).values
     total = read(text, columns={"speed": "Speed"}).values
     assert mean == pytest.approx(2 * total) and mean == pytest.approx(SPEEDS)
+
+
+@pytest.mark.quick
+def test_a_case_whose_surfaces_both_move_is_asked_which_speed_its_file_holds(tmp_path):
+    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+
+    def read(header, columns=None, ratio=0.5):
+        path = tmp_path / "rig.csv"
+        path.write_text("\n".join([f"{header};COF", *(f"{u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True))]))
+        settings = FitSettings.of(contact.replace(slide_to_roll=ratio))
+        return sb.read_measurements(path, replace(settings, columns=columns or {})).values
+
+    assert read("speed [m/s]", ratio=2.0) == pytest.approx(SPEEDS)
+    for header in ("speed [m/s]", "Hersey number", "eta U [Pa*s*m/s]"):
+        with pytest.raises(sb.InputError, match="both surfaces move .slide-to-roll ratio 0.5., so that .* the mean of both"):
+            read(header)
+    assert read("Hersey number", {"hersey_number": "Hersey number"}) == pytest.approx(SPEEDS)
+    assert read("speed [m/s]", {"speed": "speed"}) == pytest.approx(SPEEDS)
+    assert read("sum of speeds [m/s]") == pytest.approx(SPEEDS)
+    for found in (read("speed [m/s]", {"entrainment_speed": "speed"}), read("mean speed [m/s]")):
+        assert found == pytest.approx([2 * u for u in SPEEDS])
+    assert read("sliding speed [m/s]") == pytest.approx([4 * u for u in SPEEDS])
+    with pytest.raises(sb.InputError, match="does not give the sum of the surface speeds at the slide-to-roll ratio 0"):
+        read("sliding speed [m/s]", ratio=0.0)
 
 
 @pytest.mark.quick

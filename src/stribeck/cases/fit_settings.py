@@ -8,9 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from stribeck.cases.model_parts import take_parts
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.quantities.given.hints import advice_on
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, quantity
@@ -100,6 +102,8 @@ class FitSettings:
         Name of a curve -> inputs in SI units in which it differs from the case, and its own fluid or solid.
     geometry : {"line", "point"}
         What was measured: a cylinder or a ball.
+    slide_to_roll : float
+        Slide-to-roll ratio of the contact: but at 2 and -2 both surfaces move, and a speed may be their mean or their sum.
     """
 
     free: tuple[str, ...] = ()
@@ -118,6 +122,34 @@ class FitSettings:
     priors: dict[str, Prior] = field(default_factory=dict)
     curves: dict[str, dict[str, Any]] = field(default_factory=dict)
     geometry: str = "line"
+    slide_to_roll: float = PURE_SLIDING
+
+    @classmethod
+    def of(cls, contact: Contact) -> Self:
+        """Return the settings of a fit that asks for nothing.
+
+        Parameters
+        ----------
+        contact : Contact
+            What was measured.
+
+        Returns
+        -------
+        FitSettings
+            With its geometry and motion.
+        """
+        return cls(geometry=contact.groups.geometry, slide_to_roll=getattr(contact, "slide_to_roll", PURE_SLIDING))
+
+    @property
+    def ratios(self) -> tuple[float, ...]:
+        """The slide-to-roll ratios of the contact and of curves that have their own."""
+        own = [float(curve["slide_to_roll"]) for curve in self.curves.values() if curve and "slide_to_roll" in curve]
+        return tuple(dict.fromkeys([self.slide_to_roll, *own]))
+
+    @property
+    def rolls(self) -> bool:
+        """Whether both surfaces of a curve move."""
+        return any(abs(ratio) != PURE_SLIDING for ratio in self.ratios)
 
     @property
     def inputs(self) -> InputTable:

@@ -5,6 +5,7 @@ in :mod:`stribeck.quantities.inputs`.
 """
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -125,7 +126,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         curve=CurveSettings(**checked["curve"]),
         title=checked["title"],
         notes=checked["notes"],
-        fit=fit,
+        fit=replace(fit, slide_to_roll=FitSettings.of(contact).slide_to_roll),
         facts={**preset_facts(tables), **facts},
         errors={**errors, **part_errors},
         conversions=(*conversions, *preset_said(tables, contact.viscosity)),

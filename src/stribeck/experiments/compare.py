@@ -217,7 +217,7 @@ def compare(
     """
     loaded = case if isinstance(case, Case | Contact) else load_case(case)
     contact = loaded.contact if isinstance(loaded, Case) else loaded
-    settings = loaded.fit if isinstance(loaded, Case) else FitSettings(geometry=contact.groups.geometry)
+    settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
     rows = data if isinstance(data, Measurements) else read_measurements(data, settings)
     names = tuple(free or settings.free or DEFAULT_FREE)
     if models is not None and laws is not None:

@@ -146,7 +146,7 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
         path = Path(folder) / "curve.csv"  # never under the name that came with it
         path.write_bytes(content)
         try:
-            data = read_measurements(path, FitSettings(geometry=contact.groups.geometry))
+            data = read_measurements(path, FitSettings.of(contact))
         except InputError as problem:
             raise InputError(str(problem).replace(str(path), name)) from None
     found, rule = [], RULES[contact.groups.geometry]

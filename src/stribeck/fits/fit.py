@@ -167,7 +167,7 @@ class _Problem:
 
 def _problem(data: object, case: str | os.PathLike[str] | Case | Contact) -> _Problem:
     if isinstance(case, Contact):
-        return _Problem(case, FitSettings(geometry=case.groups.geometry), Case.definition, Case.rtol)
+        return _Problem(case, FitSettings.of(case), Case.definition, Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")

@@ -154,7 +154,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     written = table.header
     table, made, run = prepared(table, settings, lambda meaning: has_column(table, settings, meaning))
     columns = columns_of(table, settings)
-    abscissa = abscissa_of(table, columns)
+    abscissa = abscissa_of(table, columns, settings)
     reader = Values(table, settings)
     rows: list[Row] = []
     runs: list[str] = []

@@ -20,8 +20,11 @@ Abscissa = Literal["speed", "speed_viscosity", "hersey_number"]
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
 
+SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}
+"""Headers of a speed that say that it is the sum."""
+
 WORDS = {
-    "speed": {"speed", "velocity", "sliding speed", "sliding velocity", "u", "v"},
+    "speed": {"speed", "velocity", "sliding speed", "sliding velocity", "u", "v", *SUMS},
     "speed_viscosity": {"eta u", "etau", "speed viscosity", "viscosity speed", "viscosity times speed"},
     "hersey_number": {"hersey", "hersey number"},
     "friction": {
@@ -96,15 +99,35 @@ def _listed(table: TextTable) -> str:
     return f"the columns are {', '.join(show(name) for name in table.header if name)} (separated by {table.separator}s)"
 
 
-def abscissa_of(table: TextTable, columns: dict[str, list[str]]) -> Abscissa:
+def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSettings) -> Abscissa:
     """Return what friction was measured against; the speed where there are several."""
     there = [name for name in ABSCISSAS if name in columns]
-    if len(there) > 1:
-        # Speed is what was set; the others follow from it.
-        if "speed" in there:
-            return "speed"
+    # Speed is what was set; the others follow from it.
+    if len(there) > 1 and "speed" not in there:
         raise InputError(f"{table.path}: the file has {' and '.join(there)}; keep one of them.")
-    return there[0]
+    found = there[0]
+    if found not in settings.columns:
+        _ask_for_the_sum(table, found, columns[found][0], settings)
+    return found
+
+
+def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:
+    """Refuse an abscissa of two moving surfaces of which nobody said whether it holds their mean speed or the sum."""
+    ratio = any(re.fullmatch(PATTERNS["slide_to_roll"], header_words(each)) for each in table.header)
+    if header_words(name) in SUMS or not (ratio or settings.rolls):
+        return
+    said = " or ".join(f"{each:g}" for each in settings.ratios)
+    why = "the file has a slide-to-roll ratio" if ratio else f"both surfaces move (slide-to-roll ratio {said})"
+    if abscissa == "speed":
+        raise InputError(
+            f"{table.path}: {why}, so that {show(name)} may be the mean of both surface speeds or their sum; say which in "
+            f"[fit.columns] of the case: entrainment_speed = {show(name)} (the mean) or speed = {show(name)} (the sum), or "
+            "call the column 'mean speed' or 'sum of speeds'."
+        )
+    raise InputError(
+        f"{table.path}: {why}, so that {show(name)} may be made with the mean of both surface speeds or with their sum; "
+        f"double it where it is the mean, and say {abscissa} = {show(name)} (with the sum) in [fit.columns] of the case."
+    )
 
 
 def has_column(table: TextTable, settings: FitSettings, meaning: str) -> bool:
@@ -115,7 +138,7 @@ def has_column(table: TextTable, settings: FitSettings, meaning: str) -> bool:
     words = {header_words(name) for name in table.header if not declared_for_rig(name, settings)}
     # Beside these a sliding speed is the difference of the surface speeds, and the speed their sum.
     rolling = [PATTERNS[each] for each in ("slide_to_roll", "entrainment_speed", "surface_speeds")]
-    rolls = any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
+    rolls = settings.rolls or any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
     sliding = {"sliding speed", "sliding velocity"} if rolls else set()
     return any(words & (WORDS[each] - sliding) for each in wanted)
 

@@ -35,7 +35,7 @@ PATTERNS = {
 }
 """What the words of a header mean, in lower case."""
 
-MADE_SPEED = "speed [m/s]"
+MADE_SPEED = "sum of speeds [m/s]"
 """Header of the column of the speed that was made of others."""
 
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
@@ -60,7 +60,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     Returns
     -------
     TextTable
-        The table, with columns ``friction`` and ``speed [m/s]`` added where they had to be made.
+        The table, with columns ``friction`` and ``sum of speeds [m/s]`` added where they had to be made.
     tuple of str
         What was made of what, one sentence each.
     str
@@ -69,7 +69,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     Raises
     ------
     InputError
-        If a speed may be the mean or the sum, or a cell is no number.
+        If a sliding speed leaves the sum open, or a cell is no number.
 
     Notes
     -----
@@ -86,19 +86,11 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         table = _with_column(table, "friction", values)
         said.append(f"friction = |{show(force)} / {show(normal)}|")
     if not known("speed"):
-        made = _speed(table, found)
+        made = _speed(table, found, settings)
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_SPEED, values)
             said.append(sentence)
-    elif "slide_to_roll" in found and "speed" not in settings.columns:
-        plain = next((name for name in table.header if header_words(name) in ("speed", "velocity", "u", "v")), None)
-        if plain is not None:
-            raise InputError(
-                f"{table.path}: the file has a slide-to-roll ratio, so that {show(plain)} may be the mean of both surface "
-                f"speeds or their sum; say which in [fit.columns] of the case: entrainment_speed = {show(plain)} (the mean) "
-                f"or speed = {show(plain)} (the sum)."
-            )
     for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
         if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
             table, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
@@ -171,7 +163,7 @@ def _rounded(value: float) -> float:
     return rough if abs(rough / value - 1) < 0.01 else float(f"{value:.3g}")
 
 
-def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | None], str] | None:
+def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
     """Return the sum of the surface speeds and how it was obtained; None if the rig gives no speed."""
     if "entrainment_speed" in found:
         name = found["entrainment_speed"][0]
@@ -187,6 +179,20 @@ def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | 
         pairs = zip(_numbers(table, name, "speed", "m/s"), _ratios(table, ratio), strict=True)
         values = [None if a is None or not b else abs(2 * a / b) for a, b in pairs]
         return values, f"speed = 2 x {show(name)} / {show(ratio)}, the sum of the surface speeds"
+    if "sliding_speed" in found:
+        name = found["sliding_speed"][0]
+        if len(settings.ratios) != 1 or 0 in settings.ratios:
+            said = " and ".join(f"{ratio:g}" for ratio in settings.ratios)
+            raise InputError(
+                f"{table.path}: {show(name)} does not give the sum of the surface speeds at the slide-to-roll ratio "
+                f"{said}; write a column 'mean speed' or 'sum of speeds'."
+            )
+        factor = abs(2 / settings.ratios[0])
+        values = [None if value is None else factor * value for value in _numbers(table, name, "speed", "m/s")]
+        return (
+            values,
+            f"speed = 2 x {show(name)} / {settings.ratios[0]:g}, the slide-to-roll ratio; the sum of the surface speeds",
+        )
     return None
 
 
