@@ -98,8 +98,9 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     moment = stretch * (stretch * (nodal.pressure @ arm + speed * stretch * (g @ leverage)) + x_c * whole)
     balance = -stretch * (speed * pull + stretch * (contact @ arm) + x_c * (contact @ weights))
     moment = moment + _share_balanced(equations, stretch * whole) * (balance - moment)
-    lower, upper = lower * stretch, upper * stretch
-    found = np.stack([upper - 6 / speed * moment, lower, upper])
+    found = np.empty((3, *moment.shape))
+    found[1], found[2] = lower * stretch, upper * stretch
+    found[0] = found[2] - 6 / speed * moment
     found *= np.squeeze(friction_scale(load, equations.speed))
     return found
 
@@ -108,8 +109,8 @@ def _walls(
     film: Film, gap: Array, pressure: Array | None, flux_gap: Numbers, parts: tuple[slice | Flags, slice | Flags | None]
 ) -> Array:
     """Return drag on substrate and cylinder and the pull h G, zero where the film is torn, shape (3, ..., nodes)."""
-    found = np.zeros((3, *gap.shape))
     wet, torn = parts
+    found = np.empty((3, *gap.shape)) if torn is None else np.zeros((3, *gap.shape))
     column = (gap[..., wet], None if pressure is None else pressure[..., wet], flux_gap)
     found[0][..., wet], found[1][..., wet] = film.tractions(*column)
     found[2][..., wet] = gap[..., wet] * film.gradient(*column)
@@ -122,7 +123,7 @@ def _walls(
 def _share_balanced(equations: Equations, fluid_load: Array) -> Array:
     """Return the share with which the balance of forces gives the moment of the pressure: none on bodies that remember."""
     remembers = bool(lengths_of(equations.operators.model.solid).memories)
-    return np.zeros_like(fluid_load) if remembers else np.clip(fluid_load / LOAD, 0.0, 1.0)
+    return np.zeros_like(fluid_load) if remembers else np.minimum(np.maximum(fluid_load / LOAD, 0.0), 1.0)
 
 
 def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | None]:

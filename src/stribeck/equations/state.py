@@ -339,6 +339,8 @@ def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Arr
     values = crossing(x)
     count = len(values)
     row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
+    if not len(row):
+        return NOWHERE
     each = np.arange(len(row))
     low, high = x[at], x[at + 1]
     for _ in range(KINK_SEARCHES):

@@ -121,7 +121,8 @@ class EffectiveMedium(FlowFactors):
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return zero twice."""
-        return np.zeros(gap.shape), np.zeros(gap.shape)
+        nothing = np.zeros(())
+        return nothing, nothing
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether the film falls below the threshold."""

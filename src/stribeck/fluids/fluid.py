@@ -20,24 +20,13 @@ from stribeck._types import Array, Numbers
 MOST_KEPT = 16
 """Shapes of arrays of nodes for which what a film last was is kept."""
 
-Key = tuple[Array | Numbers | None, ...]
-"""What a film was asked for, what mostly differs first: flux gap, gap, pressure, and the speed group where it matters."""
+Key = tuple[object, ...]
+"""What a film was asked for, to the bit."""
 
 
-def kept(key: Key) -> Key:
-    """Return copies of what a film was asked for."""
-    return tuple(each.copy() if isinstance(each, np.ndarray) else each for each in key)
-
-
-def same(first: Key, second: Key) -> bool:
-    """Return whether a film was asked for the same to the bit."""
-    for a, b in zip(first, second, strict=True):
-        if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
-            if a.shape != b.shape or not (a == b).all():
-                return False
-        elif a is not b and (a is None or b is None or not np.array_equal(a, b)):
-            return False
-    return True
+def key_of(*asked: Array | Numbers | None) -> Key:
+    """Return what tells whether a film is asked for the same again; what mostly differs goes first."""
+    return tuple((each.shape, each.tobytes()) if isinstance(each, np.ndarray) else each for each in asked)
 
 
 class Slopes(NamedTuple):

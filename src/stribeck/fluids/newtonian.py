@@ -16,7 +16,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MOST_KEPT, Key, Slopes, kept, same
+from stribeck.fluids.fluid import MOST_KEPT, Key, Slopes, key_of
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
@@ -210,9 +210,9 @@ class Newtonian:
         """Return G and where asked for its derivatives, those known if the last on as many nodes were for the same film."""
         if len(gap.shape) == 2 and len(gap) == 1:
             return self._at(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap), with_slopes).as_row
-        key = (flux_gap, gap, pressure)
+        key = key_of(flux_gap, gap, pressure)
         last = self._known.get(gap.shape)
-        if last is not None and same(last.key, key) and (last.slopes is not None or not with_slopes):
+        if last is not None and last.key == key and (last.slopes is not None or not with_slopes):
             return last
         if len(self._known) >= MOST_KEPT:
             self._known.clear()
@@ -227,7 +227,7 @@ class Newtonian:
             by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
             by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
             slopes = Slopes(by_gap, by_pressure, -resistance / rho)
-        found = self._known[gap.shape] = _Column(kept(key), g, slopes)
+        found = self._known[gap.shape] = _Column(key, g, slopes)
         return found
 
 

@@ -21,7 +21,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, kept, same
+from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, key_of
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Newtonian
@@ -238,9 +238,9 @@ class ShearThinning:
         """Return the local solutions, those known if the last on as many nodes were for the same film."""
         if len(gap.shape) == 2 and len(gap) == 1 and np.ndim(self.speed) == 0:
             return self._local(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap)).as_row
-        key = (flux_gap, gap, pressure, self.speed)
+        key = key_of(flux_gap, gap, pressure, self.speed)
         last = self._known.get(gap.shape)
-        if last is not None and same(last.key, key):
+        if last is not None and last.key == key:
             return last
         of_pressure = self._of_pressure(gap, pressure)
         eta, _, rho, _ = of_pressure
@@ -252,7 +252,7 @@ class ShearThinning:
         shape = r_0.shape
         flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
         flow = Profile(*(each.reshape(shape) for each in flow))
-        found = _Local(kept(key), flow, wi, *of_pressure, r_0, r_1)
+        found = _Local(key, flow, wi, *of_pressure, r_0, r_1)
         if len(self._known) >= MOST_KEPT:
             self._known.clear()
         self._known[gap.shape] = found
