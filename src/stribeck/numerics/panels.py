@@ -62,6 +62,10 @@ class Reference:
 
     def interpolation(self, points: Array) -> Array:
         """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
+        return self.polynomials(points).T @ self.to_legendre
+
+    def polynomials(self, points: Array) -> Array:
+        """Legendre polynomials below the number of nodes at ``points``, shape (degrees, len(points))."""
         basis = np.empty((len(self.nodes), len(points)))
         basis[0] = 1.0
         basis[1] = points
@@ -69,7 +73,7 @@ class Reference:
             np.multiply(points, basis[n], out=basis[n + 1])
             basis[n + 1] *= (2 * n + 1) / (n + 1)
             basis[n + 1] -= n / (n + 1) * basis[n - 1]
-        return basis.T @ self.to_legendre
+        return basis
 
 
 @lru_cache(maxsize=32)

@@ -59,8 +59,11 @@ EXACT = 1e-13
 WIDEST_PANEL = 6.0
 """Half-width of a panel in thicknesses from which its pressure is integrated over the reach of the kernel alone."""
 
-STEPS, GRADING = 64, 8
+STEPS = (64, 8)
 """Nodes over that reach on each side of a place, and the power by which they crowd there: to 1e-14 for logarithms."""
+
+OFF_PANEL, FROM_AFAR, STEPS_FROM_AFAR = 4.0, 40, (32, 1)
+"""Distance from such a panel in thicknesses beyond which so many places tell what it does at all others, and their nodes."""
 
 
 @dataclass(frozen=True, init=False)
@@ -165,20 +168,29 @@ class Layer:
     def _within_reach(self, mesh: Mesh, k: int, x: Array) -> Array:
         """Return what pressures at the nodes of a panel deflect at places ``x`` by the whole kernel, shape (len(x), order)."""
         half, place = float(mesh.half_widths[k]) / self.thickness, (x - mesh.centres[k]) / self.thickness
-        steps, weights = _steps_away()
+        panel = reference(mesh.order)
 
-        def ahead(place: Array) -> Array:
+        def ahead(place: Array, steps: int, grading: int) -> Array:
             first, last = np.clip(-half - place, 0.0, REACH), np.clip(half - place, 0.0, REACH)
-            (some,) = np.nonzero(last > first)
-            first, length = first[some, None], (last - first)[some, None]
-            away = first + length * steps
-            kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
-            values = reference(mesh.order).interpolation(((place[some, None] + away) / half).ravel())
             found = np.zeros((len(place), mesh.order))
-            found[some] = (kernel[:, None] @ values.reshape(*away.shape, -1))[:, 0]
+            some = last > first
+            # From afar it is a smooth function of the place, and the nodes in the contact lie close together.
+            far = some & (first > OFF_PANEL)
+            if 2 * half >= REACH - OFF_PANEL and np.count_nonzero(far) > FROM_AFAR:
+                rule, middle, span = reference(FROM_AFAR), -half - 0.5 * (OFF_PANEL + REACH), 0.5 * (REACH - OFF_PANEL)
+                there = ahead(middle + span * rule.nodes, *STEPS_FROM_AFAR)
+                found[far] = rule.interpolation((place[far] - middle) / span) @ there
+                some &= ~far
+            first, length = first[some, None], (last - first)[some, None]
+            at, weights = _steps_away(steps, grading)
+            away = first + length * at
+            kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
+            polynomials = panel.polynomials(((place[some, None] + away) / half).ravel()).reshape(mesh.order, *away.shape)
+            found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
-        return np.asarray(self.thickness * (ahead(place) + ahead(-place)[:, ::-1]))
+        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), *STEPS).reshape(2, len(x), -1)
+        return np.asarray(to_right + to_left[:, ::-1])
 
     def far_gap(self, x: Array) -> Array:
         """Return ``x**2/2``."""
@@ -207,12 +219,12 @@ def _finer_rule(order: int, count: int) -> tuple[Array, Array]:
     return nodes, reference(order).interpolation(nodes).T * weights
 
 
-@lru_cache(maxsize=1)
-def _steps_away() -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond."""
-    nodes, weights = np.polynomial.legendre.leggauss(STEPS)
+@lru_cache(maxsize=2)
+def _steps_away(count: int, grading: int) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond, if they crowd there."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
     root = 0.5 * (1 + nodes)
-    return root**GRADING, 0.5 * GRADING * root ** (GRADING - 1) * weights
+    return root**grading, 0.5 * grading * root ** (grading - 1) * weights
 
 
 def transfer(x: Array, poisson_ratio: float) -> Array:
