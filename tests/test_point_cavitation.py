@@ -109,7 +109,7 @@ def test_streaks_in_the_wake_carry_the_flow_of_the_line_of_rupture():
     inside = (u > 0.4 + v / 3) & (u**2 + v**2 < 36)
     for sheared in (np.ones_like, lambda gap: 1 / gap):  # a fluid that does not thin, and the drag of one by the gap
         expected = 2 * (sheared(h) * (1 - line_h / h) / h)[inside].sum() * (6 / 1500) ** 2
-        assert mesh.ring_weights @ shear_missing(mesh, gap, fluid, sheared) == pytest.approx(expected, rel=5e-3)
+        assert mesh.ring_weights @ shear_missing(mesh, gap, fluid, sheared=sheared) == pytest.approx(expected, rel=5e-3)
 
 
 @pytest.mark.quick

@@ -72,7 +72,8 @@ class CavitatedEquations(TornEquations):
 
     def shear_missing(self, y: Unknowns) -> Array:
         """Return the shear over h that is missing on each ring in the dry streaks of the wake, shape (rings,)."""
-        return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
+        film = self.film
+        return shear_missing(self.operators.mesh, y.gap, y.fluid, film.filled, partial(film.sheared, self.speed))
 
     def shear_doubt(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h: streaks begin at a line that is known to a spacing."""

@@ -22,7 +22,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.equations.cavities.torn import TornEquations
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -32,6 +32,15 @@ __all__ = ["ReformingEquations", "outflow"]
 
 DOUBT = 0.15
 """Stated error of the gas over the outflow from its cell."""
+
+EDGE = 0.5
+"""Stated error of the area of a cavity over that of the cells along its edge."""
+
+
+def edge_of(torn: Flags) -> Flags:
+    """Return the torn nodes beside one with a film."""
+    film = ~np.pad(torn, 1, mode="edge")
+    return np.asarray(torn & (film[:-2, 1:-1] | film[2:, 1:-1] | film[1:-1, :-2] | film[1:-1, 2:]))
 
 
 def outflow(mesh: PolarMesh) -> csc_matrix:
@@ -90,14 +99,27 @@ class ReformingEquations(TornEquations):
         return np.where(torn, np.clip(found / full, 0.0, 1.0), 0.0)
 
     def shear_doubt(self, y: Unknowns) -> float:
-        """Return an estimate of the error of the total shear over h: a part of the outflow, as cells do not resolve it."""
+        """Return an estimate of the error of the total shear over h: that by the gas, and that by the edge of the cavity.
+
+        With shear flow streaks may fill less than the whole width from the line of rupture on, which lies between nodes.
+        """
+        at_edge = np.maximum(0.0, 1.0 - self.film.filled(y.gap)) / y.gap * edge_of(y.fluid <= self.least)
+        return self.gas_doubt(y) + EDGE * float((at_edge @ self.operators.mesh.area_weights).sum())
+
+    def gas_doubt(self, y: Unknowns) -> float:
+        """Return an estimate of that by the gas: a part of the outflow, as cells do not resolve it."""
         torn, mesh = y.fluid <= self.least, self.operators.mesh
         released = np.where(torn, self.flow(y.gap, y.fluid, y.offset) / self.passing(torn).weights, 0.0)
-        lost = released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
+        lost = self.film.filled(y.gap) * released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
         return DOUBT * abs(float((lost @ mesh.area_weights).sum()))
 
     def shear_missing(self, y: Unknowns) -> Array:
-        """Return the shear over h that is missing on each ring because of gas in the cavity, shape (rings,)."""
-        mesh = self.operators.mesh
-        lost = self.gas(y) * self.film.shear(mesh, self.speed, y.gap, y.fluid) / y.gap
+        """Return the shear over h that is missing on each ring in the dry streaks of the cavity, shape (rings,).
+
+        Streaks fill the part of the width that the volume takes which flows, over the mean speed of the walls: with shear
+        flow this is more or less than what is no gas.
+        """
+        mesh, filled = self.operators.mesh, self.film.filled(y.gap)
+        dry = np.where(y.fluid <= self.least, np.maximum(0.0, 1.0 - filled + filled * self.gas(y)), 0.0)
+        lost = dry * self.film.shear(mesh, self.speed, y.gap, y.fluid) / y.gap
         return np.asarray(2.0 * np.pi / mesh.modes * mesh.radii * lost.sum(axis=0))

@@ -2,9 +2,10 @@ r"""The wake of a ball: streaks of liquid from wall to wall in the cavity, with 
 
 Where the film is torn the pressure is the same everywhere and the liquid goes with the walls, so that along x
 
-.. math:: \phi \, h = h_\mathrm{e}(y), \qquad \phi \le 1
+.. math:: \phi \, h = h_\mathrm{e}(y) + s S(h_\mathrm{e}), \qquad \phi \le 1
 
-with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is the part of the width that is wet.
+with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is the part of the width that is wet.  The
+right-hand side is the volume that flows there over the mean speed of the walls, between smooth walls that gap.
 """
 
 from __future__ import annotations
@@ -79,10 +80,17 @@ def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
     return Rupture(rings, angles, np.append(0.0, distances[order]), np.append(gaps[order][:1], gaps[order]))
 
 
-def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[Array], Array] = np.ones_like) -> Array:
+def shear_missing(
+    mesh: PolarMesh,
+    gap: Array,
+    fluid: Array,
+    filled: Callable[[Array], Array] = np.ones_like,
+    sheared: Callable[[Array], Array] = np.ones_like,
+) -> Array:
     r"""Return the shear that is missing on each ring in the dry streaks of the wake, :math:`r \oint (1 - \phi) \, \tau/h`.
 
-    ``sheared`` gives the drag of sliding over that of a fluid that does not thin, by the gap.
+    By the gap, ``filled`` gives the volume that the walls carry in a full one over the gap, and ``sheared`` the drag of
+    sliding over that of a fluid that does not thin.
     """
     found = np.zeros(mesh.rings)
     line = rupture_line(mesh, gap, fluid)
@@ -93,6 +101,7 @@ def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[
     waves = np.cos(angle[:, :, None] * np.arange(mesh.modes))
     h = np.exp(np.matmul(waves, coefficients.T[:, :, None])[:, :, 0])
     r = mesh.radii[line.rings]
-    wet = np.minimum(1.0, line.gap_at(r[:, None] * np.sin(angle)) / h)
+    at_line = line.gap_at(r[:, None] * np.sin(angle))
+    wet = np.minimum(1.0, filled(at_line) * at_line / h)
     found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ WEIGHTS * line.angles * r  # both halves of the plane
     return found

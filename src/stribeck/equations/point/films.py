@@ -126,6 +126,9 @@ class PlaneFilm(Protocol):
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return what goes with the walls, C."""
 
+    def filled(self, gap: Array) -> Array:
+        """Return the volume that the walls carry where the gap is full of liquid, over the gap: 1 + s S/h."""
+
 
 def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
     """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
@@ -146,6 +149,10 @@ class LinearPlane:
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return what goes with the walls, C."""
         return self.flow(gap, pressure).carried
+
+    def filled(self, gap: Array) -> Array:
+        """Return one."""
+        return np.ones_like(gap)
 
     def viscosity(self, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
@@ -235,6 +242,10 @@ class NewtonianPlane(LinearPlane):
             ease * wide * (rho_slope / rho - log_slope),
             rho_slope * width,
         )
+
+    def filled(self, gap: Array) -> Array:
+        """Return the volume that the walls carry where the gap is full of liquid, over the gap."""
+        return np.asarray(1 + self.film.slide * self.film.flow.shear(gap)[0] / gap)
 
     def viscosity(self, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""

@@ -125,6 +125,10 @@ class ThinningPlane:
         """Return the amount that the walls carry, which is the same for all laws."""
         return np.asarray(self.film._of_pressure(gap, pressure)[2] * gap)
 
+    def filled(self, gap: Array) -> Array:
+        """Return one: walls are smooth."""
+        return np.ones_like(gap)
+
     def _unit(self, at: _Local) -> Array:
         return at.rho * 2 * at.gap**2 / (at.eta * self.film.law.time)
 

@@ -116,8 +116,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
     widest = max(widest, front(values, fine.mesh.modes))
-    if fine.equations.spread is not None:  # where gas goes the film follows
-        widest = max(widest, doubt / scales["J_balanced"])
+    widest = max(widest, speed / 6.0 * fine.equations.gas_doubt(fine.unknowns) / scales["J_balanced"])  # the film follows it
     company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
     errors = {name: max(error, company[name] * widest * scales[name]) for name, error in errors.items()}
     if fine.resolution.model.film.uses_speed:
