@@ -101,8 +101,8 @@ NEGLIGIBLE = 0.1
 """Error of a polynomial for the minimum gap over the tolerance, at most."""
 
 OFFSET_FLOOR = 0.1
-"""The error of the offset is relative to it where it exceeds this: it crosses zero where films become thick, as a difference of
-lengths of order one."""
+"""The error of the offset is relative to it where it exceeds this: it crosses zero where films become thick, as a difference
+of lengths of order one."""
 
 SIMILAR = 0.5
 """Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
