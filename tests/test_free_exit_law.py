@@ -66,6 +66,39 @@ def test_smooth_films_that_end_have_their_own_outlet():
         assert (state.exit_position - 1) / speed**0.4 == pytest.approx(exit, rel=1e-5)
 
 
+def departures(law, speeds):
+    """Return by how much states differ from a law of smooth films that end: of central and minimum gap, and of the exit."""
+    found = [sb.solve(sb.Groups(speed, 0.1, 0.0), cavitation="exit") for speed in speeds]
+    films = [law(speed) for speed in speeds]
+    pairs = list(zip(found, films, strict=True))
+    gaps = [(s.central_gap / film.central_gap - 1, s.minimum_gap / film.minimum_gap - 1) for s, film in pairs]
+    return np.array(gaps), np.array([s.exit_position for s, _ in pairs]), np.array([film.exit for _, film in pairs])
+
+
+def test_slow_smooth_films_approach_their_law():
+    speeds = np.array([1e-7, 1e-5, 1e-3])
+    gaps, exits, law = departures(sb.asymptotics.free_exit.slow_film_with_free_exit, speeds)
+    assert gaps[:, 0] == pytest.approx([3.89e-4, 2.45e-3, 1.56e-2], rel=0.01)
+    assert (np.abs(np.diff(np.log(gaps), axis=0) / np.log(100) - 0.4) < 0.01).all()
+    assert (exits - 1) / (law - 1) - 1 == pytest.approx([-3.7e-3, -2.05e-2, -0.103], rel=0.02)
+
+
+def test_fast_smooth_films_approach_that_of_a_rigid_parabola():
+    speeds = np.array([1e2, 1e3, 1e4])
+    gaps, exits, law = departures(sb.asymptotics.free_exit.rigid_film_with_free_exit, speeds)
+    assert gaps[:, 0] == pytest.approx([1.117e-2, 1.105e-3, 1.104e-4], rel=0.01)
+    assert exits / law - 1 == pytest.approx([3.33e-2, 3.36e-3, 3.36e-4], rel=0.01)
+    arrays = sb.asymptotics.free_exit.rigid_film_with_free_exit(speeds)
+    assert arrays.central_gap.shape == (3,)
+
+
+@pytest.mark.parametrize("speed", [-1.0, np.inf, "fast"])
+def test_an_impossible_speed_of_a_film_that_ends_is_refused(speed):
+    for law in (sb.asymptotics.free_exit.slow_film_with_free_exit, sb.asymptotics.free_exit.rigid_film_with_free_exit):
+        with pytest.raises(sb.InputError, match="speed ="):
+            law(speed)
+
+
 def test_the_film_is_that_of_a_finite_volume_solver_that_conserves_mass():
     """An upwind p-theta scheme with the Fischer-Burmeister function, extrapolated from 300 and 600 cells."""
     for row in REFERENCE["fbns_independent"]["rows"]:

@@ -1,6 +1,7 @@
 """Asymptotic laws of the model, each with range and source; the solver imports none, so that the two can be compared.
 
-:data:`FORMULAS` is the one list of them: tests, documentation and figures loop over it.
+:data:`FORMULAS` is the one list of those of the article's model: tests, documentation and figures loop over it.  Films that
+end have theirs in :mod:`stribeck.asymptotics.free_exit`.
 """
 
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 from stribeck.asymptotics import point
 from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.formula import Formula, Limit, OutOfRangeWarning
-from stribeck.asymptotics.rough import boundary, load_sharing, mixed, perturbation, transitions, uniform
+from stribeck.asymptotics.rough import boundary, free_exit, load_sharing, mixed, perturbation, transitions, uniform
 from stribeck.asymptotics.smooth import edge_layer, film_layers, hydrodynamic, large_deformation, small_deformation, wedge
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "boundary",
     "edge_layer",
     "film_layers",
+    "free_exit",
     "hertz",
     "hydrodynamic",
     "large_deformation",
