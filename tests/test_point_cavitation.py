@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import stribeck as sb
 from stribeck.contacts.cut_off import CAVITATED, RUPTURE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
@@ -115,6 +116,24 @@ def test_streaks_in_the_wake_carry_the_flow_of_the_line_of_rupture():
 @pytest.mark.quick
 def test_a_heavy_ball_whose_torn_nodes_settle_slowly_is_solved_from_cold():
     assert solve_cold(ball(1.29283e-4, 8.91201e-3, 0.360854), 1e-4).outcome.ok
+
+
+@pytest.mark.parametrize(
+    ("speed", "load", "kappa", "parts"),
+    [
+        (1e-4, 0.3, 0.017, {"flow_factors": sb.fluids.PatirCheng(2.0)}),
+        (1e-3, 2.0, 0.017, {"flow_factors": sb.fluids.EffectiveMedium(2.0)}),
+        (1e-3, 2.0, 0.017, {"flow_factors": sb.fluids.PatirCheng(2.0), "fluid": sb.fluids.Barus(1.0)}),
+    ],
+)
+def test_a_film_that_flow_factors_lift_breaks_from_a_full_film_with_these(speed, load, kappa, parts):
+    """From one between smooth surfaces, half as thick, it was lost; cavities of little suction are solved another way."""
+    groups = sb.Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
+    torn = sb.solve(groups, rtol=1e-3, cavitation="exit", **parts)
+    limit = sb.solve(groups, rtol=2e-3, cavitation="reform", cavity_pressure=-1e-4, **parts)
+    assert abs(torn.contact_load_share - limit.contact_load_share) < 1e-3
+    assert abs(torn.central_gap / limit.central_gap - 1) < 1e-3
+    assert torn.central_gap > 1.3 * sb.solve(groups, rtol=1e-3, cavitation="exit").central_gap
 
 
 @pytest.mark.slow

@@ -22,7 +22,9 @@ from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES, has_far_film
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
@@ -80,11 +82,18 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     model = as_solved(groups.model)
     full = full_model(model)
     if model.cavitation is Cavitation.EXIT:  # the suction of a full film may be far from any state of one that breaks
-        full = replace(full, film=ARTICLE.film)
+        full = replace(full, film=_of_constant_viscosity(model.film))
     first = first_state(speed, law, full)
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
     return _state(groups, rtol, ENDINGS[model.cavitation].refine(speed, law, first, rtol, model))
+
+
+def _of_constant_viscosity(film: Film) -> Film:
+    """Return the film of a fluid whose viscosity and density are constant, through the same roughness."""
+    if isinstance(film, Newtonian):
+        return replace(film, viscosity=Constant(), density=Incompressible())
+    return ARTICLE.film
 
 
 def solve_from(
