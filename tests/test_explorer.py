@@ -446,12 +446,33 @@ def test_a_preset_is_a_viscosity_and_a_fluid():
 def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
     shown = choices.choose(choices.choose(START, "solid", "layer"), "solid", "Prony")
     row = choices.state_of(shown, "solid")
-    assert row["value"] == "Prony" and ["relaxation_times", "relaxation times", "1 ms, 10 ms"] in row["details"]
+    assert row["value"] == "Prony" and ["relaxation_times", "relaxation times", "1 ms, 10 ms", ""] in row["details"]
     typed = choices.typed_detail(shown, "solid", "relaxation_times", "2 ms,20 ms")
     assert typed.contact.solid == Prony(["2 ms", "20 ms"], [1.0, 0.5])
     assert choices.typed_detail(typed, "solid", "layer_thickness", "1 mm").contact.solid.base == sb.solids.Layer("1 mm")
     with pytest.raises(sb.InputError, match="as many of both"):
         choices.typed_detail(shown, "solid", "relaxation_times", "1 ms")
+
+
+@pytest.mark.parametrize("name", choices.CHOICES)
+def test_an_empty_field_of_a_choice_says_the_number_that_it_stands_for(name):
+    for value, (_, (_, optional)) in choices.CHOICES[name].options.items():
+        if value in ("", "table") or not optional:
+            continue
+        shown = choices.choose(START, name, value)
+        if "layer_thickness" in optional:
+            shown = choices.typed_detail(shown, name, "layer_thickness", "1 mm")
+        for key, _, text, if_empty in choices.state_of(shown, name)["details"]:
+            assert key not in optional or if_empty
+            if not text and if_empty[:1].isdigit():
+                assert choices.typed_detail(shown, name, key, if_empty).contact == shown.contact, key
+
+
+def test_the_axis_of_speeds_says_which_speed_it_is():
+    for value, words in (("sliding", "sliding speed U (m/s)"), ("rolling", "sum of the surface speeds U (m/s)")):
+        seen = Answerer()(choices.choose(START, "motion", value))
+        drawn = charts.all_charts(seen, [], [], LIGHT)
+        assert drawn["friction"]["x"]["name"] == drawn["diagram"]["x"]["name"] == words
 
 
 def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():

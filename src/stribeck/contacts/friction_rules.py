@@ -151,6 +151,11 @@ def slide_to_roll(contact: Contact | None) -> float:
     return float(getattr(contact, "slide_to_roll", PURE_SLIDING))
 
 
+def speed_words(contact: Contact) -> str:
+    """Return what the speed U of a contact is: the sliding speed only if one surface is at rest."""
+    return "sliding speed" if slide_to_roll(contact) == PURE_SLIDING else "sum of the surface speeds"
+
+
 def _line_parts(definition: Definition) -> tuple[str, ...]:
     return (f"viscous_{definition}",)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import input_texts
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import RULES, speed_words
 from stribeck.files.pictures import (
     CONTACT,
     FLUID,
@@ -106,7 +106,7 @@ def plot_curve(
             return speed / per_hersey
 
         top = left.secondary_xaxis("top", functions=(speed, hersey))
-        top.set_xlabel("sliding speed $U$ (m/s)", color=GREY, fontsize=9)
+        top.set_xlabel(f"{speed_words(curve.contact)} $U$ (m/s)", color=GREY, fontsize=9)
         top.tick_params(colors=GREY, labelsize=8, direction="in", which="both")
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":

@@ -10,7 +10,7 @@ export default {
       <template v-for="each in details" :key="each[0]">
         <label class="detail" :for="'detail-' + name + '-' + each[0]">{{ each[1] }}</label>
         <input class="field" type="text" :id="'detail-' + name + '-' + each[0]" :name="each[0]" v-model="each[2]"
-          autocomplete="off" spellcheck="false" :aria-invalid="wrong === each[0] ? 'true' : 'false'"
+          :placeholder="each[3]" autocomplete="off" spellcheck="false" :aria-invalid="wrong === each[0] ? 'true' : 'false'"
           :aria-describedby="'choice-sentence-' + name"
           @keydown.enter="commit(each)" @keydown.esc="restore" @blur="commit(each)"
           @keydown.ctrl="each[2] === given[each[0]] || $event.stopPropagation()">

@@ -250,7 +250,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
                 "25 degC, 0.1 to 1000 1/s",
             ),
             "saliva": Preset(
-                "saliva, a model of",
+                "saliva (a model)",
                 {},
                 _fixed("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
                 _SALIVA,

@@ -15,6 +15,7 @@ from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
+from stribeck.contact_laws.persson import GAMMA
 from stribeck.contacts.model import Model
 from stribeck.explorer.asked.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
@@ -54,7 +55,7 @@ TYPICAL: dict[str, Any] = {
 WORDS = {
     "slide_to_roll": "slide-to-roll ratio",
     "poisson_ratio": "Poisson's ratio",
-    "pressure": "cavity pressure",
+    "pressure": "cavity pressure, gauge",
     "hurst": "Hurst exponent",
     "pressure_viscosity": "pressure coefficient",
     "infinite_viscosity": "viscosity at high rates",
@@ -79,6 +80,18 @@ WORDS = {
     "Prony": "viscoelastic, Prony series",
 }
 """Words for keys and names that differ from these themselves."""
+
+IF_EMPTY = {
+    "infinite_viscosity": "0",
+    "reference_pressure": "196 MPa",
+    "reference_viscosity": "63.1 µPa·s",
+    "pressure": "0",
+    "layer_thickness": "half-space",
+    "poisson_ratio": "0.5",
+    "roll_off_wavelength": "no roll-off",
+    "gamma": str(GAMMA),
+}
+"""What stands for an optional key that is not given."""
 
 LAYER: Keys = (("layer_thickness",), ("poisson_ratio",))
 
@@ -240,7 +253,7 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
     -------
     dict
         ``hidden``, the chosen ``value``, ``options`` as pairs of value and words, and ``details``: the keys of what is chosen
-        with their words and texts.
+        with their words, their texts, and what an empty one stands for.
     """
     choice, tables = CHOICES[name], tables_of(now.model)
     value = chosen(choice, tables)
@@ -251,7 +264,7 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
         # A measured spectrum has no numbers to change; others keep those with which they came.
         own = [key for key in given if key not in ("h_rms", "wavenumber", "density", "title")]
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
-    details = [[key, _words(key), _text(given.get(key, ""))] for key in keys]
+    details = [[key, _words(key), _text(given.get(key, "")), IF_EMPTY.get(key, "")] for key in keys]
     # A table of a contact law comes from a file only.
     known = [key for key in possible(name, tables.get("geometry", "line")) if key != "table"]
     options = [[key, words] for key, (words, _) in choice.options.items() if key in known or key == value]

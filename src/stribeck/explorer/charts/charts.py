@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import RULES, speed_words
 from stribeck.explorer.answer import Answer, round_down, round_up
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
 from stribeck.explorer.charts.parts import Options, chart, line, linear_axis, log_axis, marker, pairs, points
@@ -113,7 +113,7 @@ def friction_chart(
         x = np.full(2, minimum.speed * scale)
         series.append(line("minimum", "minimum friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
     series.append(marker(contact.speed * scale if contact.speed > 0 else ends[0], friction, palette))
-    abscissa = "sliding speed U (m/s)" if inputs.abscissa == "speed" else f"Hersey number {symbol} (–)"
+    abscissa = f"{speed_words(contact)} U (m/s)" if inputs.abscissa == "speed" else f"Hersey number {symbol} (–)"
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
     listed += [each["name"] for each in series if each["id"].startswith(("pin", "measured", "minimum"))]
     return chart(palette, log_axis(abscissa, *ends), log_axis("friction coefficient µ", low, high), series, listed)
@@ -228,7 +228,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     listed = ["boundary ends", "hydrodynamic begins", "minimum friction"]
     names = [name for name in listed if any(each["name"] == name for each in series)]
     y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]))
-    return chart(palette, log_axis("sliding speed U (m/s)", low, high), y, series, names)
+    return chart(palette, log_axis(f"{speed_words(contact)} U (m/s)", low, high), y, series, names)
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
