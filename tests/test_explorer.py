@@ -667,6 +667,19 @@ def test_the_numbers_are_those_of_solve_within_their_errors(name):
     assert rows["hersey_number"].error == 0
 
 
+@pytest.mark.parametrize(("cavitation", "ends"), [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])])
+def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(cavitation, ends):
+    shown = choices.choose(replace(START, contact=START.contact.replace(speed="100 mm/s")), "cavitation", cavitation)
+    shown = choices.typed_detail(shown, "cavitation", "pressure", "-10 kPa") if cavitation == "reform" else shown
+    rows = {row.key: row for row in table.numbers(Answerer()(shown))}
+    assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
+    solution = sb.solve(shown.contact)
+    for end in ends:
+        row, place = rows[f"film_{end}_position"], getattr(solution, f"{end}_position")
+        assert abs(row.value - place * shown.contact.hertz.half_width) <= 2 * row.error
+        assert row.text.endswith("m") and 0 < row.error < 1e-4 * abs(row.value)
+
+
 def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
     curve = sb.stribeck_curve(START.contact, speed=answer.speeds, points=31)
     for definition in ("published", "balanced"):

@@ -14,6 +14,7 @@ from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
 from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.outputs import ENDS
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.base_solution import BaseSolution
 
@@ -51,7 +52,7 @@ class Row:
 
 
 def numbers(answer: Answer) -> list[Row]:
-    """Return friction by both definitions, shares, films, ratios and the nearest transitions.
+    """Return friction by both definitions, shares, films and their ends, ratios and the nearest transitions.
 
     Parameters
     ----------
@@ -80,6 +81,12 @@ def numbers(answer: Answer) -> list[Row]:
     for each in (each for each in observed if each.film and each.scale == "gap"):
         film, error = getattr(solution, each.name) * scales.indentation, film_errors.get(each.name, math.nan)
         rows.append(_row(each.film, each.label.capitalize(), film, abs(film) * error, "length"))
+    for each in (each for each in observed if each in ENDS):
+        place, a = getattr(solution, each.name), scales.half_width
+        if math.isfinite(place):
+            rows.append(
+                _row(each.film, each.label.capitalize(), place * a, max(abs(place), 1.0) * errors[each.name] * a, "length")
+            )
     ratio = solution.lambda_ratio
     rows.append(
         _row("lambda_ratio", "Lambda ratio h<sub>min</sub>/h<sub>rms</sub>", ratio, abs(ratio) * film_errors["minimum_gap"])
