@@ -21,7 +21,7 @@ from stribeck.numerics.panels import Mesh
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.layer import REACH, Layer, smooth_kernel
 from stribeck.solids.two_bodies import TwoBodies
-from stribeck.solids.viscoelastic import Prony, StandardLinearSolid, creep_of_relaxation, hysteresis_friction, memory
+from stribeck.solids.viscoelastic import Memory, Prony, StandardLinearSolid, creep_of_relaxation, hysteresis_friction
 from stribeck.solver.cold_start import cold_start
 
 FINE = Mesh(np.concatenate([[-256, -128, -64, -32, -16, -8], np.arange(-4, 4.01, 0.125), [8, 16, 32, 64, 128, 256.0]]), 12)
@@ -33,10 +33,14 @@ def bump(x, width=0.3):
     return np.exp(-((x / width) ** 2))
 
 
+def remembered(pressure, deborah):
+    return Memory(FINE, np.array([deborah]))(pressure[None])[0]
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize("deborah", [0.03, 0.3, 3.0])
 def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
-    found = memory(FINE, deborah) @ bump(FINE.nodes)
+    found = remembered(bump(FINE.nodes), deborah)
     x = np.array([-0.5, 0.0, 0.3, 1.0, 6.0])
     age, weights = np.polynomial.legendre.leggauss(2000)
     age, weights = 20 * (1 + age) * deborah, 20 * weights
@@ -52,7 +56,7 @@ SINGULAR_BY_COLLOCATION = 256 / 16.868016151387604
 @pytest.mark.quick
 @pytest.mark.parametrize("deborah", [1.0, SINGULAR_BY_COLLOCATION])
 def test_memory_of_a_pressure_that_reaches_to_infinity(deborah):
-    found = memory(FINE, deborah) @ (1 / (1 + FINE.nodes**2))
+    found = remembered(1 / (1 + FINE.nodes**2), deborah)
     nodes, weights = np.polynomial.legendre.leggauss(10)
     age = np.add.outer(np.arange(400), 0.5 * (1 + nodes)).ravel() / 10  # 400 panels up to 40 times
     past = 1 / (1 + (FINE.nodes[:, None] - deborah * age) ** 2)

@@ -12,6 +12,7 @@ For a solid with lengths of its own, such as a layer, D itself changes with d.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -25,7 +26,7 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
-from stribeck.solids.solid import Solid
+from stribeck.solids.solid import Solid, deflecting
 
 LOAD = 0.5 * np.pi
 """Load in Hertz units: the integral of the pressure."""
@@ -245,14 +246,13 @@ class OperatorsOfRows(Operators):
     solids: tuple[Solid, ...] = ()
 
     @cached_property
-    def deflections(self) -> Array:
-        """D of each row, shape (rows, size, size)."""
-        return np.stack([Operators(self.mesh, replace(self.model, solid=each)).deflection for each in self.solids])
+    def _deflecting(self) -> Callable[[Array], Array]:
+        return deflecting(self.solids, self.mesh)
 
     def deflected(self, pressure: Array, d: Numbers | None) -> Array:
         """Return the deflection of each row under its nodal pressure."""
         assert d is None
-        return np.asarray(np.matmul(self.deflections, pressure[..., None])[..., 0])
+        return self._deflecting(pressure)
 
 
 @lru_cache(maxsize=KEPT)

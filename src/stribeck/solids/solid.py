@@ -1,15 +1,23 @@
 """What the equations ask of an elastic body: its deflection under a pressure on the line.
 
-A new solid is a new file with one frozen class that has the members of :class:`Solid`, and ``lengths`` if it has any.
+A new solid is a new file with one frozen class that has the members of :class:`Solid`, and ``lengths`` if it has any; one that
+changes with the speed may have ``together(solids, mesh)``, which is :func:`deflecting` for such bodies.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Protocol
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
+
+KEPT = 3
+"""Deflections kept: of the meshes at both ends of an interval and of the finer one of an error estimate."""
 
 
 class Lengths(NamedTuple):
@@ -58,3 +66,29 @@ class Solid(Protocol):
 
     def far_gap(self, x: Array) -> Array:
         """Return the gap far away but for the offset and a smooth function of ``1/x`` [u_Hz]."""
+
+
+def deflecting(solids: Sequence[Solid], mesh: Mesh) -> Callable[[Array], Array]:
+    """Return the function from rows of nodal pressure to the deflection of each on its own body.
+
+    Parameters
+    ----------
+    solids : sequence of Solid
+        Of each row, of one kind; a single one is that of all rows.
+    mesh : Mesh
+        Panels that carry the pressure.
+    """
+    together: Any = getattr(type(solids[0]), "together", None)
+    if together is not None:
+        found: Callable[[Array], Array] = together(solids, mesh)
+        return found
+    if all(each == solids[0] for each in solids):
+        matrix = _deflection(solids[0], mesh)
+        return lambda pressure: np.asarray(pressure @ matrix.T)
+    stacked = np.stack([each.deflection(mesh) for each in solids])
+    return lambda pressure: np.asarray(np.matmul(stacked, pressure[..., None])[..., 0])
+
+
+@lru_cache(maxsize=KEPT)
+def _deflection(solid: Solid, mesh: Mesh) -> Array:
+    return solid.deflection(mesh)

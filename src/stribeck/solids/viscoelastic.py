@@ -20,6 +20,7 @@ Source: [Hunter 1961] for rolling on the standard linear solid; tested against P
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
@@ -31,9 +32,9 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import as_solid
-from stribeck.solids.solid import Lengths, Solid, lengths_of
+from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
 
-__all__ = ["Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction", "memory"]
+__all__ = ["Memory", "Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction"]
 
 MOST_TERMS = 40
 
@@ -43,9 +44,6 @@ FORGOTTEN = 37.0
 AGES, SHARES = (0.5 * each for each in leggauss(24))
 AGES = AGES + 0.5
 """Rule on [0, 1] for an exponential that falls to rounding, times what is smooth."""
-
-KEPT = 3
-"""Deflections of bases kept: of the meshes at both ends of an interval and of the finer one of an error estimate."""
 
 
 class _Viscoelastic:
@@ -68,24 +66,20 @@ class _Viscoelastic:
 
         Panels must reach to 30 of the largest Deborah number on both sides, and resolve the pressure.
         """
-        return np.asfortranarray(_of_base(self.base, mesh) @ self._remembered(mesh))
+        return self.together([self], mesh)(np.eye(mesh.size)).T
 
-    def _remembered(self, mesh: Mesh) -> Array:
-        instant, rest = self._creep()
-        matrix = instant * np.eye(mesh.size)
-        for part, time in rest:
-            matrix += part * memory(mesh, time)
-        return matrix
+    @staticmethod
+    def together(solids: Sequence[Any], mesh: Mesh) -> Callable[[Array], Array]:
+        """Return :func:`stribeck.solids.solid.deflecting`: the base of each under what it remembers of the pressure."""
+        base = deflecting([each.base for each in solids], mesh)
+        instants, terms = zip(*(each._creep() for each in solids), strict=True)
+        instant, creep = np.array(instants)[:, None], np.array(terms)
+        memories = [(part[:, None], Memory(mesh, times)) for part, times in creep.transpose(1, 2, 0)]
+        return lambda pressure: base(instant * pressure + sum(part * each(pressure) for part, each in memories))
 
     def far_gap(self, x: Array) -> Array:
         """Return that of the relaxed body."""
         return self.base.far_gap(x)
-
-
-@lru_cache(maxsize=KEPT)
-def _of_base(base: Solid, mesh: Mesh) -> Array:
-    """Return the deflection of a base, which is the same at all speeds."""
-    return base.deflection(mesh)
 
 
 @dataclass(frozen=True, init=False)
@@ -227,49 +221,67 @@ def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> 
     return instant, tuple(found)
 
 
-def memory(mesh: Mesh, deborah: float) -> Array:
-    """Return the matrix from nodal p to the nodal q with ``De q' + q = p``, zero far upstream."""
-    n, panels, rule = mesh.order, mesh.panels - 1, reference(mesh.order)
-    found = np.empty((mesh.size, mesh.size))
-    tail = slice(panels * n, mesh.size)
-    at_left, far = _beyond_panels(mesh, deborah)
-    ratio = mesh.half_widths[:-1] / deborah
-    forgotten = np.linalg.inv(np.eye(n) + ratio[:, None, None] * rule.integral)  # what is left of q at the left edge
-    own = ratio[:, None, None] * (forgotten @ rule.integral)
-    arrived = forgotten.sum(axis=2)
-    passed = 1 - ratio * (arrived @ rule.weights)
-    gained = ratio[:, None] * (rule.weights - rule.weights @ own)
-    carry = np.zeros((panels + 1, mesh.size))  # q at the edges
-    carry[0, tail] = at_left  # seen from the panel through infinity
-    for k in range(panels):
-        carry[k + 1] = passed[k] * carry[k]
-        carry[k + 1, k * n : (k + 1) * n] += gained[k]
-    np.multiply(arrived[:, :, None], carry[:-1, None, :], out=found[: tail.start].reshape(panels, n, mesh.size))
-    blocks = found[: tail.start, : tail.start].reshape(panels, n, panels, n)
-    blocks[range(panels), :, range(panels)] += own
-    behind = np.maximum(mesh.nodes[tail] - mesh.edges[-1], 0.0)
-    left = np.where(mesh.nodes[tail] > 0, np.exp(-behind / deborah), 0.0)
-    found[tail] = np.outer(left, carry[-1])
-    found[tail, tail] += far
-    return found
+class Memory:
+    """The nodal q with ``De q' + q = p``, zero far upstream, of rows of nodal p.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The panels.
+    deborah : ndarray, shape (rows,)
+        De of each row; a single one is that of all rows.
+    """
+
+    def __init__(self, mesh: Mesh, deborah: Array) -> None:
+        n, rule = mesh.order, reference(mesh.order)
+        ratio = mesh.half_widths[:-1] / deborah[:, None]
+        forgotten = np.linalg.inv(np.eye(n) + ratio[..., None, None] * rule.integral)
+        self.own = ratio[..., None, None] * (forgotten @ rule.integral)  # of a panel's own pressure
+        self.arrived = forgotten.sum(axis=-1)  # what is left of q at the left edge of a panel
+        self.passed = 1 - ratio * (self.arrived @ rule.weights)  # and at its right edge
+        self.gained = ratio[..., None] * (rule.weights - rule.weights @ self.own)
+        self.at_left, self.far = _beyond_panels(mesh, deborah)
+        x = mesh.nodes[-n:]
+        self.behind = np.where(x > 0, np.exp(-np.maximum(x - mesh.edges[-1], 0.0) / deborah[:, None]), 0.0)
+
+    def __call__(self, pressure: Array) -> Array:
+        """Return q of rows of p, shape (rows, size)."""
+        p = pressure.reshape(len(pressure), -1, self.own.shape[-1])
+        inner, beyond = p[:, :-1], p[:, -1]
+        gained = (self.gained * inner).sum(axis=-1)
+        at_edges = np.empty((p.shape[0], p.shape[1]))
+        at_edges[:, 0] = (self.at_left * beyond).sum(axis=-1)
+        for k in range(p.shape[1] - 1):
+            at_edges[:, k + 1] = self.passed[:, k] * at_edges[:, k] + gained[:, k]
+        q = np.empty_like(p)
+        q[:, :-1] = _each(self.own, inner) + self.arrived * at_edges[:, :-1, None]
+        q[:, -1] = _each(self.far[:, None], beyond[:, None])[:, 0] + self.behind * at_edges[:, -1:]
+        return q.reshape(pressure.shape)
 
 
-def _beyond_panels(mesh: Mesh, deborah: float) -> tuple[Array, Array]:
-    r"""Return what the pressure beyond the panels in x leaves of q at their left edge, and at the nodes there.
+def _each(blocks: Array, values: Array) -> Array:
+    """Return the products of the block of each panel, shape (rows, panels, n, n), with values, shape (rows, panels, n)."""
+    if len(blocks) == 1:  # for all rows at once
+        return np.asarray(np.matmul(values.swapaxes(0, 1), blocks[0].swapaxes(1, 2)).swapaxes(0, 1))
+    return np.asarray(np.matmul(blocks, values[..., None])[..., 0])
+
+
+def _beyond_panels(mesh: Mesh, deborah: Array) -> tuple[Array, Array]:
+    r"""Return what the pressure beyond the panels in x leaves of q at their left edge, and at the nodes there, in rows.
 
     .. math:: q(x) = \int_0^{v} e^{-v} \, p(x - \mathrm{De} \, v) \, dv
 
     By quadrature, from infinity or, behind the panels, from their right edge.  Collocation of the differential equation on the
     panel through infinity would be singular at some De.
     """
-    n, edge = mesh.order, float(mesh.edges[-1])
+    n, edge, de = mesh.order, float(mesh.edges[-1]), deborah[:, None]
     x = np.append(-edge, mesh.nodes[-n:])
-    ages = np.where(x > 0, np.minimum((x - edge) / deborah, FORGOTTEN), FORGOTTEN)[:, None] * AGES
-    t = 1 / (x[:, None] - deborah * ages)
+    ages = np.where(x > 0, np.minimum((x - edge) / de, FORGOTTEN), FORGOTTEN)[..., None] * AGES
+    t = 1 / (x[:, None] - de[..., None] * ages)
     basis = reference(n).interpolation((t / mesh.half_widths[-1]).ravel()).reshape(*t.shape, n)
-    weights = ages[:, -1:] / AGES[-1] * SHARES * np.exp(-ages) * t**2
-    q = np.matmul(weights[:, None, :], basis)[:, 0, :] * mesh.nodes[-n:] ** 2
-    return q[0], q[1:]
+    weights = ages[..., -1:] / AGES[-1] * SHARES * np.exp(-ages) * t**2
+    q = np.matmul(weights[..., None, :], basis)[..., 0, :] * mesh.nodes[-n:] ** 2
+    return q[:, 0], q[:, 1:]
 
 
 def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
