@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fit_data import TRUE, measured
+from fit_data import EXAMPLES, TRUE, measured
 
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables
 from stribeck.equations.sensitivity import GROUPS, log_derivatives
@@ -37,6 +37,34 @@ def test_sensitivities_are_differences_of_solved_friction(parts, names):
         moved = [contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}) for sign in (1, -1)]
         ends = [math.log(abs(sb.solve(each, rtol=1e-7).friction())) for each in moved]
         assert found[name] == pytest.approx((ends[0] - ends[1]) / (2 * STEP), abs=2e-4), name
+
+
+@pytest.mark.parametrize(
+    ("example", "fluid", "rtol"),
+    [
+        ("pdms_cylinder", sb.fluids.Carreau("10 ms", 1.0), 1e-7),
+        ("pdms_cylinder", sb.fluids.Cross("10 ms", 0.95), 1e-7),
+        pytest.param("pdms_ball", sb.fluids.PowerLaw("10 ms", 1.0), 1e-4, marks=pytest.mark.slow),  # four balls
+        pytest.param("pdms_ball", sb.fluids.PowerLaw("10 ms", 0.6), 1e-4, marks=pytest.mark.slow),
+    ],
+)
+def test_at_the_end_of_what_an_input_may_be_its_sensitivity_is_that_to_the_other_side(example, fluid, rtol):
+    """There was none: one of the two models beside it is refused.
+
+    Of balls in a power law the drag up to where the liquid ends moves with the exponent too: it did not (1 % here, any amount
+    where the fluid hardly thins).
+    """
+    contact = sb.load_case(EXAMPLES / f"{example}.toml").contact.replace(fluid=fluid)
+    if example == "pdms_cylinder":
+        contact = contact.replace(speed="30 mm/s")
+    _, found, why = sensitivities_if_known(contact, rtol=rtol)
+    step, ends = -5e-3, []
+    for k in range(3):
+        ends.append(math.log(sb.solve(contact.replace(exponent=fluid.exponent * math.exp(k * step)), rtol=rtol).friction()))
+    assert not why
+    assert found["exponent"] == pytest.approx(
+        (-3 * ends[0] + 4 * ends[1] - ends[2]) / (2 * step), rel=2e-2 if fluid.exponent == 1 else 2e-3, abs=1e-4
+    )
 
 
 @pytest.mark.parametrize(

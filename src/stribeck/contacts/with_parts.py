@@ -29,6 +29,7 @@ __all__ = [
     "model_words",
     "models_beside",
     "part_attributes",
+    "steps_beside",
     "with_parts",
 ]
 
@@ -42,8 +43,8 @@ UNITS_BY_LAST_WORD = {
 }
 """Dimensions of the numbers of fluids and solids, by the last word of their names."""
 
-STEP = 1e-5
-"""Change of a logarithm to both sides by which a model is differentiated."""
+STEP, ALONE = 1e-5, 1e-7
+"""Changes of a logarithm by which a model is differentiated: to both sides, and to one where the other is refused."""
 
 Problem = TypeVar("Problem")
 
@@ -88,15 +89,36 @@ def model_at(contact: Contact, name: str, step: float) -> Model:
     return contact.replace(**changes).groups.model
 
 
-def models_beside(
-    contact: Contact, name: str, steps: tuple[float, float] = (-STEP, STEP)
-) -> tuple[Model, Model, float] | None:
+def models_beside(contact: Contact, name: str) -> tuple[Model, Model, float] | None:
     """Return the models at two values of one input of a contact, below and above, and the distance of the logarithms.
 
-    None where the input changes no number of fluid or solid in Hertz units.
+    None where the input changes no number of fluid or solid in Hertz units.  At an end of what it may be, one of them is that
+    of the contact.
     """
-    below, above = (model_at(contact, name, step) for step in steps)
-    return None if below == above else (below, above, steps[1] - steps[0])
+    below, above = steps = steps_beside(contact, name, STEP, ALONE)
+    models = [model_at(contact, name, step) for step in steps]
+    return None if models[0] == models[1] else (models[0], models[1], above - below)
+
+
+def steps_beside(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
+    """Return steps of the logarithm of an input to both sides; to one of them, by ``alone``, where the other is refused.
+
+    Raises
+    ------
+    InputError
+        If both are.
+    """
+    try:
+        for each in (-step, step):
+            model_at(contact, name, each)
+    except InputError:
+        try:
+            model_at(contact, name, -alone)
+        except InputError:
+            model_at(contact, name, alone)
+            return 0.0, alone
+        return -alone, 0.0
+    return -step, step
 
 
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:

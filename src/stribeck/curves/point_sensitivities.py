@@ -6,12 +6,17 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import model_at, models_beside
+from stribeck.contacts.with_parts import model_at, models_beside, steps_beside
+from stribeck.equations.point.observables import FrictionWithin, observables
+from stribeck.equations.point.sensitivity import STEP
+from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.quantities.part_inputs import part_names
 from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
@@ -22,6 +27,9 @@ __all__ = ["point_sensitivities"]
 
 SMALL = 1e-4
 """Step of the logarithms in finite differences of closed forms."""
+
+WITHIN = ("within_couette", "within_poiseuille", "within_edge")
+"""What a fluid that thins has in the friction up to where the liquid ends, by the name of its derivatives."""
 
 WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
 """Exponents of the inputs in the Hertz radius, the unit of a wetted radius."""
@@ -62,14 +70,15 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
 
     by_groups, by_model = dict.fromkeys(GROUPS, 0.0), dict[str, float]()
     if groups.speed > 0:
-        changes = state_derivatives(state)
+        measure = partial(_measured, values, beta)
+        changes = state_derivatives(state, measure=measure)
         for i, name in enumerate(GROUPS):
             here = float(getattr(groups, name))
             if here > 0:
                 ends = [total(_moved(values, changes, i, name, step)) for step in (SMALL, -SMALL)]
                 by_groups[name] = (ends[0] - ends[1]) / (2 * SMALL)
         for name, along in _of_model(contact, groups).items():
-            changes = derivatives_along(state, {name: along})
+            changes = derivatives_along(state, {name: along}, measure)
             ends = [total(_changed(values, changes, 0, step)) for step in (SMALL, -SMALL)]
             by_model[name] = (ends[0] - ends[1]) / (2 * SMALL)
     by_beta = (total(values, beta * math.exp(SMALL)) - total(values, beta * math.exp(-SMALL))) / (2 * SMALL)
@@ -90,12 +99,17 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
 def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:
     """Return how inputs change the friction through numbers of fluid or solid in Hertz units, at fixed groups."""
 
-    def along(name: str, step: float) -> Groups:
-        return replace(groups, model=model_at(contact, name, step))
+    def along(name: str, shift: float, step: float) -> Groups:
+        return replace(groups, model=model_at(contact, name, step + shift))
 
     # Sliding changes no field of these films: it enters through the closed forms of the friction alone.
     names = [name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll"]
-    return {name: partial(along, name) for name in (*names, *part_names(contact)) if models_beside(contact, name) is not None}
+    found: dict[str, Callable[[float], Groups]] = {}
+    for name in (*names, *part_names(contact)):
+        if models_beside(contact, name) is not None:
+            # Where an end of what it may be is nearer than the step, differentiated one step inside.
+            found[name] = partial(along, name, sum(steps_beside(contact, name, STEP, STEP)))
+    return found
 
 
 def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, name: str, step: float) -> PointObservables:
@@ -107,4 +121,20 @@ def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, 
 
 def _changed(values: PointObservables, changes: Mapping[str, Array], column: int, step: float) -> PointObservables:
     """Return the observables after a small step along a direction, to first order."""
-    return replace(values, **{each: getattr(values, each) + step * float(change[column]) for each, change in changes.items()})
+    moved: dict[str, Any] = {
+        each: getattr(values, each, 0.0) + step * float(change[column]) for each, change in changes.items()
+    }
+    more, within = [moved.pop(each) for each in WITHIN if each in moved], values._within
+    if within is not None:
+        moved["_within"] = lambda which, log_radius: within(which, log_radius) + more[which]
+    return replace(values, **moved)
+
+
+def _measured(of: PointObservables, beta: float, equations: Equations, y: Unknowns) -> dict[str, float]:
+    """Return the observables of a state beside another one, in a fluid that thins with those up to where the liquid ends."""
+    found = observables(equations, y)
+    if of._within is None:
+        return found
+    at = FrictionWithin.of(equations, y, found)
+    by_shear, by_pressure = log_cut_offs(float(of._groups.slope(beta)), of._wetted_radius or math.inf)
+    return found | {each: at(i, float((by_shear, by_pressure, by_pressure)[i])) for i, each in enumerate(WITHIN)}

@@ -32,16 +32,13 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.regime import friction_share
-from stribeck.contacts.with_parts import STEP, check_solid, models_beside
+from stribeck.contacts.with_parts import check_solid, models_beside
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states.between import Between
 from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
 
 __all__ = ["FrictionModel", "Prediction"]
-
-INSIDE = 1 - 1e-9
-"""Part of the way to a bound that rounding does not carry beyond."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +113,7 @@ class FrictionModel:
             free = self.free[k]
             if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
                 continue
-            steps = (max(-STEP, INSIDE * (free.low - theta[k])), min(STEP, INSIDE * (free.high - theta[k])))
-            beside = models_beside(contact, free.name, steps)
+            beside = models_beside(contact, free.name)
             if beside is not None:
                 found.append(ModelChange(k, *beside))
         return tuple(found)

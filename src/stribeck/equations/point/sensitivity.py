@@ -22,10 +22,13 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
 
-__all__ = ["Direction", "beside", "log_derivatives", "solved"]
+__all__ = ["STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
+
+Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
+"""Observables of a state by name."""
 
 STEP = 1e-4
 """Step of the logarithm of a group in the central differences of the residual, whose error is its square."""
@@ -44,6 +47,7 @@ def log_derivatives(
     directions: Mapping[str, Direction],
     preconditioner: Callable[[Linear, Any], Apply],
     kept: Any = None,
+    measure: Measure = observables,
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions.
 
@@ -59,6 +63,8 @@ def log_derivatives(
         ``preconditioner(linear, kept)`` gives one for a Jacobian, from that of the last Newton step or anew without one.
     kept : object, optional
         That of the last Newton step.
+    measure : callable, optional
+        What takes equations and unknowns to the observables.
 
     Returns
     -------
@@ -89,9 +95,7 @@ def log_derivatives(
         dy = linear.changes(x, change[0])
         size = CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
         at = [beside(equations, moved(sign * size)) for sign in (1.0, -1.0)]
-        values = [
-            observables(each, each.pinned(y.moved(dy, sign * size), y)) for each, sign in zip(at, (1.0, -1.0), strict=True)
-        ]
+        values = [measure(each, each.pinned(y.moved(dy, sign * size), y)) for each, sign in zip(at, (1.0, -1.0), strict=True)]
         for each in values[0]:
             columns.setdefault(each, []).append((values[0][each] - values[1][each]) / (2 * size))
     return {name: np.array(column) for name, column in columns.items()}

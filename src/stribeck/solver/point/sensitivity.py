@@ -14,8 +14,9 @@ from stribeck._types import Array
 from stribeck.contacts.groups import Groups
 from stribeck.equations.cavities.capacitance import Capacitance
 from stribeck.equations.cavities.torn import TornLinear
+from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.sensitivity import Direction, log_derivatives
+from stribeck.equations.point.sensitivity import Direction, Measure, log_derivatives
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.krylov import Apply
 from stribeck.solver.point.level import band_for
@@ -27,7 +28,7 @@ __all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
 GROUPS = ("speed", "load", "roughness")
 
 
-def state_derivatives(state: PointState, by: Sequence[str] = GROUPS) -> dict[str, Array]:
+def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness).
 
     Parameters
@@ -36,6 +37,8 @@ def state_derivatives(state: PointState, by: Sequence[str] = GROUPS) -> dict[str
         A converged state of positive speed, as the solver returned it.
     by : sequence of str
         The groups that are wanted; the derivatives with respect to the others are zero.
+    measure : callable, optional
+        What takes equations and unknowns to the observables.
 
     Returns
     -------
@@ -46,13 +49,15 @@ def state_derivatives(state: PointState, by: Sequence[str] = GROUPS) -> dict[str
     alive = {name: partial(_moved, groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
     if not alive:
         return {name: np.zeros(len(GROUPS)) for name in state.values}
-    found = derivatives_along(state, alive)
+    found = derivatives_along(state, alive, measure)
     zero = np.array([name not in alive for name in GROUPS])
     columns = np.cumsum(~zero) - 1
     return {name: np.where(zero, 0.0, column[columns]) for name, column in found.items()}
 
 
-def derivatives_along(state: PointState, directions: Mapping[str, Direction]) -> dict[str, Array]:
+def derivatives_along(
+    state: PointState, directions: Mapping[str, Direction], measure: Measure = observables
+) -> dict[str, Array]:
     """Return the derivatives of all observables along directions.
 
     Parameters
@@ -61,6 +66,8 @@ def derivatives_along(state: PointState, directions: Mapping[str, Direction]) ->
         As for :func:`state_derivatives`.
     directions : mapping of str to callable
         The groups, with their model, after a step of a logarithm.
+    measure : callable, optional
+        As for :func:`state_derivatives`.
 
     Returns
     -------
@@ -78,7 +85,8 @@ def derivatives_along(state: PointState, directions: Mapping[str, Direction]) ->
         found = Capacitance(BandedModes(linear, band), level.mesh, linear.torn.shape) if kept is None else kept
         return found.of(linear)
 
-    return log_derivatives(level.equations, level.unknowns, directions, preconditioner, level.iterated.preconditioner)
+    kept = level.iterated.preconditioner
+    return log_derivatives(level.equations, level.unknowns, directions, preconditioner, kept, measure)
 
 
 def _moved(groups: Groups, name: str, step: float) -> Groups:

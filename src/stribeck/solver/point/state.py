@@ -145,7 +145,7 @@ class PointObservables:
     _groups: Groups = field(repr=False)
     _slide_to_roll: float = PURE_SLIDING
     _wetted_radius: float | None = None
-    _within: FrictionWithin | None = field(default=None, repr=False)
+    _within: Callable[[int, float], float] | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
