@@ -18,6 +18,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
+from stribeck.equations.state import closed_gap
 from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.far import ROLLING, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
@@ -85,6 +86,11 @@ NARROWEST, MOST_SPLITS = 1e-3, 16
 """Width below which panels are not split [a], and the largest number of splits."""
 
 
+PLACED, SPARE, KEPT = 1 / 64, 0.25, 6.0
+"""Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
+this part of it at least; and by how many of them the rings between may be wider than those that the line crosses."""
+
+
 class MeshTooLargeError(Exception):
     """A mesh would take more than :data:`MOST_BYTES`."""
 
@@ -105,6 +111,8 @@ class Resolution:
         Degree of the polynomials, and number of cosines.
     splits : tuple of float
         Radii at which panels are split besides [a].
+    closing : tuple of float
+        Radii between which roughness closes the last path of the flow, by pairs: edges of panels [a].
     farther : int
         Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity.
     far_growth : float
@@ -121,6 +129,7 @@ class Resolution:
     model: Model = ARTICLE
     farther: int = 0
     far_growth: float = math.inf
+    closing: tuple[float, ...] = ()
 
     @property
     def mesh(self) -> PolarMesh:
@@ -136,7 +145,7 @@ class Resolution:
             w *= GROWTH
         near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), self._far
         scale = 2.0**self.doublings
-        near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
+        near = np.unique(np.concatenate([near * scale, [r for r in (*self.splits, *self.closing) if 0.0 < r < 2.0 * scale]]))
         widest = BODIES[type(self.model.solid)].widest_panel(self.model.solid)
         while (wide := np.flatnonzero(np.diff(near) > widest)).size:
             near = np.sort(np.append(near, 0.5 * (near[wide] + near[wide + 1])))
@@ -292,11 +301,59 @@ def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: 
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
     near = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9)
-    poor = np.flatnonzero(near & (tail > UNRESOLVED**-mesh.degree) & (np.diff(mesh.edges) > NARROWEST))
+    narrowest = np.full(mesh.panels, NARROWEST)
+    for inner, outer in zip(found.closing[::2], found.closing[1::2], strict=True):  # a kink, which no halves resolve
+        narrowest[(mesh.edges[:-1] >= inner) & (mesh.edges[1:] <= outer)] = 4.0 * PLACED
+    poor = np.flatnonzero(near & (tail > UNRESOLVED**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
     if poor.size == 0 or len(found.splits) > MOST_SPLITS:
         return found
     middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
     return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
+
+
+def with_closing(found: Resolution, mesh: PolarMesh, gap: Array) -> Resolution:
+    """Return a resolution with edges around the line at which roughness closes the last path of the flow, for a nodal gap.
+
+    There the mobility has a kink, and polynomials across it err as much on one degree as on the next.  Edges that enclose the
+    line closely stay.
+    """
+    closed_at = closed_gap(found.model.film)
+    crossed = [] if closed_at is None else rings_crossed(mesh, gap, closed_at)
+    step = PLACED * 2.0**found.doublings
+    known = list(zip(found.closing[::2], found.closing[1::2], strict=True))
+    if len(known) == len(crossed) and all(
+        a <= inner and outer <= b and b - a <= outer - inner + KEPT * step
+        for (a, b), (inner, outer) in zip(known, crossed, strict=True)
+    ):
+        return found
+    edges: list[float] = []
+    for inner, outer in crossed:
+        low, high = step * math.floor(inner / step - SPARE), step * math.ceil(outer / step + SPARE)
+        if edges and low <= edges[-1]:
+            edges[-1] = high
+        else:
+            edges += [max(0.0, low), high]
+    return replace(found, closing=tuple(edges))
+
+
+def rings_crossed(mesh: PolarMesh, gap: Array, level: float) -> list[tuple[float, float]]:
+    """Return between which radii the lines lie along which a gap has a value, from the centre outwards."""
+    lowest_highest = np.log(np.stack([gap.min(axis=0), gap.max(axis=0)]) / level)
+    below = lowest_highest < 0.0
+    which, at = np.nonzero(below[:, 1:] != below[:, :-1])
+    before, after = lowest_highest[which, at], lowest_highest[which, at + 1]
+    radii = mesh.radii[at] + before / (before - after) * (mesh.radii[at + 1] - mesh.radii[at])
+    somewhere, everywhere = below[:, 0].tolist()
+    within = somewhere != everywhere
+    found = [(0.0, 0.0)] if within else []
+    for i in np.argsort(radii, kind="stable").tolist():
+        found.append((found.pop()[0] if within else float(radii[i]), float(radii[i])))
+        if which[i] == 0:
+            somewhere = not somewhere
+        else:
+            everywhere = not everywhere
+        within = somewhere != everywhere
+    return found
 
 
 def bytes_of(found: Resolution, band: int) -> int:

@@ -25,6 +25,7 @@ from stribeck.equations.point.mesh_choice import (
     operators_of,
     resolution,
     split_where_poor,
+    with_closing,
 )
 from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
@@ -153,7 +154,8 @@ def refine_cavitated(
         if known is not None:
             now, start, mesh = known.fine.resolution, known.fine.unknowns, known.fine.mesh
             base = _halved(now, known, rtol) if fits(now, speed, law) else _base(speed, law, known.fine, model)
-            rung = _rung(known) + ((base.halvings, base.splits) == (now.halvings, now.splits))
+            same = (base.halvings, base.splits, base.closing) == (now.halvings, now.splits, now.closing)
+            rung = _rung(known) + same
         else:
             base, rung = _base(speed, law, guess, model), _first_rung(rtol, speed, law, model)
             start, mesh = guess.unknowns, guess.mesh
@@ -180,7 +182,7 @@ def refine_cavitated(
             if holds_torn(found, rtol):
                 return found
             before, base = base, _halved(base, found, rtol if gained else 0.0)
-            rung += base == before
+            rung += base.splits == before.splits
     except MeshTooLargeError:
         pass
     return Outcome.REFINEMENT_LIMIT if best is None else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
@@ -192,20 +194,23 @@ def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resoluti
     base = resolution(speed, law, degree, few, model)
     if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
         mesh = base.mesh
-        contact = law.pressure(moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap)
-        return split_where_poor(base, mesh, np.zeros_like(contact), contact)
+        gap = moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap
+        contact = law.pressure(gap)
+        return with_closing(split_where_poor(base, mesh, np.zeros_like(contact), contact), mesh, gap)
     found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
-    return replace(base, splits=found.splits if base.doublings == found.doublings else ())
+    base = replace(base, splits=found.splits if base.doublings == found.doublings else ())
+    return with_closing(base, guess.mesh, guess.unknowns.gap)
 
 
 def _halved(base: Resolution, pair: Pair, rtol: float) -> Resolution:
     """Return a resolution with the panels halved that the line of rupture crosses, where the centre misses a tolerance.
 
-    More angles would not help its series.
+    More angles would not help its series.  Edges enclose where roughness closes the flow of the pair.
     """
     tail = CENTRAL["central_gap"] * float(centre_tails(pair.fine)[0])
     crossed = _crossed(pair.fine) if tail > rtol * pair.scales["central_gap"] else []
-    return replace(base, splits=tuple(sorted({*base.splits, *crossed})))
+    found = replace(base, splits=tuple(sorted({*base.splits, *crossed})))
+    return with_closing(found, pair.fine.mesh, pair.fine.unknowns.gap)
 
 
 def _crossed(level: Level) -> list[float]:
@@ -306,7 +311,7 @@ def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
 
 def holds_torn(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state hold a tolerance, or the smallest that is aimed at."""
-    return _within(pair, max(rtol, pair.fine.equations.finest), pair.fine.mesh.modes)
+    return pair.is_enclosed and _within(pair, max(rtol, pair.fine.equations.finest), pair.fine.mesh.modes)
 
 
 def _waste(pair: Pair, rtol: float, fewer: int, serves: bool) -> float:

@@ -27,9 +27,11 @@ from stribeck.equations.point.mesh_choice import (
     layout,
     resolution,
     split_where_poor,
+    with_closing,
 )
 from stribeck.equations.point.observables import MINIMA, identity_error, observables
 from stribeck.equations.point.system import Unknowns
+from stribeck.equations.state import closed_gap
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
@@ -45,6 +47,10 @@ AHEAD = 0.2
 
 PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better than this."""
+
+TURNED, TURNED_MOMENT, ABOUT_CLOSED = 1.0, 0.25, (0.8, 1.3)
+"""The same near where roughness closes the flow; stated error of moments over those of the last coefficients of the pressure
+on panels there; and the gaps that are near, over that at which it closes."""
 
 COMPANY, THINNED_COMPANY = 0.1, 1.0
 """Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
@@ -120,9 +126,15 @@ class Pair:
         """Relative error of the minimum film."""
         return self.errors["minimum_gap"] / self.scales["minimum_gap"]
 
+    @property
+    def is_enclosed(self) -> bool:
+        """Whether edges of panels enclose where roughness closes the flow: two degrees do not tell the error of a kink."""
+        now = self.fine.resolution
+        return with_closing(now, self.fine.mesh, self.fine.unknowns.gap) == now
+
     def holds(self, rtol: float, slack: float) -> bool:
         """Return whether the errors hold a tolerance, that of the minimum film one that is larger by ``slack``."""
-        return self.total <= rtol and self.minimum <= slack * rtol
+        return self.is_enclosed and self.total <= rtol and self.minimum <= slack * rtol
 
 
 def modal_amplitudes(level: Level) -> Array:
@@ -175,6 +187,23 @@ def centre_tails(level: Level) -> Array:
     return np.asarray(np.abs(mesh.legendre(fields)[:, 0, -2:]).max(axis=1))
 
 
+def moment_near_closing(level: Level) -> float:
+    """Return the moment of the last Legendre coefficients of the pressure on panels near where roughness closes the flow.
+
+    There the mobility turns sharply, and moments of both meshes may err by the same.
+    """
+    closed_at = closed_gap(level.resolution.model.film)
+    if closed_at is None:
+        return 0.0
+    mesh, (low, high) = level.mesh, ABOUT_CLOSED
+    gap = mesh.scattered(level.unknowns.gap) / closed_at
+    near = (gap.min(axis=(0, 2)) < high) & (gap.max(axis=(0, 2)) > low)
+    first = mesh.to_modes[1] @ (level.unknowns.fluid + level.contact_pressure)
+    tail = np.abs(mesh.legendre(first[None])[0, :, -2:]).max(axis=1)
+    radii, widths = 0.5 * (mesh.edges[1:] + mesh.edges[:-1]), np.diff(mesh.edges)
+    return 0.5 * math.pi * float((tail * radii**2 * widths)[near].sum())
+
+
 def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
     """Return the scales of errors: one for shares, a radius or an angle, else about the observable itself.
 
@@ -198,11 +227,15 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, fine.equations.speed, fine.equations.drag_beyond)
-    errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
+    kinked = moment_near_closing(fine)
+    part = TURNED if kinked > 0.0 else PART
+    errors = {name: part * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
     # Interpolated minima of two meshes may agree by chance: the truncation of the series bounds their error from below.
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
+    for name in ("J_published", "J_pcx"):
+        errors[name] = max(errors[name], TURNED_MOMENT * kinked)
     beyond = fine.equations.doubt_beyond(fine.unknowns)
     for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
         errors[name] += beyond
@@ -302,6 +335,9 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
             if pair.holds(rtol, slack):
                 return pair
             before, guess = wanted, fine
+            if not pair.is_enclosed:
+                wanted, coarse = better_split(fine), None
+                continue
             wanted, coarse = next_meshes(pair, rtol, band, slack)
             if wanted.degree <= before.degree and wanted.modes <= before.modes:
                 break
@@ -323,7 +359,10 @@ def bare(level: Level) -> Level:
 
 
 def better_split(level: Level) -> Resolution:
-    """Return the resolution of a state with the panels halved that resolve its pressures poorly."""
+    """Return the resolution of a state with edges where the flow closes, or the panels halved that resolve it poorly."""
+    placed = with_closing(level.resolution, level.mesh, level.unknowns.gap)
+    if placed != level.resolution:
+        return placed
     return split_where_poor(level.resolution, level.mesh, level.unknowns.fluid, level.contact_pressure)
 
 
@@ -452,4 +491,6 @@ def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float, part
         saved = bytes_of(leaner, band) < SAVED * bytes_of(now, band)
         return (leaner, False) if saved else (now, True)
     found = resolution(ahead, law, leaner.degree, leaner.modes, now.model)
-    return replace(found, splits=now.splits if found.doublings == now.doublings else ()), False
+    if found.doublings == now.doublings:
+        found = replace(found, splits=now.splits)
+    return with_closing(found, fine.mesh, fine.unknowns.gap), False
