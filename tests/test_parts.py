@@ -101,6 +101,8 @@ def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
     assert factors.sigma == pytest.approx(2.0 * groups.relative_roughness)
     with pytest.raises(sb.InputError, match="need alpha"):
         with_parts(groups, flow_factors="patir-cheng")
+    with pytest.raises(sb.InputError, match="cavity_pressure = '-0.1 MPa' is text; with groups it is a plain number"):
+        with_parts(groups, cavitation="reform", cavity_pressure="-0.1 MPa")
     with pytest.raises(sb.InputError, match="many values of speed"):
         with_parts(sb.Groups(np.array([1e-3, 1e-2]), 0.1, 1e-4), fluid=sb.fluids.Eyring(58.0))
 

@@ -19,7 +19,7 @@ from stribeck.contacts.parts import NAMES, Parts
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ, FilmUnits
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
 __all__ = [
     "check_solid",
@@ -79,6 +79,11 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
     if given and isinstance(problem, Contact):
         return problem.replace(**given)
     if given and isinstance(problem, Groups):
+        if isinstance(given.get("cavity_pressure"), str):
+            raise InputError(
+                f"cavity_pressure = {show(given['cavity_pressure'])} is text; with groups it is a plain number, the pressure "
+                "over the Hertz pressure, such as -0.05."
+            )
         return replace(problem, model=Parts(**given).model(hertz_units(problem)))
     return problem
 
