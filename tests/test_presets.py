@@ -54,3 +54,10 @@ def test_an_oil_has_the_kinematic_viscosity_of_its_data_sheet():
     assert 61.0e-6 * 810 < sb.fluids.PRESETS["pao-10"]().viscosity < 61.0e-6 * 835
     # PAO have 12 to 20 1/GPa there.
     assert 1.2e-8 < sb.fluids.PRESETS["pao-10"]().fluid.viscosity.pressure_coefficient < 2.0e-8
+
+
+def test_a_condition_that_a_liquid_does_not_have_is_refused_with_those_that_it_has():
+    with pytest.raises(sb.InputError, match="no condition of silicone oil; it has grade"):
+        sb.fluids.PRESETS["silicone-oil"](temperature="20 degC")
+    with pytest.raises(sb.InputError, match=r"no condition of saliva \(a model\); its numbers hold at 37 degC"):
+        sb.fluids.PRESETS["saliva"](temperature="20 degC")

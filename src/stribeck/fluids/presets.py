@@ -111,8 +111,12 @@ class Preset:
         """Return the liquid under these conditions."""
         unknown = [name for name in conditions if name not in self.conditions]
         if unknown:
-            known = " and ".join(self.conditions) or "none"
-            raise InputError(f"{unknown[0]} is no condition of {self.label}; it has {known}.")
+            has = (
+                f"it has {' and '.join(self.conditions)}"
+                if self.conditions
+                else f"its numbers hold at {self.range}; remove it"
+            )
+            raise InputError(f"{unknown[0]} is no condition of {self.label}; {has}.")
         return self.make(**{**self.conditions, **conditions})
 
 
