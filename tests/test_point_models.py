@@ -28,6 +28,7 @@ FILMS = {
     "barus": Newtonian(Barus(2.0)),
     "density": Newtonian(Barus(1.0), DowsonHigginson().scaled(FilmUnits(1e8, 1.0, 1.0, 1.0))),
     "patir-cheng": Newtonian(flow=PatirCheng(substrate_share=0.9).scaled(UNITS), slide=0.7),
+    "effective-medium": Newtonian(flow=EffectiveMedium().scaled(UNITS)),
     "both": Newtonian(Barus(1.0), flow=EffectiveMedium().scaled(UNITS)),
 }
 

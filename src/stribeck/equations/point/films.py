@@ -226,7 +226,7 @@ class NewtonianPlane(LinearPlane):
         """Return the flow at nodes."""
         film, s = self.film, self.film.slide
         phi, phi_slope = film.flow.pressure(gap)
-        extra, extra_slope = film.flow.shear(gap)
+        extra, extra_slope = (np.broadcast_to(each, gap.shape) for each in film.flow.shear(gap))  # a law may give one number
         width, wide = gap + s * extra, phi * gap**3
         wider = phi_slope * gap**3 + 3 * phi * gap**2
         if not film.uses_pressure:
