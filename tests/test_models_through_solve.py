@@ -177,6 +177,15 @@ def test_a_film_that_the_fluid_thins_a_thousand_times_is_found():
     assert state.viscous_balanced == pytest.approx(2.160110687e-3, rel=1e-6)
 
 
+def test_a_cavity_that_nearly_closes_is_found():
+    """Its suction hardly changes with its length there: steps of a tenth of the way did not arrive in twenty lengths."""
+    groups = sb.Groups(4.131507463368651e-09, 2.1535710279930043e-07, 6.007251111916326e-13)
+    suction = -sb.solve(groups).fluid_pressure.min()
+    solution = sb.solve(groups, cavitation="reform", cavity_pressure=-0.08016112835787885)
+    assert 0.99 * suction < 0.08016112835787885 < suction
+    assert solution.reformation_position - solution.exit_position == pytest.approx(0.016902, abs=1e-5)
+
+
 def test_a_reforming_film_whose_full_film_is_not_reached_says_so(monkeypatch):
     solver = sys.modules["stribeck.solver.solve"]
     monkeypatch.setattr(solver, "_refined", lambda base, *_: RefinedState(base, None, None, None, Outcome.STEP_LIMIT))

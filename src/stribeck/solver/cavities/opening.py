@@ -48,7 +48,7 @@ FIRST_SUCTION = 0.3
 LONGEST, SHORTEST = 0.7, 1e-4
 """Longest and shortest step in the logarithm of the length."""
 
-FIRST_SLOPE, LEAST_SLOPE = -1.0, -0.1
+FIRST_SLOPE, LEAST_SLOPE = -1.0, -0.01
 """First slope behind an exit, and smallest, of the logarithm of the suction by that of the length."""
 
 FEW_STEPS = 8
