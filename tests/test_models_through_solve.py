@@ -186,6 +186,16 @@ def test_a_cavity_that_nearly_closes_is_found():
     assert solution.reformation_position - solution.exit_position == pytest.approx(0.016902, abs=1e-5)
 
 
+@pytest.mark.parametrize("speed", [1e-10, 1e-9])
+def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_panels_there(speed):
+    """No load feels the gradient there: whole meshes were refined, to twice the nodes, or to the limit without an end."""
+    groups = sb.Groups(speed, 1.0, 1.0)
+    solution = sb.solve(groups, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
+    finer = sb.solve(groups, rtol=1e-8, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
+    assert solution.mesh.size < 260
+    assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
+
+
 def test_a_reforming_film_whose_full_film_is_not_reached_says_so(monkeypatch):
     solver = sys.modules["stribeck.solver.solve"]
     monkeypatch.setattr(solver, "_refined", lambda base, *_: RefinedState(base, None, None, None, Outcome.STEP_LIMIT))

@@ -425,6 +425,9 @@ def mesh_for(
         size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
         return np.asarray((size[:, None] * highest)[None])
 
+    sheared = 0.0
+    if closed_at is not None and tolerance < COARSE and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
+        sheared = float(guess.mesh.weights @ (1 / guess.gap))
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat * to_guess if ends else flat)
@@ -471,6 +474,12 @@ def mesh_for(
             kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
             wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
+        if (
+            sheared and stretch[0, 0] == 1.0
+        ):  # beside the place where the last path closes no load feels the gradient, but drag
+            full = (flat < 0) | (flat > restart) if ends else np.ones_like(flat, dtype=bool)
+            pull = gap * film.at(groups.speed).gradient(gap, fluid if film.uses_pressure else None, np.array(guess.flux_gap))
+            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, pull, 0.0) / sheared).reshape(nodal)[None])
             fields.append(asked(np.sqrt(wrong)))
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
