@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.layer import Layer
+from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import RefinedState
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
@@ -194,6 +196,31 @@ def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_pane
     finer = sb.solve(groups, rtol=1e-8, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
     assert solution.mesh.size < 260
     assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
+
+
+def test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error():
+    """Newton's iteration ended without a state, as its steps were rounding before they were as small as asked for."""
+    groups, fluid = (
+        sb.Groups(4.48618849035679e-12, 4.32921509228554, 0.004322842973344013),
+        sb.fluids.Eyring(785.7695108921029),
+    )
+    solution = sb.solve(groups, fluid=fluid, slide_to_roll=-3.0128648872606867, on_failure="return")
+    assert solution.outcome is Outcome.ROUNDING
+    assert 1e-5 < solution.error_estimate < 1e-2
+    assert solution.minimum_gap == pytest.approx(1.0692e-11, rel=max(1e-3, solution.error_estimate))
+
+
+def test_a_film_that_is_lost_in_rounding_on_the_way_to_it_is_refused_with_the_reason(monkeypatch):
+    groups = sb.Groups(1e-3, 0.1, 1e-4)
+    path = cold_start(groups)
+    last = path.states[-1]
+    thin = replace(last, y=np.where(np.arange(last.y.size) < last.mesh.size, 1e-12, last.y))
+    lost = replace(path, states=(*path.states[:-1], thin), outcome=Outcome.PATH_LOST)
+    monkeypatch.setattr(sys.modules["stribeck.solver.solve"], "first_paths", lambda _: iter([lost]))
+    with pytest.raises(sb.SolveError, match=r"Double precision does not hold this state.* falls below 1\.0e-12") as caught:
+        sb.solve(groups)
+    assert caught.value.outcome is Outcome.ROUNDING
+    assert caught.value.solution is None
 
 
 def test_a_reforming_film_whose_full_film_is_not_reached_says_so(monkeypatch):

@@ -23,7 +23,7 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.equations.on_mesh.film import slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
-from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
+from stribeck.numerics.newton import ROUNDING_SIZE, Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
@@ -74,6 +74,12 @@ along the path is steeper there than the gap."""
 
 NODAL_NOISE = 2.0**-48
 """Rounding of a nodal gap, over that gap: no mesh resolves less."""
+
+THINNEST = NODAL_NOISE / ROUNDING_SIZE
+"""Gap from which rounding is more than the steps by which coarse states are found [u_Hz]."""
+
+MOST_NOISE = 0.01
+"""Relative rounding of a gap beyond which it counts as lost."""
 
 WIDEST_FAR = 0.5
 """Half-width over the distance of panels on which a broken power is resolved."""
@@ -419,15 +425,15 @@ def mesh_for(
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
+    sheared = 0.0
+    if closed_at is not None and tolerance < COARSE and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
+        sheared = float(guess.mesh.weights @ (1 / guess.gap))
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
         size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
         return np.asarray((size[:, None] * highest)[None])
 
-    sheared = 0.0
-    if closed_at is not None and tolerance < COARSE and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
-        sheared = float(guess.mesh.weights @ (1 / guess.gap))
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat * to_guess if ends else flat)
@@ -468,18 +474,18 @@ def mesh_for(
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
             fields.append(asked(wrong / (tolerance / TAIL_OF_ERROR) ** 2))
-        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
-            h = gap.reshape(x.shape)
-            partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
-            kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
-            drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
         if (
             sheared and stretch[0, 0] == 1.0
         ):  # beside the place where the last path closes no load feels the gradient, but drag
             full = (flat < 0) | (flat > restart) if ends else np.ones_like(flat, dtype=bool)
             pull = gap * film.at(groups.speed).gradient(gap, fluid if film.uses_pressure else None, np.array(guess.flux_gap))
             fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, pull, 0.0) / sheared).reshape(nodal)[None])
+        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
+            h = gap.reshape(x.shape)
+            partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
+            kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
+            drag = math.pi * math.sqrt(2 / float(central_gap.max()))
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
             fields.append(asked(np.sqrt(wrong)))
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
@@ -559,6 +565,9 @@ def solve_state(
     """
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)
+    thinnest = float(start[equations.layout.gap].min())
+    if thinnest < THINNEST:  # steps of that size are rounding
+        tolerance = max(tolerance, min(NODAL_NOISE / thinnest, MOST_NOISE))
     thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD)
     full = replace(control, max_steps=min(max_steps, FULL_STEPS)) if thins else control
     root = root_find(equations, start, full, kept)

@@ -19,7 +19,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
-from stribeck.equations.state import State
+from stribeck.equations.state import THINNEST, State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
@@ -32,6 +32,7 @@ from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cavities.opening import ruptured
 from stribeck.solver.cold_start import first_paths
+from stribeck.solver.models.towards import is_lost_to_rounding
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
@@ -58,6 +59,11 @@ MIN_ESTIMATE = 0.03
 
 MIN_ESTIMATE_OF_OTHERS = 0.2
 """The same for films that end, other fluids, flow factors and solids, whose kinks finer nodes see only in part."""
+
+TOO_THIN = (
+    "Double precision does not hold this state: on the way to it the film falls below {:.1e} of the Hertz indentation, and "
+    "gaps are known to about 4e-15 of that. No value was reached; ask for a larger speed or roughness."
+)
 
 SPIKED = 2.5
 """Pressure coefficient times Hertz pressure above which films were seen whose pressure rises to a spike."""
@@ -221,14 +227,18 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
 
 def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
     """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
-    point, outcome = None, Outcome.PATH_LOST
+    point, outcome, thinnest = None, Outcome.PATH_LOST, math.inf
     for path in first_paths(base):
         if not path.outcome.ok:
             outcome = path.outcome
+            if is_lost_to_rounding(path):
+                thinnest = min(thinnest, float(path.states[-1].gap.min()))
             continue
         point = _converged(path.states[-1], groups, rtol)
         if not _not_reached(point):
             return point
+    if point is None and thinnest < math.inf:
+        raise SolveError(Outcome.ROUNDING, None, f"{describe(groups)}: {TOO_THIN.format(thinnest)}{far}")
     if point is None:
         raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spiked(groups)}{far}")
     return point
@@ -242,11 +252,23 @@ def _not_reached(point: RefinedState) -> bool:
 def _converged(start: State, groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from a coarse one, by larger tolerances if need be."""
     guess = start
-    point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-    for coarse in COARSER if _not_reached(point) else ():
-        if coarse > rtol and (found := converge(guess, groups, coarse).state) is not None:
-            guess = found
-    return point if guess is start else converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    point = best = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    for coarse in COARSER:
+        wanted = _not_reached(point) or (point.outcome is Outcome.ROUNDING and coarse < _error(best))
+        if coarse > rtol and wanted and (found := converge(guess, groups, coarse)).state is not None:
+            guess = found.state if _not_reached(point) else guess
+            best = found if _error(found) < _error(best) else best
+    if guess is not start:
+        point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    if best.state is None or _error(point) <= _error(best):
+        return point
+    # Rounding grows with the nodes: where it is what is left, a coarse mesh may know more.
+    return replace(best, outcome=Outcome.ROUNDING if float(best.state.gap.min()) < THINNEST else point.outcome)
+
+
+def _error(point: RefinedState) -> float:
+    """Return the stated error of a state; infinite without one."""
+    return math.inf if point.estimate is None else point.estimate.total
 
 
 def _reforming(groups: Groups, rtol: float) -> RefinedState:

@@ -31,7 +31,7 @@ from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_e
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
-from stribeck.equations.state import State, is_thinning, mesh_for, solve_state
+from stribeck.equations.state import THINNEST, State, is_thinning, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
@@ -97,8 +97,8 @@ MOST_WORK_TO_END = 6000.0
 """The same for all paths of loads together on which the film is to end."""
 
 
-FADING = 8.0
-"""Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it."""
+FADING, FADING_FAR = 8.0, 24.0
+"""Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it; the other is for the thinnest."""
 
 
 @dataclass
@@ -263,9 +263,13 @@ class BlendedSolid:
         return (1 - self.part) * self.plain.far_gap(x) + self.part * self.solid.far_gap(x)
 
 
-def _blend(film: Film, part: float) -> Film:
-    plain = (1 - part) * (math.exp(-FADING * part) if is_thinning(film) else 1.0)
+def _blend(film: Film, part: float, fading: float = FADING) -> Film:
+    plain = (1 - part) * (math.exp(-fading * part) if is_thinning(film) else 1.0)
     return cast(Film, BlendedFilm(film, 1 - plain))
+
+
+def _fade(film: Film, part: float) -> Film:
+    return _blend(film, part, FADING_FAR)
 
 
 def _milder(film: Film, part: float) -> Film:
@@ -278,6 +282,9 @@ WAYS: tuple[Way, ...] = (
     (_milder, *FINER, MOST_STEPS, 1.0),
 )
 """In the order in which they are tried; the whole change at once is tried on each mesh."""
+
+TO_THINNEST: Way = (_fade, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0)
+"""The one that is tried last, where the films of another were lost to rounding."""
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
@@ -301,7 +308,16 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
         yield extended(path, state)
     else:
         for way in WAYS:
-            yield _blended(groups, path, state, way)
+            found = _blended(groups, path, state, way)
+            yield found
+            if is_lost_to_rounding(found):
+                yield _blended(groups, path, state, TO_THINNEST)
+                break
+
+
+def is_lost_to_rounding(path: Path[State]) -> bool:
+    """Return whether a path ends before its end, at a film of which rounding leaves few digits."""
+    return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < THINNEST
 
 
 def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
@@ -487,7 +503,7 @@ def _within(correct: Correct, work: Work) -> Correct:
     def limited(s: float, history: Sequence[tuple[float, State]]) -> State | None:
         state = None if work.is_done else correct(s, history)
         if state is not None:
-            work.spent += state.root.steps * (state.y.size / UNIT_SIZE) ** 2
+            work.spent += state.root.steps * (state.mesh.size / UNIT_SIZE) ** 2
         return state
 
     return limited
