@@ -18,6 +18,7 @@ from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators, OperatorsOfRows
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
+from stribeck.solids import layer as bonded
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.layer import REACH, Layer, smooth_kernel
 from stribeck.solids.two_bodies import TwoBodies
@@ -246,6 +247,14 @@ def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its
 
     found = (Layer(d, 0.45).deflection(mesh) @ pressure(mesh.nodes))[at]
     np.testing.assert_allclose(found, [exact(x) for x in mesh.nodes[at]], rtol=0, atol=1e-9 * d)
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.5])
+def test_what_a_wide_panel_does_far_away_is_what_it_does_at_each_place(monkeypatch, poisson_ratio):
+    mesh = Mesh(np.concatenate([[-64.0, -32.0, -6.6, -2.0], np.linspace(-1.1, 1.1, 12), [2.0, 6.6, 32.0, 64.0]]), 12)
+    told = Layer(1.0, poisson_ratio).deflection(mesh)
+    monkeypatch.setattr(bonded, "FROM_AFAR", 10**6)
+    np.testing.assert_allclose(told, Layer(1.0, poisson_ratio).deflection(mesh), rtol=0, atol=1e-12)
 
 
 @pytest.mark.quick
