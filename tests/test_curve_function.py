@@ -382,6 +382,22 @@ def test_a_curve_like_none_that_is_one_is_refused():
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3, like="the last")
 
 
+def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends_and_needs_no_cold_start(monkeypatch):
+    contact = CONTACT.replace(cavitation="reform")
+    curve = sb.stribeck_curve(contact, points=41, rtol=1e-4)
+    ends = sb.stribeck_curve(CONTACT.replace(cavitation="exit"), points=41, rtol=1e-4)
+    assert curve.states == ends.states
+    np.testing.assert_allclose(curve.friction(), ends.friction(), rtol=1e-12)
+    speed = float(curve.values[20])
+    assert math.isnan(curve.at(speed).reformation_position)
+    assert {found.groups.model.cavitation for found in (curve.solve_at(speed), curve.solutions[20])} == {"reform"}
+    begun = []
+    monkeypatch.setattr(corrector, "from_cold", begun.append)
+    monkeypatch.setattr(corrector, "first_path", begun.append)
+    assert sb.stribeck_curve(contact.replace(load="31 N/m"), points=41, rtol=1e-4, like=curve).outcome.ok
+    assert not begun
+
+
 @pytest.mark.parametrize("solid", [sb.solids.HalfPlane(), sb.solids.Layer(1.0, 0.4)])
 @pytest.mark.parametrize(("exit_position", "dilation"), [(5e4, 1.0), (0.1, -0.5), (0.1, math.nan)])
 def test_a_series_beyond_its_radius_is_no_number_and_no_error(solid, exit_position, dilation):

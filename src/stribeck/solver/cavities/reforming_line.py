@@ -64,10 +64,20 @@ def problem_of(
 ) -> LineProblem:
     """Return the states of the line along a path, see :class:`stribeck.solver.along.line_path.LineProblem`."""
     groups = groups_at(0.0)
-    opens = groups.model.cavitation is Cavitation.REFORM and groups.model.cavity_pressure < 0 and groups.speed > 0
-    if opens:
+    may_open = groups.model.cavitation is Cavitation.REFORM and groups.speed > 0
+    if may_open and groups.model.cavity_pressure < 0:
         return ReformingLine(groups_at, direction, rtol, uniform)
-    return LineProblem(groups_at, direction, rtol, uniform, like)
+    return LineProblem(_ending(groups_at) if may_open else groups_at, direction, rtol, uniform, like)
+
+
+def _ending(groups_at: Callable[[float], Groups]) -> Callable[[float], Groups]:
+    """Return the groups of a film that only ends: a cavity at ambient pressure reaches to infinity."""
+
+    def at(s: float) -> Groups:
+        groups = groups_at(s)
+        return replace(groups, model=replace(groups.model, cavitation=Cavitation.EXIT))
+
+    return at
 
 
 class ReformingLine(LineProblem):
