@@ -1078,7 +1078,7 @@ def test_present_point_minimum_and_measured_points_have_colours_of_their_own(ans
 
 
 def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
-    monkeypatch.setitem(curves.SOLVED_ROWS, "point", curves.SolvedRows(31, 5, 1e-2))
+    monkeypatch.setitem(curves.SOLVED_ROWS, "point", curves.SolvedRows(33, 5, 1e-2))
     contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact
     told = []
     [found] = curves.solved_diagram(contact, "balanced", (1e-2, 10.0), -5, told.append)
@@ -1090,7 +1090,7 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
 
 
 def test_rows_of_a_map_that_start_from_the_curve_of_the_contact_are_those_of_their_own(monkeypatch):
-    monkeypatch.setitem(curves.SOLVED_ROWS, "line", curves.SOLVED_ROWS["line"]._replace(step=10))
+    monkeypatch.setitem(curves.SOLVED_ROWS, "line", curves.SOLVED_ROWS["line"]._replace(step=8))
     contact = choices.choose(START, "motion", "rolling").contact
     like = curves.solved_curve(contact, "balanced", lambda _: None).solved
     asked = []
@@ -1099,9 +1099,9 @@ def test_rows_of_a_map_that_start_from_the_curve_of_the_contact_are_those_of_the
     )
     *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None, like)
     assert asked[0] is like and len({*asked}) > 1  # each from its neighbour
-    assert len(found.roughness) == 31
+    assert len(found.roughness) == 33
     for roughness, boundary, hydrodynamic in zip(
-        found.roughness[::10], found.boundary[::10], found.hydrodynamic[::10], strict=True
+        found.roughness[::8], found.boundary[::8], found.hydrodynamic[::8], strict=True
     ):
         row = contact.replace(roughness=float(roughness))
         if 1e-7 < boundary < 1.0:
@@ -1109,9 +1109,25 @@ def test_rows_of_a_map_that_start_from_the_curve_of_the_contact_are_those_of_the
         if 1e-7 < hydrodynamic < 1.0:
             friction = sb.solve(row.replace(speed=hydrodynamic)).friction()
             assert friction.contact / friction.total == pytest.approx(0.1, rel=1e-2)
-    between = contact.replace(roughness=float(found.roughness[15]), speed=float(found.boundary[15]))
+    between = contact.replace(roughness=float(found.roughness[12]), speed=float(found.boundary[12]))
     assert sb.solve(between).fluid_load_share == pytest.approx(0.05, rel=0.15)
     assert found.boundary[-1] > 1.0 and np.isfinite(found.boundary).all()  # beyond the axis too, up to a decade
+
+
+def test_between_solved_rows_a_map_bends_with_its_lines(monkeypatch):
+    def line(roughness):
+        logs = np.log(roughness / 1e-6)
+        return 1e-3 * np.exp(1.5 * logs + 0.05 * logs**2)
+
+    def row(contact, *_):
+        return (float(line(contact.roughness)), math.inf, math.nan if contact.roughness > 1e-5 else 0.2), None
+
+    monkeypatch.setattr(curves, "_row", row)
+    *_, found = curves.solved_diagram(START.contact, "balanced", (1e-7, 1.0), -7, lambda _: None)
+    np.testing.assert_allclose(found.boundary, line(found.roughness), rtol=0.02)  # straight lines miss them by 0.037
+    assert np.isinf(found.hydrodynamic).all()
+    there = np.isfinite(found.minimum)
+    assert there[found.roughness < 3.2e-6].all() and not there[found.roughness > 3.2e-6].any()
 
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():

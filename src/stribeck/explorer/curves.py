@@ -41,7 +41,7 @@ __all__ = [
 ]
 
 POINTS = 121
-ROWS = 31
+ROWS = 33
 """Points of a curve, and roughnesses of a diagram."""
 
 SOLVED_RTOL = 1e-4
@@ -77,8 +77,9 @@ class SolvedRows(NamedTuple):
     is_quick: bool = False
 
 
-SOLVED_ROWS = {"line": SolvedRows(5, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(5, 9, 1e-3)}
-"""By geometry.  Straight lines between rows half a decade apart miss the speeds by up to 4 %, less than a pixel."""
+SOLVED_ROWS = {"line": SolvedRows(8, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(8, 9, 1e-3)}
+"""By geometry.  Monotone cubics between rows three quarters of a decade apart miss the speeds by up to 4 %, less than a pixel;
+straight lines do so between rows half a decade apart."""
 
 STEEPNESS, MARGIN = (1.0, 2.6), 2.0
 """Least and largest power of the roughness as which the speeds of transitions grow, and the factor by which rows go on."""
@@ -360,6 +361,10 @@ def solved_diagram(
             pass  # its row stays empty
         with np.errstate(divide="ignore", invalid="ignore"):  # a line may be at zero, at infinity, or missing
             between = np.exp([np.interp(np.log(shown), np.log(roughness), np.log(line)) for line in lines])
+        for drawn, solved_speeds in zip(between, lines, strict=True):
+            known, inside = (np.isfinite(each) & (each > 0) for each in (solved_speeds, drawn))
+            if known.sum() > 2:
+                drawn[inside] = _between(roughness[known], solved_speeds[known], shown[inside])
         yield Diagram(shown, between[0], between[1], between[2], part=(number + 1) / len(order))
 
 
