@@ -33,7 +33,18 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
-from stribeck.solver.point.refinement import CENTRAL, Pair, angle_error, centre_tails, scales_of
+from stribeck.solver.point.refinement import (
+    CENTRAL,
+    TURNED,
+    TURNED_MOMENT,
+    TURNED_PART,
+    Pair,
+    angle_error,
+    centre_tails,
+    halved_near_closing,
+    near_closing,
+    scales_of,
+)
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
 LADDER = ((5, 10, 8), (10, 20, 8), (15, 30, 8), (20, 45, 10), (30, 65, 10), (45, 95, 10))
@@ -108,6 +119,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
     beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
+    of_load, of_moment = near_closing(fine).sum(axis=1).tolist()
+    for name, factor in TURNED_MOMENT.items():
+        errors[name] = max(errors[name], factor * of_moment)
     errors["J_poiseuille"] += beyond
     # By the balance of forces and the sum of both parts these three differ by what is known better.
     least = THIN / fine.mesh.modes**2 * scales["J_balanced"]
@@ -116,9 +130,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
-    widest = max(widest, front(values, fine.mesh.modes))
+    widest = max(widest, front(values, fine.mesh.modes), TURNED_PART * of_load)
     widest = max(widest, speed / 6.0 * fine.equations.gas_doubt(fine.unknowns) / scales["J_balanced"])  # the film follows it
-    company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
+    company = dict.fromkeys(values, COMPANY if of_load == 0.0 else TURNED) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
     errors = {name: max(error, company[name] * widest * scales[name]) for name, error in errors.items()}
     if fine.resolution.model.film.uses_speed:
         errors |= {name: THINNED * errors[name] for name in errors if name.startswith("J_")}
@@ -205,12 +219,16 @@ def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resoluti
 def _halved(base: Resolution, pair: Pair, rtol: float) -> Resolution:
     """Return a resolution with the panels halved that the line of rupture crosses, where the centre misses a tolerance.
 
-    More angles would not help its series.  Edges enclose where roughness closes the flow of the pair.
+    More angles would not help its series.  Edges enclose where roughness closes the flow, and panels near it are halved where
+    they leave more than that.
     """
     tail = CENTRAL["central_gap"] * float(centre_tails(pair.fine)[0])
     crossed = _crossed(pair.fine) if tail > rtol * pair.scales["central_gap"] else []
+    turning, mesh = near_closing(pair.fine)[0], pair.fine.mesh
     found = replace(base, splits=tuple(sorted({*base.splits, *crossed})))
-    return with_closing(found, pair.fine.mesh, pair.fine.unknowns.gap)
+    if TURNED_PART * turning.sum() > rtol:
+        found = halved_near_closing(found, mesh, turning)
+    return with_closing(found, mesh, pair.fine.unknowns.gap)
 
 
 def _crossed(level: Level) -> list[float]:

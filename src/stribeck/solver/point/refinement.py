@@ -33,6 +33,7 @@ from stribeck.equations.point.observables import MINIMA, identity_error, observa
 from stribeck.equations.point.system import Unknowns
 from stribeck.equations.state import closed_gap
 from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
 
@@ -48,9 +49,16 @@ AHEAD = 0.2
 PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better than this."""
 
-TURNED, TURNED_MOMENT, ABOUT_CLOSED = 1.0, 0.25, (0.8, 1.3)
-"""The same near where roughness closes the flow; stated error of moments over those of the last coefficients of the pressure
-on panels there; and the gaps that are near, over that at which it closes."""
+TURNED, TURNED_PART, ABOUT_CLOSED = 1.0, 0.25, (0.8, 1.3)
+"""The same near where roughness closes the flow, and the smallest error of one observable over the largest; that of the
+load over that of the last coefficients of the pressure on panels there; and the gaps that are near, over that at which the
+flow closes."""
+
+TURNED_MOMENT = {"J_published": 1.25, "J_pcx": 1.0, "J_poiseuille": 0.3}
+"""That of friction integrals over the moment of these coefficients: it is a small difference of two halves."""
+
+TELLING, NARROWEST_TURNED = 0.1, 0.05
+"""Part that panels have in these errors from which they are halved, and their width over the scale above which they are."""
 
 COMPANY, THINNED_COMPANY = 0.1, 1.0
 """Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
@@ -187,21 +195,31 @@ def centre_tails(level: Level) -> Array:
     return np.asarray(np.abs(mesh.legendre(fields)[:, 0, -2:]).max(axis=1))
 
 
-def moment_near_closing(level: Level) -> float:
-    """Return the moment of the last Legendre coefficients of the pressure on panels near where roughness closes the flow.
+def near_closing(level: Level) -> Array:
+    """Return load and moment of the last Legendre coefficients of the pressure on panels, where roughness closes the flow.
 
-    There the mobility turns sharply, and moments of both meshes may err by the same.
+    There the mobility turns sharply, and two meshes may err by the same.  Of shape (2, panels), the load over that of the
+    contact; zero elsewhere.
     """
-    closed_at = closed_gap(level.resolution.model.film)
+    mesh, closed_at = level.mesh, closed_gap(level.resolution.model.film)
+    found = np.zeros((2, mesh.panels))
     if closed_at is None:
-        return 0.0
-    mesh, (low, high) = level.mesh, ABOUT_CLOSED
+        return found
+    low, high = ABOUT_CLOSED
     gap = mesh.scattered(level.unknowns.gap) / closed_at
     near = (gap.min(axis=(0, 2)) < high) & (gap.max(axis=(0, 2)) > low)
-    first = mesh.to_modes[1] @ (level.unknowns.fluid + level.contact_pressure)
-    tail = np.abs(mesh.legendre(first[None])[0, :, -2:]).max(axis=1)
+    first_two = mesh.to_modes[:2] @ (level.unknowns.fluid + level.contact_pressure)
+    tails = np.abs(mesh.legendre(first_two)[..., -2:]).max(axis=-1)
     radii, widths = 0.5 * (mesh.edges[1:] + mesh.edges[:-1]), np.diff(mesh.edges)
-    return 0.5 * math.pi * float((tail * radii**2 * widths)[near].sum())
+    found[:, near] = (tails * radii * widths * [1.5 * np.ones(mesh.panels), 0.5 * math.pi * radii])[:, near]
+    return found
+
+
+def halved_near_closing(found: Resolution, mesh: PolarMesh, parts: Array) -> Resolution:
+    """Return a resolution with the wide panels halved that leave most of an error, by ``parts`` of it on the panels."""
+    wide = np.diff(mesh.edges) > NARROWEST_TURNED * 2.0**found.doublings
+    middles = 0.5 * (mesh.edges[1:] + mesh.edges[:-1])[wide & (parts > TELLING * parts.sum())]
+    return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
 
 
 def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
@@ -227,15 +245,15 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, fine.equations.speed, fine.equations.drag_beyond)
-    kinked = moment_near_closing(fine)
+    kinked = float(near_closing(fine)[1].sum())
     part = TURNED if kinked > 0.0 else PART
     errors = {name: part * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
     # Interpolated minima of two meshes may agree by chance: the truncation of the series bounds their error from below.
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    for name in ("J_published", "J_pcx"):
-        errors[name] = max(errors[name], TURNED_MOMENT * kinked)
+    for name, factor in TURNED_MOMENT.items():
+        errors[name] = max(errors[name], factor * kinked)
     beyond = fine.equations.doubt_beyond(fine.unknowns)
     for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
         errors[name] += beyond
@@ -246,7 +264,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         unseen += unseen_in_angle(fine)
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in MINIMA)
-    least = COMPANY * widest
+    least = (TURNED if kinked > 0.0 else COMPANY) * widest
     if fine.resolution.model.film.uses_speed:
         unseen *= THINNED_MINIMUM
         least = max(THINNED_COMPANY * widest, THINNED * unseen)
@@ -339,7 +357,7 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
                 wanted, coarse = better_split(fine), None
                 continue
             wanted, coarse = next_meshes(pair, rtol, band, slack)
-            if wanted.degree <= before.degree and wanted.modes <= before.modes:
+            if wanted.splits == before.splits and wanted.degree <= before.degree and wanted.modes <= before.modes:
                 break
     except MeshTooLargeError as problem:
         if best is None:
@@ -382,6 +400,8 @@ def split(guess: Level, speed: float, law: ContactLaw) -> Level:
 def next_meshes(pair: Pair, rtol: float, band: int, slack: float) -> tuple[Resolution, Level | None]:
     """Return the next mesh, and the state on the one that it is compared with, if that is solved already."""
     now, wanted = pair.fine.resolution, finer(pair, rtol, band, slack)
+    if wanted.splits != now.splits:
+        return wanted, None
     nested = replace(now, degree=now.degree + FINER_DEGREE, modes=2 * math.ceil(0.5 * FINER_MODES * now.modes))
     enough = wanted.degree <= nested.degree <= MOST_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MOST_MODES
     if wanted != now and enough and bytes_of(nested, band) <= MOST_BYTES:
@@ -398,6 +418,11 @@ def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
     """Return the next mesh: more modes if their amplitudes explain the error, else a higher degree."""
     now, fine = pair.fine.resolution, pair.fine
     modes, degree = now.modes, now.degree
+    turning = near_closing(fine)[1]
+    if TURNED_MOMENT["J_published"] * turning.sum() > rtol * pair.scales["J_published"]:
+        halved = halved_near_closing(now, fine.mesh, turning)
+        if halved != now:
+            return halved
     if pair.total > rtol:
         more = math.log(2.0 * pair.total / rtol)
         amplitude = float(modal_amplitudes(pair.coarse)[-2:].max())
