@@ -167,6 +167,21 @@ def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys)
     assert scaled["hersey_number"] == pytest.approx(0.01 * plain["hersey_number"], rel=1e-14)
 
 
+def test_friction_on_the_other_body_and_losses_of_a_body_that_remembers_stand_apart(capsys):
+    parts = {"solid": sb.solids.StandardLinearSolid("10 ms", 5.0), "slide_to_roll": 0.5}
+    solution = sb.solve(sb.load_case(PDMS).contact, **parts)
+    lost = solution.hysteresis_friction * solution.contact.hertz.half_width / solution.contact.radius
+    print_solution(Console(width=200), solution, "")
+    rows = {line[:36].strip(): line[36:].split() for line in capsys.readouterr().out.splitlines()}
+    assert float(rows["on the cylinder"][0]) == pytest.approx(solution.friction().upper, rel=1e-3)
+    assert float(rows["hysteresis friction, apart"][0]) == pytest.approx(lost, rel=1e-3)
+    told = solution.to_dict()
+    assert told["friction_balanced"]["upper"] == solution.friction().upper
+    assert told["friction_hysteresis"] == pytest.approx(lost, rel=1e-14)
+    print_solution(Console(width=200), sb.solve(sb.load_case(PDMS).contact), "")
+    assert not {"on the cylinder", "hysteresis"} & set(re.findall("on the cylinder|hysteresis", capsys.readouterr().out))
+
+
 def test_the_largest_error_printed_counts_that_of_the_friction(capsys):
     thinning = {"fluid": sb.fluids.Carreau("1 ms", 0.6)}
     solution = sb.solve(sb.load_case(PDMS).contact, **thinning)

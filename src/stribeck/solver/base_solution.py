@@ -29,7 +29,7 @@ from stribeck.quantities.results import ByValue, Card, Shown
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "si_films"]
+__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "hysteresis_coefficient", "si_films"]
 
 UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}
 """Units of positions, gaps and pressures."""
@@ -311,11 +311,37 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         for definition in DEFINITIONS:
             f = self.friction(boundary_friction, beta, definition)
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
-            result[f"friction_{definition}"] = parts
+            walls = {"lower": f.lower, "upper": f.upper} if definition == "balanced" and math.isfinite(f.upper) else {}
+            result[f"friction_{definition}"] = parts | walls
+        lost = hysteresis_coefficient(self, beta)
+        if lost is not None:
+            result["friction_hysteresis"] = lost
         result["errors"] = self.errors
         result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
         result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
         return result
+
+
+def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) -> float | None:
+    """Return the friction coefficient of the losses in a body that remembers; None for others.
+
+    Parameters
+    ----------
+    solution : Solution
+        A state.
+    beta : float, optional
+        As in :meth:`Solution.friction`.
+
+    Returns
+    -------
+    float or None
+        :attr:`Solution.hysteresis_friction` times the slope a/R [-].
+    """
+    groups, contact = solution.groups, solution.contact
+    if not getattr(groups.model.solid, "uses_speed", False):
+        return None
+    slope = float(groups.slope(1.0 if beta is None else beta)) if contact is None else contact.slope
+    return solution.hysteresis_friction * slope
 
 
 def si_films(solution: BaseSolution) -> dict[str, tuple[float, str, str]]:

@@ -24,7 +24,7 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_si
-from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.base_solution import BaseSolution, hysteresis_coefficient
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve
 
 __all__ = ["print_curve", "print_solution"]
+
+LEAST_KNOWN = 1e-3
+"""Relative error with which numbers are printed that state none."""
 
 
 def print_solution(
@@ -81,6 +84,11 @@ def _solution_rows(
         yield f"friction coefficient ({definition})", digits(f.total, f.relative_error), "", error_text(f.relative_error)
         yield "  from asperities", part(f.contact, f.error), "", ""
         yield "  from the fluid", part(f.viscous, f.error), "", ""
+        if definition == "balanced" and solution.groups.model.film.slide != 1.0 and math.isfinite(f.upper):
+            yield "  on the cylinder", part(f.upper, f.error), "", ""
+    lost = hysteresis_coefficient(solution, beta)
+    if lost is not None:
+        yield "hysteresis friction, apart", digits(lost, LEAST_KNOWN), "", ""
     rows = solution.outputs.rows
     for row in (row for row in rows if row.error == "absolute"):
         yield row.label, part(getattr(solution, row.name), errors[row.name]), "", error_text(errors[row.name])
