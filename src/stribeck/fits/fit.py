@@ -145,13 +145,16 @@ def fit(
     if reads:  # what was solved is read from now on
         found = replace(fine, objective=replace(fine.objective, parts_of=quick))
     covariance, quantiles, inflation = _covariance(fine)
+    before = found
     ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
-    if quick is not solved and fine.value > found.value + 0.1:  # a profile led to a better fit
+    if quick is not solved and found is not before:  # a profile led to a better fit, to which the ends belong
         fine = _solved(found, solved, report)
         covariance, quantiles, inflation = _covariance(fine)
+    if reads or quick is solved:
+        return _result(fine, ends, covariance, quantiles, problem, None)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
-    return _result(fine, ends, covariance, quantiles, problem, None if reads or quick is solved else shift)
+    return _result(fine, ends, covariance, quantiles, problem, shift)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fits.least_squares import Minimum, minimise
+from stribeck.quantities.units import InputError
+from stribeck.solver.solve import SolveError
 
 __all__ = ["BetterMinimumError", "Ends", "profile_ends"]
 
@@ -99,9 +101,17 @@ def _side(
     def root_excess(distance: float) -> float:
         """Return the square root of what q is above its minimum, at a distance from the fit."""
         near = min(known, key=lambda point: abs(point[0] - distance))
-        guess = near[2] + sign * (distance - near[0]) * follow
-        guess = np.clip(guess, bounds[0] + 1e-9, bounds[1] - 1e-9)
-        found = minimise(at.objective, guess, {i: float(at.theta[i]) + sign * distance}, tolerance=ENOUGH, near=CLOSE)
+        fixed = {i: float(at.theta[i]) + sign * distance}
+        # Where the others do not follow as they should, they may be led beyond what the model holds for.
+        for guess in (near[2] + sign * (distance - near[0]) * follow, near[2]):
+            try:
+                inside = np.clip(guess, bounds[0] + 1e-9, bounds[1] - 1e-9)
+                found = minimise(at.objective, inside, fixed, tolerance=ENOUGH, near=CLOSE)
+                break
+            except (SolveError, InputError):
+                continue
+        else:
+            return math.inf
         if found.value < at.value - BETTER:
             raise BetterMinimumError(found.theta)
         excess = math.sqrt(max(0.0, found.value - found.fall - at.value))
@@ -120,7 +130,10 @@ def _side(
 def _crossing(
     function: Callable[[float], float], known: list[tuple[float, float, Array]], target: float, width: float, reach: float
 ) -> float:
-    """Return where a function that rises nearly linearly from zero crosses a target; infinity if not within ``reach``."""
+    """Return where a function that rises nearly linearly from zero crosses a target; infinity if not within ``reach``.
+
+    The function may be infinite beyond some distance.
+    """
     low, low_value = max(((d, v) for d, v, _ in known if v <= target), default=(0.0, 0.0))
     above = [(d, v) for d, v, _ in known if v > target]
     high, high_value = min(above, default=(math.inf, math.inf))
@@ -132,8 +145,8 @@ def _crossing(
             rate = low_value / low if low > 0 and low_value > 0 else slope
             trial = min(reach, max(target / rate, 1.02 * low), low + LONGEST)
         else:
-            # The straight line between the ends, kept away from both.
-            part = (target - low_value) / (high_value - low_value)
+            # The straight line between the ends, kept away from both; the middle where the farther one cannot be solved.
+            part = (target - low_value) / (high_value - low_value) if math.isfinite(high_value) else 0.5
             trial = low + (high - low) * min(0.95, max(0.05, part))
         value = function(trial)
         if abs(value - target) < ACCURACY:
@@ -144,4 +157,4 @@ def _crossing(
             high, high_value = trial, value
         if high - low < 1e-6 * max(high, 1e-3):
             break
-    return high if math.isfinite(high) else math.inf
+    return high if math.isfinite(high_value) else math.inf
