@@ -9,6 +9,7 @@ import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.mesh_choice import resolution, rings_crossed, with_closing
+from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import observables
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solver.point.level import solve_level
@@ -28,8 +29,11 @@ def ball(speed, load, kappa, alpha, cavitation="none"):
     return with_parts(groups, flow_factors=sb.fluids.EffectiveMedium(alpha), cavitation=cavitation)
 
 
-def missed(state):
-    """Return errors against panels half as wide, of higher degree and with more angles, over those that are stated."""
+def missed(state, minima=False):
+    """Return errors against panels half as wide, of higher degree and with more angles, over those that are stated.
+
+    Those of the minima of the gap, or of all else.
+    """
     fine = state.work.fine
     now, near = fine.resolution, fine.mesh.edges[: fine.mesh.log_from + 1]
     halves = tuple(sorted({*now.splits, *(0.5 * (near[1:] + near[:-1])).tolist()}))
@@ -37,7 +41,7 @@ def missed(state):
     level = solve_level(better, fine.equations.speed, fine.equations.law, fine.unknowns, fine.mesh, 1e-10)
     assert level.outcome.ok
     known = observables(level.equations, level.unknowns)
-    asked = [name for name in known if name not in WITHOUT_TOLERANCE]
+    asked = [name for name in known if (name in WITHOUT_TOLERANCE) == minima]
     return {name: abs(state.values[name] - known[name]) / state.absolute_errors[name] for name in asked}
 
 
@@ -96,3 +100,22 @@ def test_edges_stay_while_they_enclose_the_line_closely_and_none_are_made_withou
     assert placed(first, outer + 0.05).closing[0] > outer
     plain = replace(base, model=sb.Groups(1e-5, 1.0, 0.2, geometry="point").model)
     assert placed(plain, 0.7) == plain
+
+
+@pytest.mark.parametrize("at", [(0.00037472, 1.531, 0.015222, 1.7032), (0.0039558, 0.78557, 0.085869, 3.0964)])
+def test_the_place_of_a_flat_minimum_is_within_what_is_stated(at):
+    """Two meshes agreed by chance: angle and radius were off by 1.5 and 1.2 times what was stated.  A second each."""
+    found = missed(solve_cold(ball(*at), 1e-4), minima=True)
+    assert max(found.values()) <= 1, found
+
+
+@pytest.mark.quick
+def test_a_minimum_is_placed_as_far_as_the_gap_rises_by_its_error():
+    mesh = PolarMesh(np.array([0.0, 0.5, 1.0, 2.0, 6.0]), 3, 10, 24)
+    x, y = mesh.radii * np.cos(mesh.angles)[:, None], mesh.radii * np.sin(mesh.angles)[:, None]
+    # By 2e-4 over an ellipse with half axes of 0.01 along the radius and 0.02 across it, at a distance of 0.8.
+    radius, angle = reach_of(mesh, 1.0 + 2.0 * (x - 0.8) ** 2 + 0.5 * y**2, 0.8, 0.0, 2e-4)
+    assert radius == pytest.approx(0.01, rel=1e-6)
+    assert angle == pytest.approx(0.02 / 0.8, rel=1e-6)
+    assert reach_of(mesh, 1.0 + 0.5 * (x**2 + y**2), 0.0, 0.0, 2e-4)[0] == pytest.approx(0.02, rel=1e-6)  # at the centre
+    assert reach_of(mesh, 2.0 - 0.5 * x**2, 0.0, 0.0, 1e-4)[0] == 1.0  # none

@@ -63,6 +63,20 @@ def centre(mesh: PolarMesh, h: Array) -> Minimum:
     return Minimum(float(row @ h[:, mesh.of_panel[0]].mean(axis=0)), 0.0, 0.0)
 
 
+def reach_of(mesh: PolarMesh, h: Array, radius: float, angle: float, depth: float) -> tuple[float, float]:
+    """Return how far in radius and angle from a minimum the gap rises by a depth, one radius and half a turn at most.
+
+    By its curvature :math:`H` there: :math:`[2 d (H^{-1})_{ii}]^{1/2}`, the extent of the ellipse in which the gap is lower.
+    """
+    panel = min(max(int(mesh.edges.searchsorted(radius, side="right")) - 1, 0), mesh.panels - 1)
+    orders, fields = np.arange(mesh.modes, dtype=np.float64), _derivatives(mesh, mesh.to_modes @ h, panel)
+    eigenvalues, vectors = np.linalg.eigh(_jet(mesh, fields, orders, panel, radius, angle)[2])
+    with np.errstate(all="ignore"):  # flat, as any angle is at the centre
+        along = vectors**2 * (2.0 * depth / np.maximum(eigenvalues, 0.0))
+        extents = np.sqrt(np.where(vectors == 0.0, 0.0, along).sum(axis=1))
+    return min(float(extents[0]), 1.0), min(float(extents[1]), math.pi)
+
+
 def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, on_axis: bool) -> Minimum:
     """Return the minimum near a node, by Newton steps that may cross into neighbouring panels."""
     orders = np.arange(mesh.modes, dtype=np.float64)

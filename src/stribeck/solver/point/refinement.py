@@ -29,6 +29,7 @@ from stribeck.equations.point.mesh_choice import (
     split_where_poor,
     with_closing,
 )
+from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import MINIMA, identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.equations.state import closed_gap
@@ -70,6 +71,10 @@ node lies at the centre and the equations for the pressure weigh it with the rad
 UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
 """Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over
 the sum of the angular one, continued as a geometric series."""
+
+PLACE, LOWER = ("minimum_radius", "minimum_angle"), 0.5
+"""Stated error of the place of the minimum film over how far from there the gap rises by the error of that film, at least:
+it moved by up to 0.47 of that, and two meshes may agree by chance."""
 
 THINNED_MINIMUM, THINNED, THINNED_DRAG, THINNED_FRICTION = 1.5, 1.5e-3, 3e-2, 2.0
 """Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it,
@@ -287,6 +292,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
             errors[name] = max(errors[name], CUSP / fine.mesh.modes * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
         errors[name] = max(4.0 * errors[name], unseen * (2.0 if fine.resolution.model.film.uses_speed else 1.0))
+    place = values["minimum_radius"], values["minimum_angle"]
+    for name, reach in zip(PLACE, reach_of(fine.mesh, fine.unknowns.gap, *place, errors["minimum_gap"]), strict=True):
+        errors[name] = max(errors[name], LOWER * reach)
     errors["minimum_angle"] = angle_error(values, errors)
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
