@@ -59,6 +59,9 @@ FREE_STEPS = 15
 HELD_STEPS = 25
 """The same with an exit that is given."""
 
+MANY_STEPS = 20
+"""Newton steps after which a state lies on a mesh that was made for another: from there no next one was found."""
+
 MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
 """Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film."""
 
@@ -455,7 +458,10 @@ def _along(start: Groups, end: Groups, first: State, work: Work) -> Path[State]:
         t = s / length
         speed, load, roughness = (a ** (1 - t) * b**t if a > 0 else 0.0 for a, b in ends)
         here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
-        return _coarse(here, extrapolate(history, s))
+        state = _coarse(here, extrapolate(history, s))
+        if state is None or not state.outcome.ok or state.root.steps <= MANY_STEPS:
+            return state
+        return _coarse(here, state)
 
     return march(_within(correct, work), 0.0, length, SLOWING, history=[(0.0, first)])
 
