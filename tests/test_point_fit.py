@@ -192,7 +192,7 @@ def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys, monkeypat
     mu = FrictionModel(contact, data, ()).predict(np.zeros(0), parts).friction
     mu = mu * np.exp(1e-3 * np.random.default_rng(3).standard_normal(9))
     file = tmp_path / "data.csv"
-    file.write_text("speed [m/s],friction\n" + "".join(f"{v:.8g},{m:.8g}\n" for v, m in zip(speeds, mu, strict=True)))
+    file.write_text("sum of speeds [m/s],friction\n" + "".join(f"{v:.8g},{m:.8g}\n" for v, m in zip(speeds, mu, strict=True)))
     out = call(capsys, "fit", file, case, "--out", tmp_path / "fitted.toml").out
     assert "boundary_friction" in out and "mN" in out
     back = sb.load_case(tmp_path / "fitted.toml").contact

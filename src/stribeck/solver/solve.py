@@ -260,10 +260,9 @@ def _converged(start: State, groups: Groups, rtol: float) -> RefinedState:
             best = found if _error(found) < _error(best) else best
     if guess is not start:
         point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-    if best.state is None or _error(point) <= _error(best):
-        return point
+    is_rounding = point.outcome is Outcome.ROUNDING or (best.state is not None and float(best.state.gap.min()) < THINNEST)
     # Rounding grows with the nodes: where it is what is left, a coarse mesh may know more.
-    return replace(best, outcome=Outcome.ROUNDING if float(best.state.gap.min()) < THINNEST else point.outcome)
+    return replace(best, outcome=Outcome.ROUNDING) if is_rounding and _error(best) < _error(point) else point
 
 
 def _error(point: RefinedState) -> float:
