@@ -362,6 +362,13 @@ def test_shear_flow_factors_change_sign_with_the_rough_surface_and_nearly_meet_w
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("factors", [EffectiveMedium(2.0), PatirCheng(2.0), PatirCheng(2.0, 3.0)], ids=repr)
+def test_the_flow_factor_alone_is_that_beside_its_slope(factors):
+    factors = factors.scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
+    gap = np.concatenate([np.geomspace(1e-3, 1e4, 301), PERCOLATION + np.array([-1e-9, 0.0, 1e-9])])
+    np.testing.assert_array_equal(factors.factor(gap), factors.pressure(gap)[0])
+
+
 @pytest.mark.parametrize("argument", ["nominal", "mean"])
 @pytest.mark.parametrize(("gamma", "least"), [(1 / 9, 1.0), (1 / 6, 1.0), (1 / 3, 0.75), (1.0, 0.5), (3.0, 0.5), (9.0, 0.5)])
 def test_where_the_fits_end_flow_goes_on_and_a_wider_gap_carries_more(gamma, least, argument):

@@ -101,6 +101,10 @@ class Shortened(EffectiveMedium):
         far = width > 8
         return np.where(far, 1 - 1.5 / width**2, factor), np.where(far, 3 / width**3 / self.sigma, slope)
 
+    def factor(self, gap):
+        """Return phi_x."""
+        return self.pressure(gap)[0]
+
 
 @pytest.mark.parametrize("row", REFERENCE["d_effective_medium_and_power_law"][:2], ids=lambda row: f"{row['speed']:g}")
 def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_its_wide_gaps(row):

@@ -111,13 +111,21 @@ class EffectiveMedium(FlowFactors):
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return phi_x and its slope."""
-        if self.sigma is None:
-            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        beyond = np.maximum(gap / self.sigma - PERCOLATION, NEAREST)
+        beyond, sigma = self._beyond(gap)
         phi, slope = _lifted_factor().with_slope(np.log(beyond))
         slope *= (beyond > NEAREST) & (beyond < FARTHEST)
-        slope /= beyond * self.sigma
+        slope /= beyond * sigma
         return phi, slope
+
+    def factor(self, gap: Array) -> Array:
+        """Return phi_x alone, in half the time."""
+        return _lifted_factor()(np.log(self._beyond(gap)[0]))
+
+    def _beyond(self, gap: Array) -> tuple[Array, float]:
+        """Return the gap over the roughness beyond the threshold, and the roughness."""
+        if self.sigma is None:
+            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
+        return np.maximum(gap / self.sigma - PERCOLATION, NEAREST), self.sigma
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return zero twice."""

@@ -108,6 +108,10 @@ class FlowFactors(Law, Protocol):
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow under a pressure gradient over that between smooth surfaces, phi_x > 0, and its slope."""
 
+    def factor(self, gap: Array) -> Array:
+        """Return phi_x alone, as residuals ask for it."""
+        return self.pressure(gap)[0]
+
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
 

@@ -139,7 +139,7 @@ class Newtonian:
         if height is None or not height.any():
             return None
         eta = self._of_pressure(pressure)[0]
-        return np.asarray(eta / (self.flow.pressure(gap)[0] * gap**3) * height)
+        return np.asarray(eta / (self.flow.factor(gap) * gap**3) * height)
 
     @property
     def closed_at(self) -> float | None:
@@ -219,11 +219,11 @@ class Newtonian:
         h, m, s = gap, flux_gap, self.slide
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
         carried, carried_slope = self.flow.shear(h)
-        phi, phi_slope = self.flow.pressure(h)
+        phi, phi_slope = self.flow.pressure(h) if with_slopes else (self.flow.factor(h), None)
         resistance = eta / (phi * h * h * h)
         g = resistance * (h - m / rho + s * carried)
         slopes = None
-        if with_slopes:
+        if phi_slope is not None:
             by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
             by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
             slopes = Slopes(by_gap, by_pressure, -resistance / rho)
