@@ -71,9 +71,12 @@ def drag_scales(values: Array) -> Array:
 
     Rolling friction has another sign on the other wall, and passes through zero: both count by the larger of them.
     """
-    published, balanced, upper = np.moveaxis(np.abs(values[..., DRAG]), -1, 0)
-    walls = np.fmax(balanced, upper)
-    return np.stack([np.fmax(published, walls), walls, walls], axis=-1)
+    found = np.abs(values[..., DRAG])
+    published, balanced, upper = found[..., 0], found[..., 1], found[..., 2]
+    np.fmax(balanced, upper, out=balanced)
+    upper[...] = balanced
+    np.fmax(published, balanced, out=published)
+    return found
 
 
 def drag_parts(values: Array) -> Array:
