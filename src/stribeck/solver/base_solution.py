@@ -311,7 +311,8 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         for definition in DEFINITIONS:
             f = self.friction(boundary_friction, beta, definition)
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
-            walls = {"lower": f.lower, "upper": f.upper} if definition == "balanced" and math.isfinite(f.upper) else {}
+            moving = self.groups.model.film.slide != 1.0 and math.isfinite(f.upper)
+            walls = {"lower": f.lower, "upper": f.upper} if definition == "balanced" and moving else {}
             result[f"friction_{definition}"] = parts | walls
         lost = hysteresis_coefficient(self, beta)
         if lost is not None:
