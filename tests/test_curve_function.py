@@ -382,6 +382,15 @@ def test_a_curve_like_none_that_is_one_is_refused():
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3, like="the last")
 
 
+def test_marks_of_a_coarse_curve_with_a_cavity_at_ambient_pressure_are_states_of_that_cavity():
+    curve = sb.stribeck_curve(
+        load=0.1, roughness=1e-3, speed=(1e-5, 1e-1), points=3, rtol=1e-3, cavitation="reform", cavity_pressure=0.0
+    )
+    found = [mark.solution for mark in curve.transitions] + [curve.solutions[1], curve.solve_at(1e-3)]
+    assert [each.groups.model.cavitation for each in found] == ["reform"] * len(found)
+    assert len(curve.transitions) == 4 and np.isfinite(found[-1].profile(np.array([0.0])).gap).all()
+
+
 def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends_and_needs_no_cold_start(monkeypatch):
     contact = CONTACT.replace(cavitation="reform")
     curve = sb.stribeck_curve(contact, points=41, rtol=1e-4)

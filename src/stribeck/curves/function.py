@@ -105,7 +105,7 @@ class CurvePoint(Solution):
     @cached_property
     def _solved(self) -> Solution:
         path, s = self._place
-        found = solution_of(replace(solved_at(path, s, self.rtol), groups=self.groups), self.contact, self.rtol)
+        found = solution_of(solved_at(path, s, self.rtol), self.contact, self.rtol)
         assert found is not None
         return found
 

@@ -234,9 +234,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         return self._solution_at(math.log(found.value))
 
     def _solution_at(self, s: float) -> Solution:
-        groups = self._path.groups_at(s)
-        point = replace(solved_at(self._solved_path, s), groups=groups)
-        return finish(point, groups, self._path.contact_at(s), self.rtol)
+        point = solved_at(self._solved_path, s)
+        return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
 
     def _along(self, path: SolvedPath, values: Array, requested: int) -> StribeckCurve:
         """Return the curve on another path, with points at ``values``."""

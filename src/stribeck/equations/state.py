@@ -474,9 +474,8 @@ def mesh_for(
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
             fields.append(asked(wrong / (tolerance / TAIL_OF_ERROR) ** 2))
-        if (
-            sheared and stretch[0, 0] == 1.0
-        ):  # beside the place where the last path closes no load feels the gradient, but drag
+        # Beside the place where the last path closes no load feels the gradient, but drag does.
+        if sheared and stretch[0, 0] == 1.0:
             full = (flat < 0) | (flat > restart) if ends else np.ones_like(flat, dtype=bool)
             pull = gap * film.at(groups.speed).gradient(gap, fluid if film.uses_pressure else None, np.array(guess.flux_gap))
             fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, pull, 0.0) / sheared).reshape(nodal)[None])

@@ -67,17 +67,34 @@ def problem_of(
     may_open = groups.model.cavitation is Cavitation.REFORM and groups.speed > 0
     if may_open and groups.model.cavity_pressure < 0:
         return ReformingLine(groups_at, direction, rtol, uniform)
-    return LineProblem(_ending(groups_at) if may_open else groups_at, direction, rtol, uniform, like)
+    return (EndingLine if may_open else LineProblem)(groups_at, direction, rtol, uniform, like)
 
 
-def _ending(groups_at: Callable[[float], Groups]) -> Callable[[float], Groups]:
-    """Return the groups of a film that only ends: a cavity at ambient pressure reaches to infinity."""
+class EndingLine(LineProblem):
+    """The states of a film with a cavity at ambient pressure: it reaches to infinity, and the film is one that ends."""
 
-    def at(s: float) -> Groups:
-        groups = groups_at(s)
-        return replace(groups, model=replace(groups.model, cavitation=Cavitation.EXIT))
+    def __init__(
+        self,
+        groups_at: Callable[[float], Groups],
+        direction: Direction,
+        rtol: float,
+        uniform: bool,
+        like: Sequence[Expansion],
+    ) -> None:
+        def ending_at(s: float) -> Groups:
+            groups = groups_at(s)
+            return replace(groups, model=replace(groups.model, cavitation=Cavitation.EXIT))
 
-    return at
+        super().__init__(ending_at, direction, rtol, uniform, like)
+        self.asked_at = groups_at
+
+    def point_at(
+        self, left: Expansion, right: Expansion, s: float, rtol: float | None = None, near: RefinedState | None = None
+    ) -> RefinedState:
+        """Return the same, as the state of the groups that were asked for."""
+        if near is not None and near.state is not None:
+            near = replace(near, groups=near.state.groups)
+        return replace(super().point_at(left, right, s, rtol, near), groups=self.asked_at(s))
 
 
 class ReformingLine(LineProblem):
