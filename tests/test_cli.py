@@ -178,6 +178,7 @@ def test_friction_on_the_other_body_and_losses_of_a_body_that_remembers_stand_ap
     told = solution.to_dict()
     assert told["friction_balanced"]["upper"] == solution.friction().upper
     assert told["friction_hysteresis"] == pytest.approx(lost, rel=1e-14)
+    assert solution.to_dict(beta=0.12)["friction_hysteresis"] == pytest.approx(2 * lost, rel=1e-14)  # the contact has 0.06
     print_solution(Console(width=200), sb.solve(sb.load_case(PDMS).contact), "")
     assert not {"on the cylinder", "hysteresis"} & set(re.findall("on the cylinder|hysteresis", capsys.readouterr().out))
 

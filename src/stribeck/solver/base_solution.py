@@ -338,11 +338,11 @@ def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) ->
     float or None
         :attr:`Solution.hysteresis_friction` times the slope a/R [-].
     """
-    groups, contact = solution.groups, solution.contact
+    groups = solution.groups
     if not getattr(groups.model.solid, "uses_speed", False):
         return None
-    slope = float(groups.slope(1.0 if beta is None else beta)) if contact is None else contact.slope
-    return solution.hysteresis_friction * slope
+    _, beta = coefficients(solution.contact, None, beta)
+    return solution.hysteresis_friction * float(groups.slope(beta))
 
 
 def si_films(solution: BaseSolution) -> dict[str, tuple[float, str, str]]:
