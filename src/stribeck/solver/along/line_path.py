@@ -167,8 +167,9 @@ class LineProblem:
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
-        kind = start.model.cavitation
-        alike = [one for one in like if one.point.state.groups.model.cavitation is kind is not Cavitation.REFORM]
+        kind = _unknowns_of(start.model)
+        reforms = start.model.cavitation is Cavitation.REFORM
+        alike = [one for one in like if _unknowns_of(one.point.state.groups.model) == kind and not reforms]
         self.like = [replace(one, coordinate=one.coordinate + self._shift(one)) for one in alike]
 
     def _shift(self, one: Expansion) -> float:
@@ -527,8 +528,13 @@ def _agree(one: Any, other: Any) -> bool:
 
 
 def _alike(*near: Expansion) -> bool:
-    """Return whether states have the same unknowns: films that end, or begin anew, have more."""
-    return len({end.point.state.groups.model.cavitation for end in near}) == 1
+    """Return whether states have the same unknowns."""
+    return len({_unknowns_of(end.point.state.groups.model) for end in near}) == 1
+
+
+def _unknowns_of(model: Model) -> tuple[bool, Cavitation]:
+    """Return what decides which unknowns a state has: the fluid pressure may be one, rupture and reformation add theirs."""
+    return model.film.uses_pressure, model.cavitation
 
 
 def as_in(state: State, model: Model) -> Model:
