@@ -275,9 +275,9 @@ class PointProblem:
 def with_factors(state: PointState) -> PointState:
     """Return a state with the preconditioner of its own Jacobian: many systems are solved with it."""
     pair: Pair = state.work
-    level = pair.fine
-    if level.iterated.factorisations and level.iterated.preconditioner is not None:
+    if pair.fine.iterated.factorisations and pair.fine.iterated.preconditioner is not None:
         return state
+    level = pair.fine.with_operators()
     band = band_for(level.equations.speed, level.equations.law, level.resolution.model)
     own = BandedModes(Linear(level.equations, level.unknowns), band)
     return replace(state, work=replace(pair, fine=replace(level, iterated=replace(level.iterated, preconditioner=own))))

@@ -18,7 +18,7 @@ from stribeck.equations.cavities.torn import iterate_cavitated, just_above
 from stribeck.equations.point.iteration import WIDEST, Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.planes import plane_of
-from stribeck.equations.point.system import Equations, Unknowns
+from stribeck.equations.point.system import Equations, Operators, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
@@ -50,6 +50,16 @@ class Level:
     def named(self, model: Model) -> Level:
         """Return the level as one from which states of a model start."""
         return replace(self, resolution=replace(self.resolution, model=model))
+
+    def light(self) -> Level:
+        """Return the level without the factors of its matrices and the operators of its mesh, which fill the memory."""
+        op = self.equations.operators
+        equations = replace(self.equations, operators=Operators(op.mesh, op.solid))
+        return replace(self, equations=equations, iterated=replace(self.iterated, preconditioner=None))
+
+    def with_operators(self) -> Level:
+        """Return the level with operators that are shared by all states on its mesh."""
+        return replace(self, equations=replace(self.equations, operators=operators_of(self.resolution, self.mesh)))
 
     @property
     def effort(self) -> float:

@@ -28,13 +28,11 @@ REACH = 3.5
 
 
 def without_factors(state: PointState) -> PointState:
-    """Return a state that neighbours may still start from, without the factors of its matrices, which fill the memory."""
+    """Return a state that neighbours may still start from, without what fills the memory."""
     pair = state.work
     if not isinstance(pair, Pair):
         return state
-    levels = (replace(level, iterated=replace(level.iterated, preconditioner=None)) for level in (pair.coarse, pair.fine))
-    coarse, fine = levels
-    return replace(state, work=replace(pair, coarse=coarse, fine=fine))
+    return replace(state, work=replace(pair, coarse=pair.coarse.light(), fine=pair.fine.light()))
 
 
 def next_state(

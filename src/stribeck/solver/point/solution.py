@@ -427,7 +427,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     if model.cavitation is not Cavitation.NONE and groups.speed > 0:
         if model.cavity_pressure == 0.0:
             notes.append(WAKE)
-        elif float(state.nodal_fluid_pressure.min()) <= model.cavity_pressure:
+        elif state.lowest_pressure <= model.cavity_pressure:
             notes.append(CAVITY)
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
@@ -437,7 +437,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
         )
     if groups.speed > 0:
         film = model.film.at(groups.speed)
-        notes += fluid_notes(film, state.nodal_gap.ravel(), state.nodal_fluid_pressure.ravel(), math.nan)
+        notes += fluid_notes(film, np.array([values.minimum_gap]), np.array([state.lowest_pressure]), math.nan)
     wetted = values._wetted_radius
     if wetted is not None and wetted < NEAR_EDGE:
         notes.append(

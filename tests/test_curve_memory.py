@@ -1,0 +1,49 @@
+"""What a curve of a ball keeps in memory: it hardly grows with its points, and what is read off it solves nothing."""
+
+import gc
+import types
+
+import numpy as np
+
+import stribeck as sb
+
+BALL = sb.PointContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="0.3 N",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    roughness="1 um",
+    alpha=2.0,
+    beta=0.06,
+    boundary_friction=0.7,
+)
+
+
+def bytes_of(kept):
+    """Return the bytes of all arrays that an object holds, directly or not."""
+    waiting, seen, found = [kept], set(), 0
+    while waiting:
+        each = waiting.pop()
+        if id(each) in seen or isinstance(each, type | types.ModuleType | types.FunctionType):
+            continue
+        seen.add(id(each))
+        if isinstance(each, np.ndarray):
+            found += each.nbytes if each.base is None else 0
+        waiting += gc.get_referents(each)
+    return found
+
+
+def test_a_point_keeps_its_fields_and_no_matrices():
+    curve = sb.stribeck_curve(BALL, speed=("10 mm/s", "200 mm/s"), points=3, rtol=1e-2, cavitation="exit")
+    assert not curve.is_function  # known at its points only
+    for solution in curve.solutions:
+        assert bytes_of(solution) < 100 * 8 * solution.nodes
+
+
+def test_points_notes_and_marks_are_read_off_a_curve_without_solving_its_points():
+    curve = sb.stribeck_curve(BALL, speed=("10 mm/s", "80 mm/s"), points=5, rtol=3e-3)
+    before, fields = bytes_of(curve), 8 * curve.solutions[-1].nodes
+    finer = curve.sampled(60)
+    assert finer.notes and finer.regimes and finer.to_dataset().sizes["speed"] == 60
+    assert bytes_of((curve, finer)) - before < 60 * 20 * fields  # a solved state holds a hundred times its fields and more
