@@ -23,6 +23,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, real_array, show
 
 Value = float | Array
@@ -253,7 +254,7 @@ class Formula(Generic[Arguments]):
             self._warn("is used")
         return value
 
-    @functools.cached_property
+    @cached_property
     def _signature(self) -> inspect.Signature:
         return inspect.signature(self.function)
 

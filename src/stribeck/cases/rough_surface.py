@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["RoughSurface"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.facts import FACTS
+from stribeck.quantities.lazy import cached_property
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import scipy
 
 from stribeck._types import Array
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.units import InputError, show
 

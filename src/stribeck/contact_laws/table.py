@@ -10,7 +10,6 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from stribeck._types import Array
 from stribeck.files.text_table import read_two_columns
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["TableLaw"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,7 @@ from stribeck.curves.regime import (
 )
 from stribeck.files.results import Drawn
 from stribeck.quantities.inputs import si_text
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import copy
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -19,6 +18,7 @@ from stribeck.contacts.groups import Geometry, Groups
 from stribeck.equations.sensitivity import GROUPS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import InputTable
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
 from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.quantities.results import ByValue, Card, Shown, brief
@@ -110,7 +110,7 @@ class CurvePoint(Solution):
         return found
 
     @cached_property
-    def notes(self) -> tuple[str, ...]:  # type: ignore[override]
+    def notes(self) -> tuple[str, ...]:
         """What to know before using the numbers, one sentence each."""
         path, s = self._place
         problem, left, right = _beside(path, s)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.equations.point.observables import OBSERVABLES, SMOOTH
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import root_between
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.along.path import SolvedPath, follow

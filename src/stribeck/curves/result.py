@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, 
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place, friction_at
 from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show

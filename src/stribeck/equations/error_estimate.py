@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
 
 __all__ = [

@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -41,6 +40,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.running_integral import Volterra
+from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Equations", "Operators"]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.lazy import cached_property
 from stribeck.solids.solid import lengths_of
 
 LARGEST_AMPLIFICATION = 40.0

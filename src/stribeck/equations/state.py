@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import ROUNDING_SIZE, Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 

@@ -10,12 +10,13 @@ Here are nodes, weights, derivatives, transforms, interpolation and the choice o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.quantities.lazy import cached_property
 
 
 @dataclass(frozen=True)

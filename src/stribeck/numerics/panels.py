@@ -13,13 +13,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.quantities.lazy import cached_property
 
 MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""

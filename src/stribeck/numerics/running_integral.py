@@ -14,12 +14,12 @@ running sum.  The same holds for the Volterra equation ``q = A (v + f q)`` with 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.panels import Mesh, reference
+from stribeck.quantities.lazy import cached_property
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,6 @@ differs.
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from typing import Any
 
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.input_rows import OTHER_BODY, POINT_ROWS, ROWS, Input
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = [
@@ -100,27 +100,27 @@ class InputTable:
     rows: tuple[Input, ...]
     alternatives: tuple[Alternative, ...]
 
-    @functools.cached_property
+    @cached_property
     def quantities(self) -> dict[str, Input]:
         """The inputs by name."""
         return {row.name: row for row in self.rows}
 
-    @functools.cached_property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """The inputs that a contact keeps, in the order in which outputs name them."""
         return tuple(row.name for row in self.rows if not row.derived)
 
-    @functools.cached_property
+    @cached_property
     def symbols(self) -> dict[str, str]:
         """Symbols for pictures."""
         return {row.name: row.symbol for row in self.rows if not row.derived}
 
-    @functools.cached_property
+    @cached_property
     def exponents(self) -> dict[str, tuple[float, float, float]]:
         """Exponents with which each input enters the groups of speed, load and roughness."""
         return {row.name: row.exponents for row in self.rows if not row.derived}
 
-    @functools.cached_property
+    @cached_property
     def choices(self) -> frozenset[str]:
         """Those that need not be given: they have a default, or others may take their place."""
         optional = {row.name for row in self.rows if row.optional}

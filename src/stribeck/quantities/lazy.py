@@ -1,13 +1,35 @@
-"""Public names of a package that are imported on their first use."""
+"""Attributes and public names that are made on their first use."""
 
 from __future__ import annotations
 
 import difflib
+import functools
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from typing import TypeVar
 
-__all__ = ["lazy_names"]
+__all__ = ["cached_property", "lazy_names"]
+
+T = TypeVar("T")
+
+
+class cached_property(functools.cached_property[T]):  # noqa: N801
+    """An attribute that is made on its first use, without the lock that Python 3.11 holds meanwhile.
+
+    A process that is forked while a thread makes one would find that lock taken for good.
+    """
+
+    def __get__(self, instance: object, owner: type | None = None) -> T:  # type: ignore[override]
+        """Return the attribute."""
+        if instance is None:
+            return self  # type: ignore[return-value]
+        assert self.attrname is not None
+        known = vars(instance)
+        if self.attrname not in known:
+            known[self.attrname] = self.func(instance)
+        found: T = known[self.attrname]
+        return found
 
 
 def lazy_names(

@@ -8,8 +8,9 @@ the one that the names of this module are about.  How it is computed stands in
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal
+
+from stribeck.quantities.lazy import cached_property
 
 __all__ = [
     "ALL_NAMES",

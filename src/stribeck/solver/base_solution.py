@@ -6,7 +6,6 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -22,6 +21,7 @@ from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown

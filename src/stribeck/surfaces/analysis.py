@@ -8,7 +8,6 @@ r"""From a measured topography to the roughness of a case: rms height, spectrum,
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.results import Drawn
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures

@@ -3,7 +3,6 @@
 As with case files, everything that is wrong is reported at once, a sentence for each problem that names the key.
 """
 
-import functools
 import hashlib
 import json
 import math
@@ -27,6 +26,7 @@ from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.files.toml import read_toml
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.points import Axis, Kind, points_of
@@ -105,7 +105,7 @@ class SweepDesign(Shown):
         """Return the number of states."""
         return len(self.groups)
 
-    @functools.cached_property
+    @cached_property
     def fingerprint(self) -> str:
         """Identity of this design: its states and settings, without comments in its file."""
         settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]

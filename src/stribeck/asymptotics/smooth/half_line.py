@@ -24,13 +24,13 @@ width with the distance.  What presses, asperities or a fluid, is in :mod:`.edge
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import deflection_operator
 
 NEAR = 2.0

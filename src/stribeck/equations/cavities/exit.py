@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -21,6 +21,7 @@ from stribeck.equations.cavities.torn import TornEquations
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.system import Unknowns
+from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
 

@@ -16,7 +16,6 @@ the differences upstream.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -26,6 +25,7 @@ from stribeck._types import Array, Flags
 from stribeck.equations.cavities.torn import TornEquations
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.lazy import cached_property
 
 __all__ = ["ReformingEquations", "outflow"]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -12,6 +11,7 @@ from stribeck._types import Array
 from stribeck.equations.operators import Operators
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import (
     log_moments,
     near_distance,

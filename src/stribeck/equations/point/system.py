@@ -17,7 +17,6 @@ Newton's step is reduced to the total pressure: :math:`dh = K \, dp + dz - R_1`,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -28,6 +27,7 @@ from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION, particular, rates
 from stribeck.equations.point.films import PLAIN, Beyond, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.half_space import deflections_from_beyond, tilt_from_beyond
 from stribeck.solids.plane import BODIES

@@ -17,7 +17,6 @@ Source: ours, from the generalised Reynolds equation.
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +26,7 @@ from stribeck.equations.thinning.beyond import BeyondRim, Waves
 from stribeck.equations.thinning.column import column, pull
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
+from stribeck.quantities.lazy import cached_property
 
 ANGLES, MOST_DEGREE, ROUNDS, ALIKE = 20, 5, 40, 1e-9
 """Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end."""

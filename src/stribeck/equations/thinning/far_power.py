@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -29,6 +29,7 @@ from stribeck.contacts.cut_off import FULL
 from stribeck.equations.thinning.beyond import BeyondRim, Waves
 from stribeck.equations.thinning.column import Column, column, pull
 from stribeck.fluids.laws import RateLaw
+from stribeck.quantities.lazy import cached_property
 
 ANGLES, STEPS, ALIKE = 64, 40, 1e-11
 """Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends."""

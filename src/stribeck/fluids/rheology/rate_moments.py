@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
 from stribeck.numerics.cells import Cells
+from stribeck.quantities.lazy import cached_property
 
 WIDTH = 0.5
 """Of the panels, in ln(rate)."""

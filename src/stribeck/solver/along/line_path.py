@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.series import ROUNDING, beyond, interval, radius
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.along.between import LinePoint, between, minimum_between, on

@@ -13,13 +13,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
 LONGEST_STEP = 7.0

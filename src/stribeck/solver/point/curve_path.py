@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.series import beyond, radius
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, same
 from stribeck.solver.along.path import Expansion, SolvedPath
