@@ -682,6 +682,40 @@ def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
     assert "Traceback" not in shown
 
 
+def test_a_second_ctrl_c_throws_no_point_of_a_ball_away(tmp_path):
+    ours, theirs = pty.openpty()
+    file = tmp_path / "curve.csv"
+    arguments = ("curve", EXAMPLES / "pdms_ball.toml", "--points", "41", "--rtol", "1e-5", "-o", file)
+    process = start(*arguments, stdout=subprocess.PIPE, stderr=theirs, stdin=subprocess.DEVNULL, text=True)
+    os.close(theirs)
+    try:
+        shown = read_until(ours, r"[1-9]\d*/41")
+        for _ in range(3):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.05)
+        shown += read_until(ours, r"marked as incomplete\.\r\n")
+        process.communicate(timeout=60)
+    finally:
+        process.kill()
+        os.close(ours)
+    assert process.returncode == 130
+    assert re.search(r"Interrupted after \d+ of 41 points", shown) and "Traceback" not in shown
+    assert "\n# complete: 0\n" in file.read_text()
+
+
+def test_a_limit_of_time_keeps_the_finished_points_and_says_so(capsys, tmp_path):
+    file = tmp_path / "curve.csv"
+    many = "--points", "100000", "--rtol", "1e-10", "--cavitation", "exit"
+    answer = call(capsys, "curve", PDMS, *many, "--time-limit", "1 s", "-o", file)
+    if answer.code == 130:
+        assert "Stopped by --time-limit after" in answer.err and file.exists()
+    else:  # on a machine too busy for a first point
+        assert answer.code == 2 and "before the first point" in answer.err and not file.exists()
+    for wrong in ("0", "-1 s", "1 m", "soon", "nan"):
+        refused = call(capsys, "curve", PDMS, "--time-limit", wrong)
+        assert refused.code == 2 and "--time-limit" in refused.err
+
+
 AT_ONCE = """
 import os, signal, sys
 import stribeck.curves.stribeck_curve, stribeck.cli
@@ -703,11 +737,11 @@ def test_ctrl_c_before_the_first_point_writes_nothing(tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_ctrl_c_takes_effect_after_the_present_point_and_at_once_the_second_time():
-    progress = progress_module.Progress()
+def test_ctrl_c_lets_several_processes_end_the_present_point_and_takes_effect_at_once_the_second_time():
+    progress = progress_module.Progress(after_point=True)
     with pytest.raises(KeyboardInterrupt):
         progress.interrupt(signal.SIGINT, None)  # nothing to keep yet
-    progress = progress_module.Progress()
+    progress = progress_module.Progress(after_point=True)
     progress(1, 9)
     progress.interrupt(signal.SIGINT, None)
     with pytest.raises(KeyboardInterrupt):
@@ -716,9 +750,10 @@ def test_ctrl_c_takes_effect_after_the_present_point_and_at_once_the_second_time
         progress.interrupt(signal.SIGINT, None)
 
 
-def test_ctrl_c_after_the_last_point_does_not_stop_the_writing():
+def test_ctrl_c_does_not_stop_the_writing():
     progress = progress_module.Progress()
     progress(9, 9)
+    progress.writes = True
     try:
         progress.interrupt(signal.SIGINT, None)
         progress(9, 9)

@@ -1,10 +1,12 @@
 """Threads: those of BLAS, of which a solve uses one, and those of the caller, who may solve in several."""
 
+import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from command_line import run_python
 from fit_data import TRUE, measured
 from scipy.linalg import lapack
 from threadpoolctl import threadpool_info, threadpool_limits
@@ -123,3 +125,46 @@ def test_eight_threads_give_the_bits_of_one(two_threads):
         for name in ("gap", "fluid_pressure", "contact_pressure"):
             assert np.array_equal(getattr(its_profile, name), getattr(its_own, name)), name
     assert blas_threads() == {2}
+
+
+FORKED = """
+import os, signal, threading, time
+import numpy as np
+import stribeck as sb
+
+reached, go = threading.Event(), threading.Event()
+
+def phi(s):
+    if threading.current_thread() is not threading.main_thread():
+        reached.set()
+        go.wait(60)
+    return -s
+
+def curve():
+    law = sb.FunctionLaw(phi, lambda s: -np.ones_like(s))
+    return sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-2, law=law), speed=(1e-3, 1e-2), points=2, rtol=1e-3)
+
+curves = curve(), curve()
+# A thread solves for the fields of one curve while the process is forked.
+at_work = threading.Thread(target=lambda: curves[0].solutions[0].gap)
+at_work.start()
+assert reached.wait(60)
+child = os.fork()
+if child == 0:
+    os._exit(0 if curves[1].solutions[0].gap.min() > 0 else 1)
+end, code = time.monotonic() + 60, None
+while code is None and time.monotonic() < end:
+    found, status = os.waitpid(child, os.WNOHANG)
+    code = os.waitstatus_to_exitcode(status) if found else None
+    time.sleep(0.05)
+if code is None:
+    os.kill(child, signal.SIGKILL)
+go.set()
+at_work.join()
+print(code)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no processes are forked here")
+def test_a_child_that_is_forked_while_a_thread_solves_does_not_hang():
+    assert run_python(FORKED).out == "0\n"

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.files.writing import MissingExtraError, check_writable
-from stribeck.quantities.units import InputError, read_number, show
+from stribeck.quantities.units import InputError, read_number, show, to_si
 
 Axis = Literal["speed", "load", "roughness"]
 AXES: tuple[Axis, ...] = ("speed", "load", "roughness")
@@ -218,3 +218,11 @@ def need_extra(purpose: str, extra: str, library: str) -> None:
     """Refuse what needs a library that is not installed."""
     if importlib.util.find_spec(library) is None:
         raise MissingExtraError(purpose, extra, library)
+
+
+def read_duration(text: str, name: str) -> float:
+    """Return a positive time in seconds."""
+    seconds = to_si(float(text) if text.replace(".", "", 1).isdigit() else text, "time", name, "60 s")
+    if seconds <= 0:
+        raise InputError(f"{name} = {show(text)}; it must be a time above zero, such as '60 s'.")
+    return seconds

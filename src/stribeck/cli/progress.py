@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import _thread
+import math
 import signal
 import sys
 import threading
@@ -12,17 +14,19 @@ from typing import Any
 
 import stribeck as sb
 from stribeck.cli.exits import Interrupted
+from stribeck.quantities.units import InputError
 
 
 class Progress:
     """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect.
 
-    Ctrl-C is a wish to stop after the present point: then nothing that was finished can be lost. Before the
-    first point, and when it comes a second time, it takes effect at once.
+    Ctrl-C takes effect at once, and what is solved is kept by what solves it. Work of several processes ends after the present
+    point instead, and at once when Ctrl-C comes a second time. Nothing stops the writing of what is kept.
     """
 
-    def __init__(self) -> None:
-        self.started = self.wanted = False
+    def __init__(self, after_point: bool = False) -> None:
+        self.after_point = after_point
+        self.started = self.wanted = self.writes = self.timed_out = False
         self.bar: Any = None
         self.task: Any = None
 
@@ -37,14 +41,19 @@ class Progress:
     def interrupt(self, number: int, frame: FrameType | None) -> None:
         """Handle Ctrl-C."""
         again, self.wanted = self.wanted, True
-        if again or not self.started:
+        if not self.writes and (again or not (self.after_point and self.started)):
             raise KeyboardInterrupt
+
+    def time_out(self) -> None:
+        """Stop as Ctrl-C does."""
+        self.timed_out = True
+        _thread.interrupt_main()
 
 
 @contextmanager
-def interruptible(sigterm: bool = False) -> Iterator[Progress]:
-    """Show progress and let Ctrl-C stop the work between two points, and SIGTERM too where that is wanted."""
-    progress = Progress()
+def interruptible(after_point: bool = False, sigterm: bool = False, time_limit: float | None = None) -> Iterator[Progress]:
+    """Show progress and let Ctrl-C and a limit of time [s] stop the work, and SIGTERM too where that is wanted."""
+    progress = Progress(after_point)
     main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
     before_int = signal.getsignal(signal.SIGINT)
@@ -52,15 +61,24 @@ def interruptible(sigterm: bool = False) -> Iterator[Progress]:
     if handles:
         signal.signal(signal.SIGINT, progress.interrupt)
     before = signal.signal(signal.SIGTERM, progress.interrupt) if sigterm and main else None
+    timer = threading.Timer(math.inf if time_limit is None else time_limit, progress.time_out)
+    timer.daemon = True
     try:
+        if time_limit is not None:
+            timer.start()
         with _bar(progress):
             yield progress
-    except sb.SolveError:
+    except (sb.SolveError, KeyboardInterrupt) as problem:
+        if progress.timed_out:
+            raise InputError(
+                "--time-limit ended before the first point was solved; nothing was written; give more time."
+            ) from None
         # Also a path that was lost because it was interrupted.
-        if progress.wanted:
+        if progress.wanted and isinstance(problem, sb.SolveError):
             raise KeyboardInterrupt from None
         raise
     finally:
+        timer.cancel()
         if handles:
             signal.signal(signal.SIGINT, before_int)
         if before is not None:

@@ -33,6 +33,7 @@ from stribeck.cli.arguments import (
     curve_arguments,
     model_parts,
     read_case,
+    read_duration,
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, say, stdout_console
 from stribeck.cli.progress import interruptible
@@ -137,6 +138,7 @@ def curve_command(
     cavity_pressure: CavityPressure = None,
     flow_factors: FlowFactorsWord = None,
     definition: Word = None,
+    time_limit: Number = None,
     json: Flag = False,
     force: Flag = False,
 ) -> int:
@@ -148,7 +150,7 @@ def curve_command(
 
     Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
 
-    Ctrl-C writes the finished points, marked as incomplete, and exits with code 130.
+    Ctrl-C, or the end of --time-limit, writes the finished points, marked as incomplete, and exits with code 130.
 
     Parameters
     ----------
@@ -171,6 +173,8 @@ def curve_command(
         Dimensionless groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
     definition
         Viscous friction: balanced (default) or published; defaults to the value in the case.
+    time_limit
+        Stop solving after this time, such as '60 s'.
     json
         Print the curve as JSON.
     force
@@ -183,8 +187,10 @@ def curve_command(
     arguments |= model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
     arguments |= {} if definition is None else {"definition": definition}
     title = loaded.title if loaded else ""
-    with interruptible() as progress:
+    seconds = None if time_limit is None else read_duration(time_limit, "--time-limit")
+    with interruptible(time_limit=seconds) as progress:
         curve = sb.stribeck_curve(on_point=progress, **arguments)
+        progress.writes = True
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
         written, problems = _write(curve, title, outputs, pictures, force)
@@ -207,7 +213,8 @@ def curve_command(
         kept = (
             f"{' and '.join(written)} contain the points so far, marked as incomplete" if written else "no file was asked for"
         )
-        return complain(f"Interrupted after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
+        stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"
+        return complain(f"{stopped} after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
     if not curve.outcome.ok:
         return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
     return 0

@@ -83,7 +83,7 @@ def sweep_command(
         need_extra("a NetCDF file", "data", "netCDF4")
     plan = load_sweep(design)
     processes = 1 if workers is None else as_whole("workers", workers)
-    with interruptible(sigterm=True) as progress:
+    with interruptible(after_point=True, sigterm=True) as progress:
         lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
 
         def tell(state: SweepProgress) -> None:

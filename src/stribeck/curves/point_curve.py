@@ -139,6 +139,11 @@ class PointCurve(StribeckCurve):
         solution, friction = self._at(s)
         return Landmark(name, math.exp(s), friction_at(friction), solution)  # type: ignore[arg-type]
 
+    @property
+    def _ended_early(self) -> bool:
+        """Whether Ctrl-C ended a curve whose marks are found by solving more states."""
+        return self._function is None and self.outcome is Outcome.INTERRUPTED
+
     @cached_property
     def _at_unit(self) -> tuple[Groups, dict[str, Any], float]:
         """The groups where what varies is one, what friction hangs on there, and that of asperities over their load share."""
@@ -162,8 +167,8 @@ class PointCurve(StribeckCurve):
 
     @cached_property
     def minimum(self) -> Landmark | None:
-        """The minimum of the size of the friction; None where the curve has none inside."""
-        if not bool(np.all(np.asarray(self.groups.speed) > 0)):
+        """The minimum of the size of the friction; None where the curve has none inside, or where it would be solved for."""
+        if self._ended_early or not bool(np.all(np.asarray(self.groups.speed) > 0)):
             return None
         if self._function is None:
             places, total = np.log(self.values), np.asarray(self.friction)
@@ -237,6 +242,8 @@ class PointCurve(StribeckCurve):
         mark = check_transition(name)
         if mark is Transition.MINIMUM:
             return self.minimum
+        if self._ended_early:
+            return None
         places, fluid, share = self._shares
         return self._crossing(mark, places, excess(mark, fluid, share))
 
@@ -372,7 +379,14 @@ def _followed(
     problem.release()
     solver.like = ()
     known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
-    return tuple(_solutions(path, coordinate, np.log(known))), known, path, path.outcome, problem.failure
+    solutions: tuple[PointSolution, ...] = ()
+    try:
+        for solution in _solutions(path, coordinate, np.log(known)[::-1]):
+            solutions = solution, *solutions
+    except KeyboardInterrupt:
+        path = replace(path, outcome=Outcome.INTERRUPTED)
+        known = known[len(known) - len(solutions) :]
+    return solutions, known, path, path.outcome, problem.failure
 
 
 def _point_by_point(
