@@ -104,6 +104,8 @@ class FitSettings:
         What was measured: a cylinder or a ball.
     slide_to_roll : float
         Slide-to-roll ratio of the contact: but at 2 and -2 both surfaces move, and a speed may be their mean or their sum.
+    scales_surface : bool
+        Whether a fitted roughness scales a surface as a whole, so that beta follows, as with a table ``[surface]``.
     """
 
     free: tuple[str, ...] = ()
@@ -123,6 +125,7 @@ class FitSettings:
     curves: dict[str, dict[str, Any]] = field(default_factory=dict)
     geometry: str = "line"
     slide_to_roll: float = PURE_SLIDING
+    scales_surface: bool = False
 
     @classmethod
     def of(cls, contact: Contact) -> Self:

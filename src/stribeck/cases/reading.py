@@ -126,7 +126,11 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         curve=CurveSettings(**checked["curve"]),
         title=checked["title"],
         notes=checked["notes"],
-        fit=replace(fit, slide_to_roll=FitSettings.of(contact).slide_to_roll),
+        fit=replace(
+            fit,
+            slide_to_roll=FitSettings.of(contact).slide_to_roll,
+            scales_surface="surface" in tables and not tables["surface"].get("shape_only", False),
+        ),
         facts={**preset_facts(tables), **facts},
         errors={**errors, **part_errors},
         conversions=(*conversions, *preset_said(tables, contact.viscosity)),

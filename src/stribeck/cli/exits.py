@@ -6,11 +6,14 @@ import io
 import os
 import signal
 import sys
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
 from stribeck.files.writing import reason_of
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,6 +33,19 @@ def complain(text: str, code: int) -> int:
     except OSError:
         silence(sys.stderr)
     return code
+
+
+def attempted(actions: Mapping[Path, Callable[[], object]]) -> tuple[list[str], list[str]]:
+    """Write files; return the names of those that were written, and a sentence about each that was not."""
+    written, problems = [], []
+    for path, action in actions.items():
+        try:
+            action()
+        except InputError as problem:
+            problems.append(str(problem))
+        else:
+            written.append(str(path))
+    return written, problems
 
 
 def silence(stream: TextIO) -> None:

@@ -35,7 +35,7 @@ from stribeck.cli.arguments import (
     read_case,
     read_duration,
 )
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, say, stdout_console
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, attempted, complain, say, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
@@ -344,28 +344,19 @@ def _write(
     curve: sb.StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
 ) -> tuple[list[str], list[str]]:
     """Write the files of a curve; return their names, and sentences about those that failed."""
-    written, problems = [], []
-
-    def attempt(path: Path, action: Callable[[], object]) -> None:
-        try:
-            action()
-        except InputError as problem:
-            problems.append(str(problem))
-        else:
-            written.append(str(path))
-
+    actions: dict[Path, Callable[[], object]] = {}
     if outputs:
         from stribeck.curves.table import curve_dataset
         from stribeck.files.datasets import write_data
 
         dataset = curve_dataset(curve, title)
         for path in outputs:
-            attempt(path, lambda path=path: write_data(dataset, path, force=force))  # type: ignore[misc]
+            actions[path] = lambda path=path: write_data(dataset, path, force=force)  # type: ignore[misc]
     for path in pictures:
         from stribeck.curves.plot import plot_curve
 
-        attempt(path, lambda path=path: plot_curve(curve, path, force=force, title=title))  # type: ignore[misc]
-    return written, problems
+        actions[path] = lambda path=path: plot_curve(curve, path, force=force, title=title)  # type: ignore[misc]
+    return attempted(actions)
 
 
 def _too_small(curve: sb.StribeckCurve) -> str:

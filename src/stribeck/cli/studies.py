@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,7 +22,7 @@ from stribeck.cli.arguments import (
     data_and_case,
     need_extra,
 )
-from stribeck.cli.exits import FAILED, INTERRUPTED, complain, stdout_console
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, attempted, complain, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 from stribeck.quantities.units import InputError
@@ -159,23 +160,23 @@ def fit_command(
     steps = None if posterior is None else as_whole("posterior", posterior)
     if steps is not None:
         need_extra("a posterior", "fit", "emcee")
+    from stribeck.fits.case_file import check_fitted_case, write_fitted_case
     from stribeck.fits.certainty.posterior import draw_posterior
-    from stribeck.fits.fit import fit
+    from stribeck.fits.fit import fit, names_to_fit
 
+    if out is not None:
+        check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)
     with interruptible() as progress:
         found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))
         drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
-    written = []
+    actions: dict[Path, Callable[[], object]] = {}
     for picture in pictures:
         from stribeck.fits.plot import plot_fit
 
-        plot_fit(found, picture, force=force, title=loaded.title)
-        written.append(str(picture))
+        actions[picture] = lambda picture=picture: plot_fit(found, picture, force=force, title=loaded.title)  # type: ignore[misc]
     if out is not None and found.converged:
-        from stribeck.fits.case_file import write_fitted_case
-
-        write_fitted_case(found, loaded, out, force=force)
-        written.append(str(out))
+        actions[out] = lambda: write_fitted_case(found, loaded, out, force=force)
+    written, problems = attempted(actions)
     from stribeck.cli.reports import fit as report_fit
     from stribeck.cli.reports import json as report_json
 
@@ -183,6 +184,8 @@ def fit_command(
         print(report_json.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
     else:
         report_fit.print_fit(stdout_console(), found, loaded.title, written, drawn)
+    if problems:
+        return complain("\n".join(problems), BAD_INPUT)
     if not found.converged:
         return complain(found.outcome.value, FAILED)
     return 0

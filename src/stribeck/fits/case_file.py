@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from stribeck.cases.case import Case
+from stribeck.cases.law import FROM_TABLES
 from stribeck.cases.reading import load_case
-from stribeck.contacts.line import InputError
+from stribeck.contact_laws.table import TableLaw
+from stribeck.contacts.contact import Contact
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.given.conversions import CONVERSIONS
+from stribeck.quantities.given.uncertain import has_error, split_error
+from stribeck.quantities.inputs import ALTERNATIVES
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
+from stribeck.quantities.units import InputError
 
-__all__ = ["format_interval", "format_value", "load_fit_case", "write_fitted_case"]
+__all__ = ["check_fitted_case", "format_interval", "format_value", "load_fit_case", "write_fitted_case"]
 
 DIGITS = 10
 """Digits of the values in the file, enough to solve the same state again."""
 
 AGREEMENT = 1e-8
 """Relative difference that rounding to these digits may leave."""
+
+CHANGED = 1.01
+"""Factor on free inputs by which it is tried before a fit whether its case can be written."""
+
+SPECTRUM = {"spectrum", "wavenumber", "density"}
+"""Keys of a table ``[surface]`` with a measured spectrum, which has no height of its own."""
 
 _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
 
@@ -65,6 +81,32 @@ def _tables(path: PathLike) -> dict[str, Any]:
         return {}
 
 
+def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
+    """Refuse a fit whose case could not be written afterwards.
+
+    Parameters
+    ----------
+    case : Case
+        The case that the fit begins from.
+    names : sequence of str
+        Inputs to fit.
+    path : str or path-like
+        File that the fitted case is to be written to.
+
+    Raises
+    ------
+    InputError
+        If the case is written in a way that hides a value.
+    """
+    contact = case.contact
+    known = {name: value for name in names if (value := getattr(contact, name, None))}
+    if case.fit.scales_surface and "beta" not in known and "roughness" in known:
+        known["beta"] = contact.beta
+    changed = contact.replace(**{name: value * CHANGED for name, value in known.items()})
+    with TemporaryDirectory() as folder:
+        _write(case, changed, [name for name in names if name in known], lambda name: [], [], Path(folder) / "case.toml", path)
+
+
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:
     """Write the case of a fit with the fitted values, everything else as it was.
 
@@ -83,73 +125,146 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
     ------
     InputError
         If the fit did not converge, the file cannot be written, or the case is written in a way that hides its values.
+
+    Notes
+    -----
+    Where the contact law comes from a table ``[surface]``, a fitted roughness scales its ``h_rms``.  Where alpha or beta were
+    free too, or the table has a measured spectrum, it keeps its shape (``shape_only = true``) and the three numbers stand in
+    ``[contact]``.
     """
     if not fit.converged:
         raise InputError(f"no fitted case is written. {fit.outcome.value}")
-    text = case.path.read_text(encoding="utf-8-sig")
-    with atomic_write(path, (".toml",), force=force) as temporary:
-        temporary.write_text(_fitted_text(text, fit), encoding="utf-8")
-        try:
-            back = load_case(temporary).contact
-        except InputError as problem:
-            raise InputError(str(problem).replace(str(temporary), str(path))) from None
-        for name in fitted_rows(fit.contact.INPUTS):
-            kept = getattr(back, name, None)
-            if kept is not None and not math.isclose(kept, getattr(fit.contact, name), rel_tol=AGREEMENT):
-                table, key = _place(name)
-                raise InputError(
-                    f"{path} cannot be written, as {case.path} does not have {key} on a line of its own in [{table}]; "
-                    "write it there."
-                )
-
-
-def _fitted_text(text: str, fit: Fit) -> str:
-    values = {each.name: getattr(fit.contact, each.name, None) for each in fit.inputs}
-    new = {name: value for name, value in values.items() if value is not None}
-    names = {_place(name): name for name in new}
-    table, lines = "", list[str]()
-    written = set[str]()
-    for line in text.splitlines():
-        head = _TABLE.fullmatch(line)
-        if head:
-            if table == "contact":
-                lines += _added(new, written, fit)
-            table = head[1]
-        key = re.match(r"\s*(\w+)\s*=", line)
-        name = names.get((table, key[1]), key[1] if table == "contact" else "") if key else ""
-        if name == "youngs_modulus" and "modulus" in new:
-            youngs = fit.contact.modulus * (1 - _poisson(text) ** 2)
-            lines += [
-                f"# before the fit: {line.strip()}",
-                *_comments("modulus", fit),
-                f'{name} = "{format_si(youngs, "pressure", DIGITS)}"',
-            ]
-            written.add("modulus")
-        elif name in new:
-            lines += [f"# before the fit: {line.strip()}", *_comments(name, fit), _entry(name, new[name], fit)]
-            written.add(name)
-        else:
-            lines.append(line)
-    if table == "contact":
-        lines += _added(new, written, fit)
     said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
     about = [f"# Fitted by stribeck {version('stribeck')} to {Path(fit.data.path).name}. {fit.outcome.value} {said}"]
-    return "\n".join([*about, *lines]) + "\n"
+    names = list(dict.fromkeys(each.name for each in fit.inputs))
+    with atomic_write(path, (".toml",), force=force) as temporary:
+        _write(case, fit.contact, names, lambda name: _comments(name, fit), about, temporary, path)
 
 
-def _poisson(text: str) -> float:
-    found = re.search(r"^\s*poisson_ratio\s*=\s*([0-9.eE+-]+)", text, re.MULTILINE)
-    return float(found[1]) if found else 0.0
+Comments = Callable[[str], list[str]]
 
 
-def _added(new: dict[str, float], written: set[str], fit: Fit) -> list[str]:
-    """Return lines for inputs that the table did not have, as those of a surface."""
-    lines = []
-    for name, value in new.items():
-        if name not in written and name not in PART_INPUTS:
-            lines += [*_comments(name, fit), _entry(name, value, fit)]
-            written.add(name)
-    return lines
+def _write(
+    case: Case, contact: Contact, names: Sequence[str], comments: Comments, about: list[str], temporary: Path, path: PathLike
+) -> None:
+    """Write the case with the values of a contact, and check that what is read back is that contact."""
+    edits = _edits(case, contact, names, comments)
+    text = case.path.read_text(encoding="utf-8-sig")
+    temporary.write_text("\n".join([*about, *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8")
+    try:
+        back = load_case(temporary).contact
+    except InputError as problem:
+        raise InputError(str(problem).replace(str(temporary), str(path))) from None
+    for name in fitted_rows(contact.INPUTS):
+        value, kept = getattr(contact, name, None), getattr(back, name, None)
+        if value is not None and (kept is None or not math.isclose(kept, value, rel_tol=AGREEMENT)):
+            table, key = _place(name)
+            raise InputError(
+                f"{path} cannot be written, as {case.path} does not have {key} on a line of its own in [{table}]; "
+                "write it there."
+            )
+
+
+@dataclass
+class _Edits:
+    """Lines of a case file in the place of keys, and at the end of tables."""
+
+    at: dict[tuple[str, str], list[str]]
+    added: dict[str, list[str]]
+    removed: set[str]
+
+    def put(self, table: str, key: str, lines: list[str], instead: Sequence[str] = ()) -> None:
+        """Put lines in the place of a key of a table, or of others that say the same, else at its end."""
+        first, *others = instead or [key]
+        self.at[table, first] = lines
+        self.at |= {(table, other): [] for other in others}
+
+
+def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comments) -> _Edits:
+    """Return what changes in the file of a case whose contact has other values of some inputs."""
+    edits, given = _Edits({}, {}, set()), case.tables.get("contact", {})
+    from_table = [table for table in ("surface", "asperities") if table in case.tables]
+    free_of_table = [name for name in FROM_TABLES if name in names] if from_table else []
+    if free_of_table and not case.tables[from_table[0]].get("shape_only", False):
+        table = from_table[0]
+        sheet = [key for key in ("ra", "rq") if key in given]
+        if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
+            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length")]
+            if sheet:
+                edits.at |= {("contact", key): [] for key in sheet}
+                edits.added[table] = lines
+            else:
+                edits.put(table, "h_rms", lines)
+        else:
+            lines = ["# The shape alone; the numbers stand in [contact].", "shape_only = true"]
+            if table == "surface":
+                edits.added[table] = [*lines, *([_entry("h_rms", case.contact.roughness, "length")] if sheet else [])]
+            else:  # of asperities nothing is left beside these numbers
+                edits.removed.add(table)
+            edits.at |= {("contact", key): [] for key in sheet}
+            edits.added["contact"] = [
+                line for name in FROM_TABLES for line in (*comments(name), _entry_of(name, contact)) if line
+            ]
+        names = [name for name in names if name not in FROM_TABLES]
+    for name in names:
+        value = getattr(contact, name, None)
+        if value is None:
+            continue
+        place, key = _place(name)
+        lines = [*comments(name), _entry_of(name, contact)]
+        instead: list[str] = [] if place != "contact" or key in given else _others(name, given)
+        if instead == ["youngs_modulus", "poisson_ratio"]:
+            youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
+            edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure")])
+        else:
+            edits.put(place, key, lines, instead)
+    if isinstance(contact.law, TableLaw) and "file" in case.tables.get("table", {}) and {*FROM_TABLES, "modulus"} & set(names):
+        # The numbers of a file in SI units are those of the contact that it was measured with.
+        rows = {"separation": contact.law.separation, "pressure": contact.law.pressure}
+        edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in rows.items()]
+    return edits
+
+
+def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
+    """Return the lines of a file after the edits; files that it names are found from anywhere."""
+    table, lines = "", list[str]()
+    for line in [*text.splitlines(), "[]"]:
+        if head := _TABLE.fullmatch(line):
+            lines += edits.added.get(table, [])
+            table = head[1]
+        if table in edits.removed and line.strip():
+            lines.append(f"# before the fit: {line.strip()}")
+            continue
+        key = re.match(r"\s*(\w+)\s*=", line)
+        new = edits.at.get((table, key[1])) if key else None
+        if new is not None:
+            lines += [f"# before the fit: {line.strip()}", *new]
+        elif key and key[1] in ("file", "spectrum") and table in ("table", "surface"):
+            lines.append(_found_from_anywhere(line, folder))
+        else:
+            lines.append(line)
+    return lines[:-1]
+
+
+def _found_from_anywhere(line: str, folder: Path) -> str:
+    """Return a line that names a file beside the case, with the whole path."""
+    named = re.fullmatch(r"(\s*\w+\s*=\s*)(['\"])(.+?)\2(.*)", line)
+    return line if named is None else f"{named[1]}{json.dumps(str((folder / named[3]).resolve()))}{named[4]}"
+
+
+def _others(name: str, given: Mapping[str, Any]) -> list[str]:
+    """Return the keys of a table that stand for an input, as those of a data sheet."""
+    alternatives = [each for each in ALTERNATIVES if each.of == name]
+    direct = [key for each in alternatives for key in (*each.inputs, *each.other)]
+    found = [each.name for row in CONVERSIONS if row.of in (name, *direct) for each in row.inputs]
+    return [key for key in given if key in (*direct, *found)]
+
+
+def _number(value: Any) -> float:
+    """Return a number of a case file without its error."""
+    if has_error(value):
+        value, _ = split_error("poisson_ratio", value, "number", "0.5")
+    return float(value)
 
 
 def _comments(name: str, fit: Fit) -> list[str]:
@@ -160,8 +275,12 @@ def _comments(name: str, fit: Fit) -> list[str]:
     ]
 
 
-def _entry(name: str, value: float, fit: Fit) -> str:
-    dimension, (_, key) = fitted_rows(fit.contact.INPUTS)[name].dimension, _place(name)
+def _entry_of(name: str, contact: Contact) -> str:
+    _, key = _place(name)
+    return _entry(key, getattr(contact, name), fitted_rows(contact.INPUTS)[name].dimension)
+
+
+def _entry(key: str, value: float, dimension: str) -> str:
     text = format_si(value, dimension, DIGITS)
     return f"{key} = {text}" if dimension == "number" else f'{key} = "{text}"'
 

@@ -126,9 +126,7 @@ def fit(
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     if not isinstance(data, Measurements):
         data = read_measurements(data, settings)
-    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
-    if not names:
-        raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
+    names = names_to_fit(free, settings)
     if robust is not None:
         settings = replace(settings, robust=robust)
     settings = replace(settings, per_curve=tuple(name for name in settings.per_curve if name in names))
@@ -155,6 +153,14 @@ def fit(
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
     return _result(fine, ends, covariance, quantiles, problem, shift)
+
+
+def names_to_fit(free: Sequence[str] | None, settings: FitSettings) -> tuple[str, ...]:
+    """Return the inputs to fit: those that are named, else those of the settings, else friction coefficient and roughness."""
+    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
+    if not names:
+        raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
+    return names
 
 
 @dataclass(frozen=True)
@@ -358,7 +364,8 @@ def _result(
     factors = {each.name: each.value for each in inputs if each.is_factor}
     first = [(each.name, getattr(contact, each.name, None)) for each in inputs if each.is_factor]
     shared |= {name: value * factors[name] for name, value in first if value is not None}
-    shared |= {each.name: getattr(contacts[0], each.name, None) for each in inputs if each.curve is not None}
+    of_first = [each.names for each in model.free if each.curve is not None or each.also]
+    shared |= {name: getattr(contacts[0], name, None) for names in of_first for name in names}
     errors = at.prediction.error / at.prediction.friction
     return Fit(
         inputs=inputs,
@@ -382,13 +389,27 @@ def _result(
         checks=checks_of(
             Subject(max(contacts, key=lambda each: each.hertz.pressure), problem.facts, problem.definition), "contact"
         ),
-        notes=(*data.notes, *notes_of(at, inputs, correlation, covariance, weak, contacts)),
+        notes=(
+            *data.notes,
+            *_scaled(model.free, contact, contacts),
+            *notes_of(at, inputs, correlation, covariance, weak, contacts),
+        ),
         solver_shift=float(np.nanmax(moved)) if np.isfinite(moved).any() else math.nan,
         model_error=float(errors.max()),
         evaluations=at.evaluations,
         _minimum=at,
         _threshold=quantiles[1],
     )
+
+
+def _scaled(free: Sequence[FreeInput], contact: Contact, contacts: Sequence[Contact]) -> list[str]:
+    """Return the sentence on a surface that was scaled as a whole."""
+    if not any(each.also for each in free):
+        return []
+    fitted = ", ".join(f"{each.beta:.4g}" for each in contacts)
+    return [
+        f"The roughness scales the surface as a whole, so that beta follows: {contact.beta:.4g} in the case, {fitted} fitted."
+    ]
 
 
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:

@@ -37,6 +37,8 @@ class FreeInput:
         Mean and standard deviation of that logarithm before the data.
     is_factor : bool
         Whether what is fitted is a common factor on values that differ.
+    also : tuple of str
+        Inputs on which the same factor acts.
     """
 
     name: str
@@ -46,6 +48,12 @@ class FreeInput:
     high: float
     prior: tuple[float, float] | None = None
     is_factor: bool = False
+    also: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All inputs on which the factor acts."""
+        return (self.name, *self.also)
 
     def value(self, theta: float) -> float:
         """Return the input in SI units, or the factor, at a logarithm of the factor."""
@@ -92,6 +100,8 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
             largest = start if curve is not None else max(values.values())
             smallest = start if curve is not None else min(values.values())
             each_free = _free_input(name, curve, start, differ and not alone, settings, contact)
+            if name == "roughness" and settings.scales_surface and "beta" not in names:
+                each_free = replace(each_free, also=("beta",))
             found.append(_in_range(each_free, smallest, largest))
     return tuple(found)
 

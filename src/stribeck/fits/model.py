@@ -164,13 +164,17 @@ class FrictionModel:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
         rows = []
         for free in self.free:
-            speed, load, roughness = self.contact.INPUTS.exponents.get(free.name, (0.0, 0.0, 0.0))
-            if self.data.abscissa == "hersey_number" and free.name != "viscosity":
-                speed += self.rule.hersey_exponents.get(free.name, 0.0)
-            row = [speed, load, roughness, free.name == "boundary_friction"]
-            row += [(free.name == name) + self.rule.exponents.get(name, {}).get(free.name, 0.0) for name in self.rule.inputs]
-            rows.append([float(x) * (free.curve in (None, curve)) for x in row])
+            row = np.sum([self._exponents_of(name) for name in free.names], axis=0)
+            rows.append((row * (free.curve in (None, curve))).tolist())
         return rows
+
+    def _exponents_of(self, free: str) -> list[float]:
+        """Return the exponents with which one input enters them."""
+        speed, load, roughness = self.contact.INPUTS.exponents.get(free, (0.0, 0.0, 0.0))
+        if self.data.abscissa == "hersey_number" and free != "viscosity":
+            speed += self.rule.hersey_exponents.get(free, 0.0)
+        row = [speed, load, roughness, free == "boundary_friction"]
+        return [*row, *((free == name) + self.rule.exponents.get(name, {}).get(free, 0.0) for name in self.rule.inputs)]
 
     def logs_at(self, curve: Indices, values: Array) -> Array:
         """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors one.
@@ -226,7 +230,7 @@ class FrictionModel:
         factors: dict[str, float] = {}
         for free, t in zip(self.free, theta.tolist(), strict=True):
             if free.curve in (None, curve):
-                factors[free.name] = math.exp(t)
+                factors |= dict.fromkeys(free.names, math.exp(t))
         contact = self.contacts[curve]
         values = {name: getattr(contact, name, None) for name in factors}
         return contact.replace(

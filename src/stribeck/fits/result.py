@@ -174,7 +174,7 @@ class Fit(Exported, Shown, ByValue):
     @property
     def held(self) -> tuple[str, ...]:
         """Names of the inputs that were held fixed; no interval includes their uncertainty."""
-        fitted = {each.name for each in self.inputs}
+        fitted = {name for each in self._minimum.objective.model.free for name in each.names}
         measured = () if self.data.abscissa == "speed" else ("viscosity",)
         there = {name for name in FREE for contact in self.contacts if getattr(contact, name, None) is not None}
         return tuple(name for name in FREE if name in there and name not in fitted and name not in measured)

@@ -1,0 +1,114 @@
+"""The case that `stribeck fit --out` writes: it loads and has the fitted curve, whatever gives its law and its inputs."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import CONTACT, call, case_text
+
+import stribeck as sb
+
+NOTHING = dict.fromkeys(("alpha", "beta", "roughness"))
+SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"100 um"', "shortest_wavelength": '"1 um"'}
+WAVENUMBER = np.geomspace(6e4, 6e6, 30)
+DENSITY = 1e-22 * (WAVENUMBER / 6e4) ** -3.6
+SPECTRUM = {"wavenumber": WAVENUMBER.tolist(), "density": DENSITY.tolist()}
+ASPERITIES = {"density": '"3e9 m^-2"', "radius": '"60 um"', "deviation": '"1 um"'}
+SEPARATION = np.linspace(0.05, 12, 60)
+
+CASES = {
+    "exponential": ({}, {}),
+    "exponential of a surface": (NOTHING, {"surface": SURFACE}),
+    "Persson": (NOTHING | {"law": '"persson"'}, {"surface": SURFACE}),
+    "Persson, Ra": (
+        NOTHING | {"law": '"persson"', "ra": '"0.8 um"'},
+        {"surface": {key: value for key, value in SURFACE.items() if key != "h_rms"}},
+    ),
+    "Persson, spectrum": (NOTHING | {"law": '"persson"'}, {"surface": SPECTRUM}),
+    "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}),
+    "Greenwood-Tripp": ({"law": '"greenwood-tripp"'}, {}),
+    "Greenwood-Williamson, asperities": (NOTHING | {"law": '"greenwood-williamson"'}, {"asperities": ASPERITIES}),
+    "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}),
+}
+INPUTS = {
+    "alone": {},
+    "data sheet": {
+        "modulus": None,
+        "shore_a": "45",
+        "viscosity": None,
+        "kinematic_viscosity": '"55 cSt"',
+        "density": '"900 kg/m^3"',
+        "load": None,
+        "force": '"0.6 N +- 5 %"',
+        "width": '"20 mm"',
+    },
+    "Young": {"modulus": None, "youngs_modulus": '"2 MPa +- 10 %"', "poisson_ratio": "0.5"},
+    "two bodies": {
+        "modulus": None,
+        "youngs_modulus": '"2 MPa"',
+        "poisson_ratio": "0.5",
+        "youngs_modulus_2": '"50 MPa"',
+        "poisson_ratio_2": "0.3",
+    },
+}
+
+
+def written(folder, contact, tables):
+    """Write a case with the files that it names, and friction of its contact; return both paths."""
+    gaps, pressures = SEPARATION * 0.5e-6, 2.7e6 * 0.06 * np.exp(-SEPARATION - 0.01 * SEPARATION**2)
+    rows = "\n".join(f"{gap},{pressure}" for gap, pressure in zip(gaps, pressures, strict=True))
+    (folder / "law.csv").write_text(f"gap [m],pressure [Pa]\n{rows}\n")
+    case = folder / "case.toml"
+    case.write_text(case_text(contact, **tables))
+    contact = sb.load_case(case).contact
+    speeds = np.geomspace(1e-3, 0.3, 6)
+    friction = sb.stribeck_curve(contact, speed=speeds, rtol=1e-7).friction
+    data = folder / "data.csv"
+    data.write_text("speed (m/s),friction\n" + "\n".join(f"{u},{mu}" for u, mu in zip(speeds, friction, strict=True)))
+    return case, data, speeds, friction
+
+
+def check_round_trip(capsys, folder, contact, tables, free):
+    case, data, speeds, friction = written(folder, contact, tables)
+    out = folder / "elsewhere" / "fitted.toml"
+    out.parent.mkdir()
+    answer = call(capsys, "fit", data, case, "--free", *free, "--out", out, "--json")
+    assert answer.code == 0, answer.err
+    back = sb.load_case(out).contact
+    again = sb.stribeck_curve(back, speed=speeds, rtol=1e-7).friction
+    np.testing.assert_allclose(again, friction, rtol=1e-4)
+    for each in json.loads(answer.out)["inputs"]:
+        assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
+
+
+@pytest.mark.parametrize("free", [("roughness",), ("alpha", "beta")], ids="+".join)
+@pytest.mark.parametrize("name", CASES)
+def test_a_fitted_case_of_every_law_has_the_fitted_curve(capsys, tmp_path, name, free):
+    contact, tables = CASES[name]
+    check_round_trip(capsys, tmp_path, contact, tables, free)
+
+
+@pytest.mark.parametrize("free", ["modulus", "viscosity", "load"])
+@pytest.mark.parametrize("name", INPUTS)
+def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(capsys, tmp_path, name, free):
+    check_round_trip(capsys, tmp_path, INPUTS[name], {}, (free,))
+
+
+def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_path):
+    case, data, *_ = written(tmp_path, {}, {})
+    inline = ", ".join(f"{key} = {value}" for key, value in CONTACT.items())
+    case.write_text(f"contact = {{{inline}}}\n")
+    picture = tmp_path / "fit.png"
+    answer = call(capsys, "fit", data, case, "--out", tmp_path / "fitted.toml", "--plot", picture)
+    assert answer.code == 2 and "on a line of its own in [contact]" in answer.err
+    assert not picture.exists() and not (tmp_path / "fitted.toml").exists()
+
+
+def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
+    contact, tables = CASES["Persson"]
+    case, data, *_ = written(tmp_path, contact, tables)
+    found = sb.fit(data, case, free=["roughness"], intervals=False)
+    known = sb.load_case(case).contact
+    assert found.contact.beta / known.beta == pytest.approx(found.contact.roughness / known.roughness, rel=1e-9)
+    assert any("beta follows" in note for note in found.notes) and "beta" not in found.held
