@@ -13,7 +13,7 @@ from packaging.utils import canonicalize_name
 from packaging.version import Version
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("plot", "data", "fit", "cluster", "surface", "app", "rig", "report", "quick", "test")
+CHECKED = ("plot", "data", "fit", "cluster", "surface", "app", "report", "quick", "test")
 
 
 def bounds(project: dict, extra: str) -> dict[str, Version]:

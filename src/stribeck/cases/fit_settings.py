@@ -42,7 +42,7 @@ COLUMNS = (
 
 KEYS = (
     *("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row"),
-    *("repeats", "run_in"),
+    *("repeats", "run_in", "sheet", "track_radius", "arm"),
 )
 TABLES = ("columns", "units", "bounds", "priors", "curves")
 
@@ -90,6 +90,12 @@ class FitSettings:
         Whether a first run that differs from the later ones is left out of the means.
     header_row : int, optional
         Row of the data file that holds the names of the columns; the first that is no comment by default.
+    sheet : str, optional
+        Sheet of a workbook that holds the data; the one with most numbers by default.
+    track_radius : float, optional
+        Radius [m] of the track on which a speed of rotation is that of sliding.
+    arm : float, optional
+        Arm [m] over which a torque is the friction force.
     columns : dict
         What a column is -> its header, or a list of headers for several friction columns.
     units : dict
@@ -118,6 +124,9 @@ class FitSettings:
     repeats: bool | None = None
     run_in: Literal["leave", "keep"] = "leave"
     header_row: int | None = None
+    sheet: str | None = None
+    track_radius: float | None = None
+    arm: float | None = None
     columns: dict[str, str | list[str]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -274,6 +283,15 @@ def _setting(key: str, value: Any) -> Any:
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= 100_000:
             raise InputError(f"header_row = {show(value)} must be the number of a row, counted from 1.")
         return value
+    if key == "sheet":
+        if not isinstance(value, str) or not value:
+            raise InputError(f"{key} = {show(value)} must be the name of a sheet, as text in quotes.")
+        return value
+    if key in ("track_radius", "arm"):
+        length = to_si(value, "length", key, "20 mm")
+        if length <= 0:
+            raise InputError(f"{key} = {show(value)} must be positive, such as '20 mm'.")
+        return length
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not number or not 0 < value < math.inf:
         raise InputError(f"{key} = {show(value)} must be a positive number, such as 0.02.")

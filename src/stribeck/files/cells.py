@@ -8,28 +8,54 @@ from pathlib import Path
 
 from stribeck.quantities.units import InputError
 
-__all__ = ["MISSING", "cells_of", "header_words", "is_called", "number_of", "split_header"]
+__all__ = [
+    "MISSING",
+    "cells_of",
+    "has_number",
+    "header_words",
+    "is_called",
+    "is_named",
+    "looks_like_units",
+    "number_of",
+    "split_header",
+]
 
 MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 """Cells that hold no value, in lower case."""
 
+SYMBOLS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
+"""What may stand in the brackets of a header in place of a unit: the letter of the quantity."""
+
 POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
+_UNIT = re.compile(
+    r"(?:[pnuµμcmkMG]?(?:m|g|s|N|Pa|J|W|V|A|Hz|C|St|P|Nm|bar)|K|%|‰|°|°C|°F|deg|rad|sec|min|h|hr|hour|rpm|RPM|rev|in|ft|lbf?|"
+    r"k?gf|[Nn]ewton|a\.?u\.?|1)(?:\^?[-−]?[0-9]|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
+)
+_WITHOUT_BRACKETS = re.compile(r"(.+?)[\s,_]+([pnuµμcmk]?m ?/ ?(?:s|sec|min|h)|rpm|RPM|%|[uµmk]?N)\s*")
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 
 def split_header(header: str) -> tuple[str, str]:
     """Return the words of a header and its unit, as of ``speed [mm/s]`` or ``speed / mm/s``; empty where it has none."""
-    parts = _HEADER.fullmatch(header)
+    parts = _HEADER.fullmatch(header) or _WITHOUT_BRACKETS.fullmatch(header)
     if parts is None or not parts[1]:
         return header.strip(), ""
-    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
+    unit = next(unit for unit in parts.groups()[1:] if unit is not None).strip()
+    return parts[1].strip(), "" if unit in SYMBOLS else unit
 
 
 def header_words(header: str) -> str:
-    """Return the words of a header in lower case, without its unit and without signs."""
-    return " ".join(re.sub(r"[^0-9a-zµμ]+", " ", split_header(header)[0].lower()).split())
+    """Return the words of a header in lower case, without its unit, what stands in brackets, and signs."""
+    words = re.sub(r"\(.*?\)|\[.*?\]", " ", split_header(header)[0]) or header
+    return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower()).split())
+
+
+def is_named(header: str, pattern: str) -> bool:
+    """Return whether the words of a header match a pattern, with what stands before a dot in it or without, as ``DAQ.``."""
+    words = split_header(header)[0]
+    return any(re.fullmatch(pattern, header_words(each)) for each in (header, re.split(r"[.:]", words)[-1]))
 
 
 def is_called(header: str, name: str) -> bool:
@@ -73,5 +99,15 @@ def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
     return cells
 
 
+def looks_like_units(cell: str) -> bool:
+    """Return whether a cell below a header is a unit, such as ``mm/sec`` or ``[mN m]``, rather than a name."""
+    text = cell.strip()
+    if text[:1] in "[(" and text[-1:] in "])":
+        return True
+    parts = re.split(r"[\s*/·⋅.]+", text.removeprefix("U/"))
+    return len(text) <= 20 and all(map(_UNIT.fullmatch, parts))
+
+
 def has_number(cell: str) -> bool:
+    """Return whether a cell holds a number, with or without a unit."""
     return any(sign.isdigit() for sign in cell) and number_of(cell, ",") is not None

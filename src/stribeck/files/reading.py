@@ -78,6 +78,10 @@ def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
         raise InputError(f"{path} has more than {largest} bytes; {advice}.")
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return content.decode("utf-16", errors="replace")
+    for start, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        zeros = content[start::2].count(0)
+        if 4 * zeros > len(content) and b"\0" not in content[1 - start :: 2]:  # most letters of a table are Latin
+            return content.decode(encoding, errors="replace")
     if b"\0" in content:
         raise InputError(f"{path} is not text; export it as CSV, or give it the ending of its format.")
     try:

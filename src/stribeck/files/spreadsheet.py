@@ -1,89 +1,261 @@
-"""Spreadsheets as text: the sheet with most numbers, its cells separated by tabs."""
+"""Workbooks as lines of text: one sheet, its cells separated by tabs, read within bounds."""
 
 from __future__ import annotations
 
+import io
 import math
-import warnings
-from importlib.util import find_spec
+import posixpath
+import re
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from xml.parsers import expat
 
-from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.units import InputError
+from stribeck.files.cells import has_number
+from stribeck.files.reading import content_of
+from stribeck.quantities.units import InputError, show
 
-__all__ = ["SPREADSHEETS", "text_of_spreadsheet"]
+__all__ = ["SPREADSHEETS", "Sheet", "sheet_of"]
 
 SPREADSHEETS = (".xlsx", ".xlsm")
 
-LARGEST_CELLS = 5_000_000
-"""Cells of a workbook that are read; a small file may unpack to any number."""
+LARGEST_WORKBOOK = 20_000_000  # [byte]
+
+LARGEST_XML = 100_000_000  # [byte]
+"""Size of the parts of a workbook once they are unpacked; a small file may unpack to any size."""
+
+LARGEST_CELLS = 2_000_000
+"""Cells of a sheet, with the empty ones before the last of each row."""
+
+LAST_ROW, LAST_COLUMN = 1_048_576, 16_384
+"""Rows and columns that a sheet can have."""
+
+_CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
 
-def text_of_spreadsheet(path: Path) -> str:
-    """Return the sheet of a workbook that holds most numbers, as text with tabs.
+@dataclass(frozen=True)
+class Sheet:
+    """A sheet of a workbook.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    lines : list of tuple
+        Number and text of each row that holds something, its cells separated by tabs.
+    others : tuple of str
+        Names of other sheets that hold numbers.
+    """
+
+    name: str
+    lines: list[tuple[int, str]]
+    others: tuple[str, ...]
+
+
+def sheet_of(path: Path, wanted: str | None = None) -> Sheet:
+    """Return a sheet of a workbook.
 
     Parameters
     ----------
     path : pathlib.Path
         The workbook.
+    wanted : str, optional
+        Name of the sheet; the one with most numbers if omitted.
 
     Returns
     -------
-    str
-        A line for each row, so that rows keep their numbers; numbers with a decimal point.
+    Sheet
+        Its rows, numbered as in the workbook; numbers with a decimal point.
 
     Raises
     ------
     InputError
-        If it cannot be read, or holds no numbers.
-    MissingExtraError
-        If openpyxl is not installed.
+        If the workbook cannot be read, is too large, has no such sheet, or holds no numbers.
     """
-    if find_spec("openpyxl") is None:
-        raise MissingExtraError("a spreadsheet", "rig", "openpyxl")
-    import openpyxl
-
+    content = content_of(path, LARGEST_WORKBOOK, "a workbook")
+    if len(content) > LARGEST_WORKBOOK:
+        raise InputError(f"{path} has more than {LARGEST_WORKBOOK} bytes; keep the sheet with the measured rows.")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of styles and validations, which do not matter here
-            book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-            sheets = _sheets(path, book)
-            book.close()
+        with zipfile.ZipFile(io.BytesIO(content)) as book:
+            size = sum(each.file_size for each in book.infolist() if each.filename.endswith((".xml", ".rels")))
+            if size > LARGEST_XML:
+                raise InputError(f"{path} unpacks to more than {LARGEST_XML} bytes; keep the sheet with the measured rows.")
+            sheets = dict(_sheets(path, book, wanted))
     except InputError:
         raise
-    except Exception as problem:  # zip, XML and openpyxl raise errors of many kinds, and each means the same
+    except Exception as problem:  # zip and XML raise errors of many kinds, and each means the same
         said = " ".join(str(problem).split())
         raise InputError(f"{path} cannot be read as a spreadsheet ({said}); export it as CSV.") from None
-    counts = [sum(_is_number(cell) for row in sheet for cell in row) for sheet in sheets]
-    if not counts or max(counts) == 0:
-        raise InputError(f"{path} holds no numbers in any of its sheets; formulas count only after a program has saved them.")
-    sheet = sheets[counts.index(max(counts))]
-    width = max(map(len, sheet))
-    return "\n".join("\t".join([*map(_text, row), *[""] * (width - len(row))]) for row in sheet)
+    counts = {name: sum(has_number(cell) for _, line in lines for cell in line.split("\t")) for name, lines in sheets.items()}
+    if not any(counts.values()):
+        which = "any of its sheets" if wanted is None else f"the sheet {show(wanted)}"
+        raise InputError(f"{path} holds no numbers in {which}; formulas count only after a program has saved them.")
+    name = max(counts, key=lambda each: counts[each])
+    return Sheet(name, sheets[name], tuple(each for each in counts if each != name and counts[each]))
 
 
-def _sheets(path: Path, book: Any) -> list[list[list[Any]]]:
-    """Return the cells of each row of each sheet, up to its last that is filled."""
-    sheets, count = [], 0
-    for sheet in book.worksheets:
-        rows = []
-        for values in sheet.iter_rows(values_only=True):
-            last = max((i for i, cell in enumerate(values, 1) if cell is not None), default=0)
-            count += 1 + last
-            if count > LARGEST_CELLS:
-                raise InputError(f"{path} has more than {LARGEST_CELLS} cells; keep the sheet with the measured rows.")
-            rows.append(list(values[:last]))
-        sheets.append(rows)
-    return sheets
+def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[tuple[str, list[tuple[int, str]]]]:
+    """Yield name and rows of each sheet, or of the one that is wanted."""
+    target_of = {
+        each["Id"]: posixpath.normpath(posixpath.join("/xl", each["Target"])).lstrip("/")
+        for each in _elements(book, "xl/_rels/workbook.xml.rels", "Relationship")
+    }
+    names = {
+        each["name"]: target_of[next(value for key, value in each.items() if key.endswith("id") and value in target_of)]
+        for each in _elements(book, "xl/workbook.xml", "sheet")
+    }
+    if wanted is not None and wanted not in names:
+        raise InputError(f"{path} has no sheet {show(wanted)}; its sheets are {', '.join(map(show, names))}.")
+    strings = _SharedStrings()
+    if "xl/sharedStrings.xml" in book.namelist():
+        _parse(book, "xl/sharedStrings.xml", strings)
+    for name, part in names.items():
+        if wanted in (None, name):
+            rows = _Rows(path, strings.found)
+            _parse(book, part, rows)
+            yield name, rows.lines()
 
 
-def _is_number(cell: Any) -> bool:
-    return isinstance(cell, int | float) and not isinstance(cell, bool)
+class _Handler:
+    """What is done with the elements of a part of a workbook; names come without their namespace."""
+
+    def begin(self, name: str, attributes: dict[str, str]) -> None:
+        """Take the beginning of an element."""
+
+    def end(self, name: str) -> None:
+        """Take the end of an element."""
+
+    def text(self, text: str) -> None:
+        """Take text inside of an element."""
 
 
-def _text(cell: Any) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, float):
-        return repr(cell) if math.isfinite(cell) else "nan"
-    return " ".join(str(cell).split())
+def _parse(book: zipfile.ZipFile, part: str, handler: _Handler) -> None:
+    """Give the elements of a part to a handler; none is kept, whatever there is of them."""
+    parser = expat.ParserCreate(namespace_separator="}")
+    parser.buffer_text = True
+
+    def refuse(*_: Any) -> None:
+        raise ValueError("it declares entities")
+
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = lambda name, attributes: handler.begin(name.rpartition("}")[2], attributes)
+    parser.EndElementHandler = lambda name: handler.end(name.rpartition("}")[2])
+    parser.CharacterDataHandler = handler.text
+    with book.open(part) as file:
+        parser.ParseFile(file)
+
+
+def _elements(book: zipfile.ZipFile, part: str, wanted: str) -> list[dict[str, str]]:
+    """Return the attributes of all elements of a name."""
+    found: list[dict[str, str]] = []
+
+    class Attributes(_Handler):
+        def begin(self, name: str, attributes: dict[str, str]) -> None:
+            if name == wanted:
+                found.append(attributes)
+
+    _parse(book, part, Attributes())
+    return found
+
+
+class _SharedStrings(_Handler):
+    """The table of texts to which cells refer."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+        self.parts: list[str] | None = None
+        self.phonetic = False
+
+    def begin(self, name: str, attributes: dict[str, str]) -> None:
+        if name == "si":
+            self.found.append("")
+        self.phonetic = self.phonetic or name == "rPh"
+        if name == "t" and not self.phonetic:
+            self.parts = []
+
+    def text(self, text: str) -> None:
+        if self.parts is not None:
+            self.parts.append(text)
+
+    def end(self, name: str) -> None:
+        if name == "rPh":
+            self.phonetic = False
+        if name == "t" and self.parts is not None:
+            self.found[-1] += "".join(self.parts)
+            self.parts = None
+
+
+@dataclass
+class _Rows(_Handler):
+    """The cells of a sheet that hold something."""
+
+    path: Path
+    strings: list[str]
+    cells: dict[int, dict[int, str]] = field(default_factory=dict)
+    place: tuple[int, int] = (0, 0)
+    kind: str = ""
+    parts: list[str] = field(default_factory=list)
+    listening: bool = False
+    widths: dict[int, int] = field(default_factory=dict)
+    count: int = 0
+
+    def begin(self, name: str, attributes: dict[str, str]) -> None:
+        row, column = self.place
+        if name == "row":
+            self.place = self._checked(int(attributes.get("r", row + 1)), 0)
+        elif name == "c":
+            at = _CELL.fullmatch(attributes["r"]) if "r" in attributes else None
+            if "r" in attributes and at is None:
+                raise ValueError(f"a cell is called {show(attributes['r'])}")
+            self.place = self._checked(int(at[2]), _column(at[1])) if at else self._checked(row, column + 1)
+            self.kind, self.parts = attributes.get("t", "n"), []
+        self.listening = name in ("v", "t")
+
+    def text(self, text: str) -> None:
+        if self.listening:
+            self.parts.append(text)
+
+    def end(self, name: str) -> None:
+        self.listening = False
+        if name != "c" or not self.parts:
+            return
+        row, column = self.place
+        text = _TEXTS.get(self.kind, str)("".join(self.parts)) if self.kind != "s" else self.strings[int("".join(self.parts))]
+        self.count += max(0, column - self.widths.get(row, 0))
+        if self.count > LARGEST_CELLS:
+            raise InputError(f"{self.path} has more than {LARGEST_CELLS} cells; keep the sheet with the measured rows.")
+        self.widths[row] = max(column, self.widths.get(row, 0))
+        text = " ".join(text.split())
+        self.cells.setdefault(row, {})[column] = '"{}"'.format(text.replace('"', '""')) if '"' in text else text
+
+    def _checked(self, row: int, column: int) -> tuple[int, int]:
+        if not 0 < row <= LAST_ROW or not 0 <= column <= LAST_COLUMN:
+            raise ValueError(f"it has a cell in row {row}, column {column}")
+        return row, column
+
+    def lines(self) -> list[tuple[int, str]]:
+        """Return the rows as lines, each up to its last cell that is filled."""
+        return [
+            (row, "\t".join(cells.get(i, "") for i in range(1, self.widths[row] + 1)))
+            for row, cells in sorted(self.cells.items())
+        ]
+
+
+def _column(letters: str) -> int:
+    number = 0
+    for letter in letters:
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number
+
+
+def _number(text: str) -> str:
+    return text if math.isfinite(float(text)) else "nan"
+
+
+def _truth(text: str) -> str:
+    return "TRUE" if text == "1" else "FALSE"
+
+
+_TEXTS: dict[str, Callable[[str], str]] = {"n": _number, "b": _truth}

@@ -1,25 +1,26 @@
-"""Tables in text files: separator, header, decimal sign, encoding and missing values found or refused.
+"""Tables in files: separator, header, units, steps, decimal sign, encoding and missing values found or refused.
 
-Measured friction, contact laws, power spectra and heights all come through here.  What the columns mean is not known here.
+Measured friction, contact laws, power spectra and heights all come through here.  The caller knows what the columns mean, and
+may say which names it knows.
 """
 
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, cells_of, has_number
+from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, split_header
+from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
-from stribeck.files.spreadsheet import SPREADSHEETS, text_of_spreadsheet
+from stribeck.files.spreadsheet import SPREADSHEETS, sheet_of
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["TextTable", "read_table", "read_two_columns", "values_of"]
+__all__ = ["CURVE", "EXPECTED", "TextTable", "read_table", "read_two_columns", "values_of"]
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
@@ -28,12 +29,16 @@ LARGEST_TABLE = 20_000_000  # [byte]
 BLOCK = "step"
 """Header of the column that numbers the tables of a file that has the same header above each."""
 
+CURVE = "curve"
+"""Header of the column that names the curves of a file that has them side by side."""
+
 EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 
-LOOK_AHEAD = 3
-"""Rows below a header among which one must hold numbers."""
+MANY = 10
+"""Rows that a sentence lists."""
 
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,7 @@ class TextTable:
     path : str
         The file.
     header : tuple of str
-        Names of the columns.
+        Names of the columns; empty for a column without a name.
     rows : tuple of tuple of str
         The cells, one for each column.
     numbers : tuple of int
@@ -56,8 +61,12 @@ class TextTable:
         Whether numbers have decimal commas.
     units_row : tuple of str
         A row of units below the header; empty if there is none.
-    skipped : int
-        Rows of other text above the header.
+    written : tuple of str
+        Names of the columns as the file has them.
+    above : tuple of tuple
+        Number and text of each row above the header.
+    notes : tuple of str
+        What was left out and put together, one sentence each.
     """
 
     path: str
@@ -67,21 +76,47 @@ class TextTable:
     separator: str
     decimal_comma: bool
     units_row: tuple[str, ...] = ()
-    skipped: int = 0
+    written: tuple[str, ...] = ()
+    above: tuple[tuple[int, str], ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def unit(self, name: str) -> str:
+        """Return the unit of a column: that in its header, or in the row of units."""
+        return split_header(name)[1] or (self.units_row[self.header.index(name)] if self.units_row else "")
+
+    def column(self, name: str) -> tuple[str, ...]:
+        """Return the cells of a column."""
+        at = self.header.index(name)
+        return tuple(row[at] for row in self.rows)
 
 
-def read_table(path: Path, header_row: int | None = None, expected: str = EXPECTED) -> TextTable:
-    """Return the cells of a text file of columns with a header.
+def knows_nothing(name: str) -> bool:
+    """Return that a name of a column is not known."""
+    return False
+
+
+def read_table(
+    path: Path,
+    header_row: int | None = None,
+    expected: str = EXPECTED,
+    knows: Callable[[str], bool] = knows_nothing,
+    sheet: str | None = None,
+) -> TextTable:
+    """Return the cells of a file of columns with a header.
 
     Parameters
     ----------
     path : pathlib.Path
-        The file: columns separated by tab, semicolon, comma, bar or spaces; ``#`` begins a comment.
+        A workbook, or a text file whose columns are separated by tab, semicolon, comma, bar or spaces; ``#`` begins a comment.
     header_row : int, optional
-        Row of the names of the columns; by default the first that is no comment, or below other text the only row of names
-        that has rows of as many cells with numbers below it.
+        Row of the names of the columns; by default the row of names above most rows of numbers, or the comment there if no
+        other row of names is.
     expected : str
         What to say of a file without a header.
+    knows : callable
+        Whether the caller knows a name of a column: a table with two names that are known comes before others.
+    sheet : str, optional
+        Sheet of a workbook; by default the one with most numbers.
 
     Returns
     -------
@@ -93,61 +128,53 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
     InputError
         If the file cannot be read, has no header, or a row has another number of cells than the header.
     """
-    if path.suffix.lower() in SPREADSHEETS and path.is_file():
-        text = text_of_spreadsheet(path)
-    else:
-        text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
-    filled = _filled(text)
-    skipped = 0
-    if header_row is not None:
-        filled = [(i, line) for i, line in filled if i >= header_row]
-        if not filled or filled[0][0] != header_row:
-            raise InputError(
-                f"{path}: row {header_row}, where header_row expects the header, is empty, a comment or not there."
-            )
-    if not filled:
-        raise InputError(f"{path} holds no data; {expected}.")
-    if header_row is None:
-        skipped = _header_at(filled)
-        filled = filled[skipped:]
-    number, first = filled[0]
-    separator = _separator(first)
-    header = tuple(cells_of(first, separator, path, number))
+    lines, notes, filled_up = _lines(path, sheet)
+    heading, same, others = _heading(path, lines, header_row, expected, knows)
+    separator, number = heading.separator, lines[heading.at].number
+    above = tuple((line.number, line.text) for line in lines[: heading.at])
+    header = heading.names
     elsewhere = "" if header_row or expected != EXPECTED else "; if the header is not in this row, set header_row in [fit]"
     if all(POINT.fullmatch(cell) or COMMA.fullmatch(cell) for cell in header):
         raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
-    if len(header) < 2:
+    if sum(map(bool, header)) < 2:
         raise InputError(
-            f"{path}: row {number} holds one column, {show(header[0])}; "
+            f"{path}: row {number} holds one column, {show(next(filter(None, header), ''))}; "
             f"separate the columns by semicolons, tabs or commas{elsewhere}."
         )
-    for name, times in Counter(header).items():
-        if name and times > 1:
-            raise InputError(
-                f"{path}: row {number} has the column {show(name)} twice; give each column its own name{elsewhere}."
-            )
-    rows, numbers = [], []
-    body, blocks = _one_table(filled, separator)
-    for i, line in body:
-        cells = _row(line, separator, len(header), path, i)
-        if len(cells) != len(header):
-            raise InputError(_ragged(path, i, line, cells, header, separator, elsewhere))
-        rows.append(tuple(cells))
-        numbers.append(i)
-    units: tuple[str, ...] = ()
-    if rows and not any(has_number(cell) for cell in rows[0]):
-        plain = all(cell.lower() in MISSING for cell in rows[0])
-        units = () if plain else tuple(cell.strip("[]()") for cell in rows[0])
-        if units:
-            rows, numbers = rows[1:], numbers[1:]
+    rows, numbers, steps, text = _body(path, lines, heading, same, others, filled_up, elsewhere)
     if not rows:
         raise InputError(f"{path} has a header in row {number} and no rows of numbers below it{elsewhere}.")
-    if blocks:
+    skipped = sum(not line.comment for line in lines[: heading.at])
+    if skipped:
+        notes += (f"{skipped} row{'s' * (skipped > 1)} of other text above the header skipped.",)
+    for other in others:
+        count = other.rows
+        if count > 1:
+            at = lines[other.at].number
+            notes += (
+                f"A table of {count} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
+            )
+    if text:
+        notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {_some(text)}.",)
+    units = heading.units
+    if len(set(steps)) > 1:
         header = (*header, BLOCK)
-        rows = [(*row, str(blocks[i])) for row, i in zip(rows, numbers, strict=True)]
+        rows = [(*row, str(step)) for row, step in zip(rows, steps, strict=True)]
         units = (*units, "") if units else ()
-    comma = _decimal_comma(path, header, rows, numbers)
-    return TextTable(str(path), header, tuple(rows), tuple(numbers), SEPARATORS.get(separator, "space"), comma, units, skipped)
+    table = TextTable(
+        str(path),
+        header,
+        tuple(rows),
+        tuple(numbers),
+        SEPARATORS.get(separator, "space"),
+        decimal_comma=False,
+        units_row=units,
+        written=tuple(dict.fromkeys(filter(None, heading.names))),
+        above=above,
+        notes=notes,
+    )
+    table = _with_errors_apart(_each_once(_one_below_another(table, heading.labels)))
+    return replace(table, decimal_comma=_decimal_comma(table))
 
 
 def read_two_columns(
@@ -212,76 +239,190 @@ def values_of(
     return values
 
 
-def _one_table(filled: list[tuple[int, str]], separator: str) -> tuple[list[tuple[int, str]], dict[int, int]]:
-    """Return the rows below a header that may come again above each step of a rig, and the step of each; text is left out.
+def _lines(path: Path, sheet: str | None) -> tuple[list[Line], tuple[str, ...], bool]:
+    """Return the lines that are not empty, notes on sheets, and whether short rows end with empty cells."""
+    if path.suffix.lower() in SPREADSHEETS and path.is_file():
+        found = sheet_of(path, sheet)
+        others = ", ".join(map(show, found.others))
+        note = f"Sheet {show(found.name)} read, not {others}; sheet = ... in [fit] chooses another." if others else ""
+        return [Line.of(*each) for each in found.lines], ((note,) if note else ()), True
+    if sheet is not None:
+        raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
+    text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
+    filled = ((i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|"))
+    return [Line.of(i, line) for i, line in filled], (), False
 
-    Text after the last row of numbers, such as "end of test", is left out too.
+
+def _heading(
+    path: Path, lines: list[Line], header_row: int | None, expected: str, knows: Callable[[str], bool]
+) -> tuple[Heading, list[Heading], list[Heading]]:
+    """Return the header of the table that is read, all that repeat it below, and those of other tables."""
+    plain = [i for i, line in enumerate(lines) if not line.comment]
+    if header_row is not None:
+        plain = [i for i in plain if lines[i].number >= header_row]
+        if not plain or lines[plain[0]].number != header_row:
+            raise InputError(
+                f"{path}: row {header_row}, where header_row expects the header, is empty, a comment or not there."
+            )
+    if not plain:
+        raise InputError(f"{path} holds no data; {expected}.")
+    found = headings_in(lines, knows)
+    tables: dict[str, list[Heading]] = {}
+    for each in found:
+        tables.setdefault(lines[each.at].text.strip(), []).append(each)
+    if header_row is not None or not tables:
+        asked = lines[plain[0]].text.strip()
+        own = [each for each in tables.get(asked, []) if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
+        return own[0], own, [each for each in found if each not in own and each.at > plain[0]]
+    ranked = sorted(tables.values(), key=lambda each: (min(each[0].known, 2), sum(one.rows for one in each)), reverse=True)
+    best = ranked[0]
+    rows = [sum(one.rows for one in each) for each in ranked]
+    for other, count in zip(ranked[1:], rows[1:], strict=True):
+        if min(other[0].known, 2) == min(best[0].known, 2) and 1 < rows[0] <= 2 * count:
+            first, second = sorted((lines[best[0].at].number, lines[other[0].at].number))
+            raise InputError(
+                f"{path}: rows {first} and {second} are headers of two tables of {rows[0]} and {count} rows; say which one to "
+                f"read, header_row = {first} or header_row = {second} in [fit]."
+                if expected == EXPECTED
+                else f"{path}: rows {first} and {second} are headers of two tables; {expected}."
+            )
+    return best[0], best, [each for each in found if each not in best]
+
+
+def _body(
+    path: Path,
+    lines: list[Line],
+    heading: Heading,
+    same: list[Heading],
+    others: list[Heading],
+    filled_up: bool,
+    elsewhere: str,
+) -> tuple[list[tuple[str, ...]], list[int], list[int], list[int]]:
+    """Return the rows below a header, number and step of each, and rows of text; the header may come again above each step."""
+    again = {each.first: each for each in same} | {each.at: each for each in same}
+    apart = {each.first for each in others}
+    width = len(heading.names)
+    rows, numbers, steps, text = list[tuple[str, ...]](), list[int](), list[int](), list[int]()
+    pending: list[tuple[Line, list[str]]] = []
+
+    def settle(*, header_follows: bool) -> None:
+        """Take rows of another width for text above the next header, or for rows of few numbers; else refuse them."""
+        for line, cells in pending:
+            if not header_follows and len(cells) != width and line.numbers > (width > 2):
+                raise InputError(_ragged(path, line, cells, heading, elsewhere))
+            text.append(line.number)
+        pending.clear()
+
+    step, i, skipping = 1, heading.below, False
+    while i < len(lines):
+        line = lines[i]
+        if i in again:
+            settle(header_follows=True)
+            step, i, skipping = step + bool(rows), again[i].below, False
+            continue
+        skipping = skipping or i in apart
+        i += 1
+        if skipping or line.comment:
+            continue
+        cells = heading.row(line.text, path, line.number, filled_up)
+        count = sum(map(has_number, cells))
+        if count == 0 and not line.numeric and (len(cells) != width or sum(map(bool, cells)) < 2):
+            text.append(line.number)
+        elif len(cells) != width or (len(same) > 1 and count < 2):
+            pending.append((line, cells))
+        else:
+            settle(header_follows=False)
+            rows.append(tuple(cells))
+            numbers.append(line.number)
+            steps.append(step)
+    settle(header_follows=False)
+    return rows, numbers, steps, [each for each in text if numbers and each < numbers[-1]]
+
+
+def _each_once(table: TextTable) -> TextTable:
+    """Return the table without columns that come again with the same name and cells, and without unnamed empty ones."""
+    seen: dict[str, list[tuple[str, ...]]] = {}
+    kept = []
+    for i, name in enumerate(table.header):
+        cells = tuple(row[i] for row in table.rows)
+        if name and cells not in seen.setdefault(name, []):
+            seen[name].append(cells)
+            kept.append(i)
+        elif not name and any(cells):
+            kept.append(i)
+    return table if len(kept) == len(table.header) else _with_columns(table, kept)
+
+
+def _with_columns(table: TextTable, kept: Sequence[int]) -> TextTable:
+    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
+    units = tuple(table.units_row[i] for i in kept) if table.units_row else ()
+    return replace(table, header=tuple(table.header[i] for i in kept), rows=rows, units_row=units)
+
+
+def _one_below_another(table: TextTable, labels: tuple[str, ...]) -> TextTable:
+    """Return the table with curves that stand side by side one below another, each with its name in a column.
+
+    Columns before the first label belong to all curves.  Without labels, columns whose names come again in the same order,
+    with other numbers, are curves too.
     """
-    head = filled[0][1].strip()
-    body = filled[1:]
-    while len(body) > 1 and separator not in body[-1][1] and not has_number(body[-1][1]):
-        body = body[:-1]
-    if not any(line.strip() == head for _, line in body):
-        return body, {}
-    kept, blocks, block = [], {}, 1
-    for i, line in body:
-        if line.strip() == head:
-            block += 1
-        elif sum(has_number(cell) for cell in cells_of(line, separator, Path(), i)) > 1:
-            kept.append((i, line))
-            blocks[i] = block
-    return kept, blocks
+    width = len(labels) or len(table.header)
+    if labels:
+        starts = [i for i, label in enumerate(labels) if label]
+        curves = [labels[i] for i in starts]
+    else:
+        period = next((n for n in range(2, width // 2 + 1) if table.header[n:width] == table.header[: width - n]), 0)
+        if not period or width % period or not all(table.header[:period]):
+            return table
+        starts = list(range(0, width, period))
+        if len({tuple(row[i : i + period] for row in table.rows) for i in starts}) < len(starts):
+            return table  # the same numbers again
+        curves = [str(k) for k in range(1, len(starts) + 1)]
+    blocks = [range(start, end) for start, end in zip(starts, [*starts[1:], width], strict=True)]
+    shared = [i for i in range(len(table.header)) if not starts[0] <= i < width]
+    names = list(dict.fromkeys(table.header[i] for block in blocks for i in block if table.header[i]))
+    at = [{table.header[i]: i for i in reversed(block) if table.header[i]} for block in blocks]
+    rows, numbers = [], []
+    for curve, where in zip(curves, at, strict=True):
+        for number, row in zip(table.numbers, table.rows, strict=True):
+            own = [row[where[name]] if name in where else "" for name in names]
+            if any(own):
+                rows.append((*(row[i] for i in shared), *own, curve))
+                numbers.append(number)
+    units = table.units_row
+    if units:
+        first = {name: i for where in reversed(at) for name, i in where.items()}
+        units = (*(units[i] for i in shared), *(units[first[name]] for name in names), "")
+    header = (*(table.header[i] for i in shared), *names, CURVE)
+    note = f"Curves side by side: {', '.join(map(show, curves))}."
+    return replace(table, header=header, rows=tuple(rows), numbers=tuple(numbers), units_row=units, notes=(*table.notes, note))
 
 
-def _filled(text: str) -> list[tuple[int, str]]:
-    """Return the lines that are neither empty nor comments, with their numbers."""
-    lines = enumerate(text.splitlines(), 1)
-    return [(i, line) for i, line in lines if line.strip(" \t;,|") and not line.lstrip().startswith("#")]
+def _with_errors_apart(table: TextTable) -> TextTable:
+    """Return the table with what follows a plus-minus sign in the cells of a column in one of its own."""
+    for at in reversed(range(len(table.header))):
+        cells = [row[at] for row in table.rows]
+        parts = [_PLUS_MINUS.split(cell) for cell in cells]
+        pairs = [len(part) == 2 and all(map(has_number, part)) for part in parts]
+        if not any(pairs) or not all(pair or cell.lower() in MISSING for pair, cell in zip(pairs, cells, strict=True)):
+            continue
+        words, unit = split_header(table.header[at])
+        name = f"{words} error [{unit}]" if unit else f"{words} error"
+        rows = tuple(
+            (*row[:at], *(part if pair else ("", "")), *row[at + 1 :])
+            for row, part, pair in zip(table.rows, parts, pairs, strict=True)
+        )
+        units = table.units_row and (*table.units_row[: at + 1], *table.units_row[at:])
+        header = (*table.header[: at + 1], name, *table.header[at + 1 :])
+        note = f"{show(table.header[at])}: what follows the plus-minus sign was taken for its standard error."
+        table = replace(table, header=header, rows=rows, units_row=units, notes=(*table.notes, note))
+    return table
 
 
-def _separator(line: str) -> str:
-    return next((mark for mark in SEPARATORS if mark in line), "")
-
-
-def _row(line: str, separator: str, width: int, path: Path, number: int) -> list[str]:
-    """Return the cells of a row; columns that the header separates by tabs may be separated by spaces in it."""
-    cells = cells_of(line, separator, path, number)
-    while len(cells) > width and not cells[-1]:
-        cells.pop()
-    if len(cells) != width and separator == "\t":
-        by_spaces = cells_of(line, "", path, number)
-        return by_spaces if len(by_spaces) == width else cells
-    return cells
-
-
-def _header_at(lines: list[tuple[int, str]]) -> int:
-    """Return the place of the header: that of the first line, unless only one below it has numbers below it as it should."""
-    found = [k for k in range(len(lines)) if _is_header(lines[k : k + 1 + LOOK_AHEAD])]
-    found = [k for k in found if k - 1 not in found]  # a row of units is none
-    same = {lines[k][1].strip() for k in found}  # a rig may write its header again above each step
-    return found[0] if len(same) == 1 and 0 not in found else 0
-
-
-def _is_header(lines: list[tuple[int, str]]) -> bool:
-    separator = _separator(lines[0][1])
-    try:
-        header, *rows = (cells_of(line, separator, Path(), 0) for _, line in lines)
-    except InputError:
-        return False
-    if len(header) < 2 or not all(header) or any(has_number(cell) for cell in header):
-        return False
-    rows = [_row(line, separator, len(header), Path(), 0) for _, line in lines[1:]]
-    numbers = [sum(has_number(cell) for cell in row) for row in rows]
-    return bool(rows) and all(len(row) == len(header) for row in rows) and max(numbers) > 1 and max(numbers[:2]) > 1
-
-
-def _ragged(
-    path: Path, number: int, line: str, cells: list[str], header: tuple[str, ...], separator: str, elsewhere: str
-) -> str:
-    said = f"{path}: row {number} has {len(cells)} cell{'s' * (len(cells) != 1)} where the header has {len(header)}"
-    wanted = len(header) - 1
-    other = next((name for mark, name in SEPARATORS.items() if mark != separator and line.count(mark) == wanted), None)
-    if separator == "," and len(cells) > len(header):
+def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:
+    width, separator = len(heading.names), heading.separator
+    said = f"{path}: row {line.number} has {len(cells)} cell{'s' * (len(cells) != 1)} where the header has {width}"
+    other = next((name for mark, name in SEPARATORS.items() if mark != separator and line.text.count(mark) == width - 1), None)
+    if separator == "," and len(cells) > width and all(re.fullmatch(r"[+-]?[0-9]+", cell) for cell in cells if cell):
         return f"{said}; commas cannot both separate columns and begin decimals: export with semicolons or tabs."
     if other:
         mark = SEPARATORS.get(separator, "space")
@@ -289,21 +430,29 @@ def _ragged(
     return f"{said}; use one separator, and leave a cell empty if a value is missing{elsewhere}."
 
 
-def _decimal_comma(path: Path, header: tuple[str, ...], rows: list[tuple[str, ...]], numbers: list[int]) -> bool:
+def _decimal_comma(table: TextTable) -> bool:
     """Return whether numbers have decimal commas; refuse a file that has both signs, where 1,234 could mean two things."""
     comma: tuple[int, str, str] | None = None
     point: tuple[int, str, str] | None = None
-    for number, row in zip(numbers, rows, strict=True):
-        for name, cell in zip(header, row, strict=True):
-            parts = WITH_UNIT.fullmatch(cell)
-            text = (parts[1] if parts else cell).strip()
+    for at, name in enumerate(table.header):
+        if not name:
+            continue
+        for number, row in zip(table.numbers, table.rows, strict=True):
+            parts = WITH_UNIT.fullmatch(row[at])
+            text = (parts[1] if parts else row[at]).strip()
             if comma is None and COMMA.fullmatch(text):
-                comma = number, name, cell
+                comma = number, name, row[at]
             elif point is None and "." in text and POINT.fullmatch(text):
-                point = number, name, cell
+                point = number, name, row[at]
+            if comma and point:
+                break
     if comma and point:
         raise InputError(
-            f"{path}: row {comma[0]}, column {show(comma[1])} has {show(comma[2])} with a comma and row {point[0]}, "
+            f"{table.path}: row {comma[0]}, column {show(comma[1])} has {show(comma[2])} with a comma and row {point[0]}, "
             f"column {show(point[1])} has {show(point[2])} with a point; use one decimal sign and no thousands separator."
         )
     return comma is not None
+
+
+def _some(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, numbers[:MANY])) + (", ..." if len(numbers) > MANY else "")

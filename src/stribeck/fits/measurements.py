@@ -19,9 +19,10 @@ from stribeck.files.cells import split_header
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
-from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column
+from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats
 from stribeck.fits.table.rig import prepared
+from stribeck.fits.table.strokes import without_stops
 from stribeck.fits.table.values import Values
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
@@ -150,11 +151,12 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         If the file cannot be read, or a value be used; the sentence names row and column.
     """
     settings = settings or FitSettings()
-    table = read_table(Path(path), settings.header_row)
+    table = with_errors_named(read_table(Path(path), settings.header_row, knows=known_name, sheet=settings.sheet))
     written = table.header
     table, made, run = prepared(table, settings, lambda meaning: has_column(table, settings, meaning))
     columns = columns_of(table, settings)
     abscissa = abscissa_of(table, columns, settings)
+    table = without_stops(table, columns[abscissa][0], columns["friction"], settings)
     reader = Values(table, settings)
     rows: list[Row] = []
     runs: list[str] = []
@@ -250,9 +252,7 @@ def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[
 def _notes(
     table: TextTable, columns: dict[str, list[str]], empty: list[int], made: tuple[str, ...] = (), run: str = ""
 ) -> tuple[str, ...]:
-    notes = []
-    if table.skipped:
-        notes.append(f"{table.skipped} row{'s' * (table.skipped > 1)} of other text above the header skipped.")
+    notes = list(table.notes)
     if table.decimal_comma:
         notes.append("Numbers were read with decimal commas.")
     if empty:

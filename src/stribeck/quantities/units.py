@@ -68,6 +68,7 @@ DIMENSIONS = {
     "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
     "kinematic": Dimension("a kinematic viscosity", "m^2/s", "46 cSt", {-6: "mm^2/s", 0: "m^2/s"}),
     "rotation": Dimension("an angular velocity", "rad/s", "1500 rpm", {0: "rad/s"}),
+    "torque": Dimension("a torque", "N*m", "2 mN*m", _prefixed("N*m", (-9, -6, -3, 0, 3))),
     "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
     "time": Dimension("a time", "s", "1 ms", _prefixed("s", (-9, -6, -3, 0))),
@@ -285,6 +286,9 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
 def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     """Return the exact SI value of one ``unit``, or raise the sentence that begins with ``received``."""
     unit = re.sub(r"(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda found: "^" + found[1].translate(_SUPERSCRIPTS), unit)
+    unit = re.sub(r"(?<=[A-Za-z])[-−](?=[1-4](?![0-9]))", "^-", unit)  # as in mm s-1
+    unit = re.sub(r"\bRPM\b", "rpm", unit)
+    unit = re.sub(r"\b([nuµμmck]?N)-?([cm]?m)\b", r"\1*\2", unit) if kind.unit == "N*m" else unit
     unit = re.sub(r"(?<=[A-Za-z])\s*[.·⋅]\s*(?=[A-Za-z])", "*", unit)
     for power, known in kind.steps.items():
         if unit in (known, known.replace("µ", "u")):  # without pint, which takes longer to import than a solve

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import header_words, is_called, split_header
+from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG
+from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["ABSCISSAS", "BARE", "Abscissa", "abscissa_of", "columns_of", "declared_for_rig", "has_column"]
+__all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
 
 Abscissa = Literal["speed", "speed_viscosity", "hersey_number"]
 
@@ -23,28 +26,58 @@ ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}
 """Headers of a speed that say that it is the sum."""
 
+_FRICTION = (
+    r"(?:(?:mean|average|avg|median|dynamic|kinetic|sliding|measured) )*"
+    r"(?:(?:friction|traction|frictional|fric)(?: (?:coefficient|coeff?|factor))|friction|cof|mue?|[µμ]|"
+    r"(?:coefficient|coeff?) of (?:(?:kinetic|dynamic|sliding) )?(?:friction|traction)|"
+    r"reib(?:ungs)?(?:wert|zahl|beiwert|koeffizient)|reibung)"
+    r"(?: (?:coefficient|cof|mu|[µμ]|mean|average|avg))?"
+)
+_ERROR = r"(?:err(?:or)?|uncertainty|sd|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
+
 WORDS = {
-    "speed": {"speed", "velocity", "sliding speed", "sliding velocity", "u", "v", *SUMS},
-    "speed_viscosity": {"eta u", "etau", "speed viscosity", "viscosity speed", "viscosity times speed"},
-    "hersey_number": {"hersey", "hersey number"},
-    "friction": {
-        *("friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"),
-        *("friction coeff", "traction coeff", "traction coefficient"),
-    },
-    "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
-    "curve": {"curve", "series", "sample"},
-    MADE_RATIO: {"slide to roll"},
+    "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|(?:gleit)?geschwindigkeit|" + "|".join(SUMS),
+    "speed_viscosity": "eta u|etau|speed viscosity|viscosity speed|viscosity times speed",
+    "hersey_number": "hersey|hersey number",
+    "friction": _FRICTION,
+    "error": rf"{_ERROR}|{_FRICTION} {_ERROR}|{_ERROR} (?:of )?{_FRICTION}",
+    "curve": "curve|series|sample",
+    MADE_RATIO: "slide to roll",
 } | {
-    row.name: {row.name.replace("_", " "), *row.headers}
+    row.name: "|".join(map(re.escape, (row.name.replace("_", " "), *row.headers)))
     for row in ROWS
     if not row.derived and row.name not in ("speed", "boundary_friction")
 }
-"""Headers that say what a column is, in lower case; in other languages [fit.columns] says it."""
+"""What the words of a header mean, in lower case; in other languages [fit.columns] says it."""
 
-BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
-"""Units of a friction coefficient."""
+OTHER_SPEED = (
+    r"(?:(?:mean|average|avg) (?=linear|sliding|tangential))?"
+    r"(?:(?:max|maximum|peak|linear|lin|sliding|tangential|circumferential|actual|measured|set|nominal|target|track|test|table|"
+    r"stage|stroke) )+(?:speed|velocity|vel)|vel"
+)
+"""Headers of a speed that is taken where there is none by a plainer name."""
 
-_FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
+_OF_ERROR = re.compile(rf"{_ERROR}|.* {_ERROR}|{_ERROR} .*")
+_LOGARITHM = re.compile(r"(?<![a-z])(?:log|lg|ln)(?:10|2|e)?(?![a-z])", re.IGNORECASE)
+_NO_COEFFICIENT = re.compile(
+    r"force|kraft|load|torque|moment|time|zeit|step|cycle|lap|point|run|no\b|nr\b|id\b|count|distance|temp", re.IGNORECASE
+)
+
+
+def known_name(name: str) -> bool:
+    """Return whether a header names something that is known, whatever its unit."""
+    return any(is_named(name, pattern) for pattern in (*WORDS.values(), OTHER_SPEED, *PATTERNS.values()))
+
+
+def with_errors_named(table: TextTable) -> TextTable:
+    """Return the table with each of several columns of the same name, such as 'SD', named after the column before it."""
+    header, of = list(table.header), ""
+    for at, name in enumerate(table.header):
+        if not is_named(name, _ERROR):
+            of = name
+        elif table.header.count(name) > 1:
+            header[at] = f"{header_words(of)} {name}"
+    return replace(table, header=tuple(header))
 
 
 def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
@@ -56,47 +89,155 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
             continue
         for text in texts:
             same = [name for name in table.header if is_called(name, text)]
-            if len(same) != 1:
+            if not same:
                 raise InputError(
                     f"{table.path}: {_listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}."
                 )
+            _refuse_twice(table, same, meaning)
+            if meaning in (*ABSCISSAS, "friction"):
+                _refuse_logarithm(table, same[0], meaning)
             found.setdefault(meaning, []).append(same[0])
-    declared = {name for names in found.values() for name in names}
-    declared |= {name for name in table.header if declared_for_rig(name, settings)}
-    for name in table.header:
-        words = header_words(name)
-        for meaning, known in WORDS.items():
-            if name in declared or words not in known or meaning in settings.columns:
-                continue
-            if meaning == "speed" and MADE_SPEED in table.header and name != MADE_SPEED:
-                continue
-            if meaning in found:
-                raise InputError(
-                    f"{table.path}: the columns {show(found[meaning][0])} and {show(name)} both look like {meaning}; "
-                    f"say which in [fit.columns] of the case."
-                )
-            found[meaning] = [name]
+    for meaning in WORDS:
+        if meaning in settings.columns or meaning == "error":
+            continue
+        names = [name for name in _candidates(table, settings, meaning) if not any(name in each for each in found.values())]
+        if meaning == "speed" and MADE_SPEED in table.header:
+            names = [MADE_SPEED]
+        if not names:
+            continue
+        _refuse_twice(table, names, meaning)
+        found[meaning] = names[:1]
+    error = _error_of(table, settings, found)
+    if error:
+        found["error"] = [error]
     if "friction" not in found or not any(name in found for name in ABSCISSAS):
-        missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
-        used = {name for names in found.values() for name in names}
-        unknown = [name for name in table.header if name not in used] or [""]
-        speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", split_header(name)[1])]
-        bare = [name for name in unknown if name not in speeds and split_header(name)[1] in BARE and not _FORCE.search(name)]
-        if "friction" in missing and not bare and any(_FORCE.search(name) for name in unknown):
+        _ask_for_columns(table, found)
+    return found
+
+
+def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[str]:
+    """Return the columns that may be meant: of the plainest names, and of a fitting unit if there are such."""
+    free = [name for name in table.header if name and not _declared(name, settings)]
+    if meaning != "error":
+        free = [name for name in free if not _LOGARITHM.search(name)]
+    for pattern in (WORDS[meaning], *([OTHER_SPEED] if meaning == "speed" else [])):
+        names = [name for name in free if is_named(name, pattern)]
+        fitting = [name for name in names if _fits(table, name, meaning, settings)]
+        # A speed or a friction of another unit is refused by its unit; other columns with one mean something else.
+        if names and (fitting or meaning in ("friction", *ABSCISSAS)):
+            return fitting or names
+    return []
+
+
+def _fits(table: TextTable, name: str, meaning: str, settings: FitSettings) -> bool:
+    """Return whether a column has a unit of what it may mean, or none."""
+    unit = settings.units.get(meaning) or table.unit(name)
+    if not unit or meaning == "curve":
+        return True
+    dimension = DIMENSION.get(meaning) or settings.inputs.quantities[meaning].dimension
+    return unit in BARE if dimension == "number" else has_dimension(unit, dimension)
+
+
+def _refuse_twice(table: TextTable, names: Sequence[str], meaning: str) -> None:
+    """Refuse columns that may mean the same and hold different cells."""
+    first = table.header.index(names[0])
+    for at, name in enumerate(table.header):
+        if at == first or name not in names or all(row[at] == row[first] for row in table.rows):
+            continue
+        if name == names[0]:
+            raise InputError(
+                f"{table.path}: the column {show(name)} is there twice, with different numbers, and may be {meaning}; give "
+                "each column its own name."
+            )
+        raise InputError(
+            f"{table.path}: the columns {show(names[0])} and {show(name)} both look like {meaning}; "
+            f"say which in [fit.columns] of the case."
+        )
+
+
+def _refuse_logarithm(table: TextTable, name: str, meaning: str) -> None:
+    if _LOGARITHM.search(name):
+        noun = meaning.replace("_", " ")
+        raise InputError(
+            f"{table.path}: {show(name)} is a logarithm, which is no {noun}; add a column with the {noun} itself."
+        )
+
+
+def _error_of(table: TextTable, settings: FitSettings, found: dict[str, list[str]]) -> str:
+    """Return the column of the standard error of friction; empty if there is none.
+
+    A column that is only called 'SD' belongs to the column of friction or speed before it.
+    """
+    if "error" in settings.columns or "friction" not in found:
+        return ""
+    names = [name for name in _candidates(table, settings, "error") if not any(name in each for each in found.values())]
+    named = [name for name in names if re.search(_FRICTION, header_words(name))]
+    if named:
+        _refuse_twice(table, named, "error")
+        return named[0]
+    at = table.header.index(found["friction"][0])
+    others = {table.header.index(name) for meaning in ABSCISSAS for name in found.get(meaning, ())}
+    places = [i for i, name in enumerate(table.header) if name in names]
+    own = [i for i in places if i > at and not any(at < other < i for other in others)]
+    if not own and len(places) == 1 and places[0] - 1 not in others:
+        own = places
+    return table.header[own[0]] if own and table.header[at] in table.written else ""
+
+
+def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
+    """Refuse a table without speed or friction, with what is known of its columns."""
+    missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
+    for name in table.written:
+        plain = _LOGARITHM.sub(" ", name).replace("(", " ").replace(")", " ")
+        for meaning in missing:
+            if _LOGARITHM.search(name) and any(is_named(plain, WORDS[each]) for each in _alike(meaning)):
+                _refuse_logarithm(table, name, meaning)
+    used = {name for names in found.values() for name in names}
+    unknown = [name for name in table.written if name not in used and name in table.header and not _LOGARITHM.search(name)]
+    unknown = [name for name in unknown if not _OF_ERROR.fullmatch(header_words(name))]
+    examples = {
+        "speed": [name for name in unknown if has_dimension(table.unit(name), "speed")],
+        "friction": [name for name in unknown if table.unit(name) in BARE and _may_be_friction(table, name)],
+    }
+    if "friction" in missing and not examples["friction"]:
+        forces = [name for name in table.written if _is_force(name)]
+        if forces:
             raise InputError(
                 f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
                 "friction, the friction force over the normal force."
             )
-        examples = {"speed": (speeds or unknown)[0], "friction": (bare or unknown)[-1]}
-        raise InputError(
-            f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
-            f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."
-        )
-    return found
+    if [name.lower() for name in unknown] == ["x", "y"]:
+        examples = {"speed": unknown[:1], "friction": unknown[1:]}  # of a program that reads curves off pictures
+    sure = [f"{name} = {show(examples[name][0])}" for name in missing if len(examples[name]) == 1]
+    raise InputError(
+        f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
+        f"the case{', as in ' if sure else ''}{' and '.join(sure)}{_and_units(table, examples['speed'], missing)}."
+    )
+
+
+def _and_units(table: TextTable, speeds: list[str], missing: list[str]) -> str:
+    return ", and the unit of the speed in [fit.units]" if "speed" in missing and not any(map(table.unit, speeds)) else ""
+
+
+def _alike(meaning: str) -> tuple[str, ...]:
+    return ABSCISSAS if meaning == "speed" else (meaning,)
+
+
+def _is_force(name: str) -> bool:
+    return is_named(name, PATTERNS["friction_force"]) or split_header(name)[1] in ("N", "mN")
+
+
+def _may_be_friction(table: TextTable, name: str) -> bool:
+    """Return whether a column could hold friction coefficients: positive numbers, not all alike, that count nothing."""
+    if _NO_COEFFICIENT.search(name):
+        return False
+    read = [number_of(cell, "," if table.decimal_comma else ".") for cell in table.column(name)]
+    values = [each[0] for each in read if each is not None]
+    return 2 * len(values) > len(read) and (len(set(values)) > 1 or len(read) == 1) and any(value > 0 for value in values)
 
 
 def _listed(table: TextTable) -> str:
-    return f"the columns are {', '.join(show(name) for name in table.header if name)} (separated by {table.separator}s)"
+    return f"the columns are {', '.join(map(show, table.written))} (separated by {table.separator}s)"
 
 
 def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSettings) -> Abscissa:
@@ -113,7 +254,7 @@ def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSe
 
 def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:
     """Refuse an abscissa of two moving surfaces of which nobody said whether it holds their mean speed or the sum."""
-    ratio = any(re.fullmatch(PATTERNS["slide_to_roll"], header_words(each)) for each in table.header)
+    ratio = any(is_named(each, PATTERNS["slide_to_roll"]) for each in table.header)
     if header_words(name) in SUMS or not (ratio or settings.rolls):
         return
     said = " or ".join(f"{each:g}" for each in settings.ratios)
@@ -131,19 +272,22 @@ def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: 
 
 
 def has_column(table: TextTable, settings: FitSettings, meaning: str) -> bool:
-    """Return whether a table has an unambiguous column of friction, or of an abscissa."""
-    wanted = ABSCISSAS if meaning == "speed" else (meaning,)
+    """Return whether a table has a column of friction, or of an abscissa, in a unit of it."""
+    wanted = _alike(meaning)
     if any(each in settings.columns for each in wanted):
         return True
-    words = {header_words(name) for name in table.header if not declared_for_rig(name, settings)}
     # Beside these a sliding speed is the difference of the surface speeds, and the speed their sum.
     rolling = [PATTERNS[each] for each in ("slide_to_roll", "entrainment_speed", "surface_speeds")]
-    rolls = settings.rolls or any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
-    sliding = {"sliding speed", "sliding velocity"} if rolls else set()
-    return any(words & (WORDS[each] - sliding) for each in wanted)
+    rolls = settings.rolls or any(is_named(name, pattern) for pattern in rolling for name in table.header)
+    return any(
+        _fits(table, name, each, settings)
+        for each in wanted
+        for name in _candidates(table, settings, each)
+        if not (rolls and is_named(name, PATTERNS["sliding_speed"]))
+    )
 
 
-def declared_for_rig(name: str, settings: FitSettings) -> bool:
-    """Return whether the settings say that a column is one of a rig."""
-    texts = [text for meaning in RIG for text in np.atleast_1d(settings.columns.get(meaning, [])).tolist()]
+def _declared(name: str, settings: FitSettings) -> bool:
+    """Return whether the settings say what a column is."""
+    texts = [text for wanted in settings.columns.values() for text in np.atleast_1d(wanted).tolist()]
     return any(is_called(name, text) for text in texts)

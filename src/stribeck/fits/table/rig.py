@@ -8,38 +8,74 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, header_words, is_called, number_of, split_header
+from stribeck.files.cells import MISSING, header_words, is_called, is_named, number_of
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.repeats import FEWEST
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.fits.table.units import has_dimension, si_factor
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_SPEED", "RIG", "prepared"]
 
 RIG = ("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run")
 """What a column of a rig may be beside those of a friction curve."""
 
+_FORCE_OF = r"(?:(?:normal|ball|contact|vertical|applied|nominal|set|target|actual|measured|axial|mean|average|test) )"
+_SPEED = r"(?:speed|velocity)"
+
 PATTERNS = {
-    "entrainment_speed": r"(mean|average|entrain\w*|rolling)( \w+)? (speed|velocity)|(speed|velocity) (mean|rolling)",
-    "sliding_speed": r"(sliding|slip|rubbing) (speed|velocity)",
-    "surface_speeds": r"(ball|disc|disk|upper|lower|roller|ring) ?\d? (speed|velocity)",
+    "entrainment_speed": rf"(?:mean|average)(?: (?:entrain\w*|rolling|surface))? {_SPEED}|"
+    rf"(?:entrain\w*|rolling)(?: \w+)? {_SPEED}|{_SPEED} (?:mean|rolling)",
+    "sliding_speed": rf"(?:(?:mean|average) )?(?:sliding|slip|rubbing) {_SPEED}",
+    "surface_speeds": rf"(?:ball|disc|disk|upper|lower|roller|ring) ?\d? {_SPEED}",
     "slide_to_roll": r"srr|slide (to )?roll( ratio)?|slip ratio",
-    "friction_force": r"(friction|traction|tangential|lateral|shear) force|f ?[xtf]|ft|reibkraft",
-    "normal_force": r"(normal|ball|contact|vertical|applied) (force|load)|f ?[zn]|normalkraft|load",
+    "friction_force": r"(?:mean |average )?(?:friction(?:al)?|traction|tangential|lateral|shear) force|f ?[xtf]|ft|"
+    r"reib(?:ungs)?kraft|friction",
+    "normal_force": rf"{_FORCE_OF}+force|{_FORCE_OF}*load|f ?[zn]|normalkraft",
     "run": r"run|repeat|repetition|cycle|stroke|pass|step|sweep|test( no)?|lauf",
+    "rotation": rf"rpm|n|(?:rotation(?:al)?|rotary|spindle|angular|shaft|disc|disk|motor|drive|set|actual)? ?{_SPEED}|"
+    r"rotation|drehzahl|rotational frequency",
+    "torque": r"(?:friction(?:al)? |reib|dreh)?(?:torque|moment)",
 }
 """What the words of a header mean, in lower case."""
+
+TRACK = (
+    r"(?:(?:ball|disc|disk|wear|sliding|test|friction) )*track (?:radius|diameter)|(?:reib)?spur(?:radius|durchmesser)|radius"
+)
+"""Names of the radius or diameter of a track, in a header or in text above it."""
+
+ARM = r"(?:(?:torque|lever|moment|force|friction) )?arm(?: length)?|hebelarm"
+"""Names of the arm of a torque."""
+
+DIMENSIONS_OF = {
+    "entrainment_speed": "speed",
+    "sliding_speed": "speed",
+    "surface_speeds": "speed",
+    "friction_force": "force",
+    "normal_force": "force",
+    "rotation": "rotation",
+    "torque": "torque",
+}
+"""Dimension of what a rig writes; a column of another one is something else."""
 
 MADE_SPEED = "sum of speeds [m/s]"
 """Header of the column of the speed that was made of others."""
 
+MADE_FRICTION = "friction"
+"""Header of the column of friction that was made of forces."""
+
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
 """Headers of the columns of what is constant along each curve, made of columns that were measured."""
+
+_STATED = re.compile(
+    r"(?P<name>[^\d:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
+    r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[a-zµμ]*)[\])]?[\s;,]*"
+)
 
 NEXT_LEVEL = 1.1
 """Ratio of neighbouring values from which they belong to two settings, and not to the noise of one."""
@@ -79,12 +115,12 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     """
     found = _rig_columns(table, settings)
     said = []
-    if not known("friction") and "friction_force" in found and "normal_force" in found:
-        force, normal = found["friction_force"][0], found["normal_force"][0]
-        pairs = zip(_numbers(table, force, "force", "N"), _numbers(table, normal, "force", "N"), strict=True)
-        values = [abs(f / n) if f is not None and n else None for f, n in pairs]
-        table = _with_column(table, "friction", values)
-        said.append(f"friction = |{show(force)} / {show(normal)}|")
+    if not known("friction"):
+        made = _friction(table, found, settings)
+        if made is not None:
+            values, sentence = made
+            table = _with_column(table, MADE_FRICTION, values)
+            said.append(sentence)
     if not known("speed"):
         made = _speed(table, found, settings)
         if made is not None:
@@ -139,7 +175,7 @@ def _levels(values: Sequence[float]) -> dict[float, float]:
 
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
-    """Return what is in the table -> headers of its columns; those of the settings first."""
+    """Return what is in the table -> headers of its columns; those of the settings first, set values after measured ones."""
     found: dict[str, list[str]] = {}
     declared = set()
     for meaning, wanted in settings.columns.items():
@@ -147,20 +183,93 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
         declared |= {name for name in table.header for text in texts if is_called(name, text)}
         if meaning in RIG:
             found[meaning] = [name for name in table.header if any(is_called(name, text) for text in texts)]
-    for name in table.header:
+    for name in filter(None, dict.fromkeys(table.header)):
         for meaning, pattern in PATTERNS.items():
-            if name not in declared and meaning not in settings.columns and re.fullmatch(pattern, header_words(name)):
-                if meaning == "normal_force" and split_header(name)[1] not in ("N", "mN", "kN"):
-                    continue
-                found.setdefault(meaning, []).append(name)
-                break
+            if name in declared or meaning in settings.columns or not is_named(name, pattern):
+                continue
+            unit = unit_in(table, name, meaning)
+            if meaning in DIMENSIONS_OF and unit and not has_dimension(unit, DIMENSIONS_OF[meaning]):
+                continue
+            if not unit and meaning in ("rotation", "torque") or (not unit and header_words(name) == "friction"):
+                continue
+            found.setdefault(meaning, []).append(name)
+            break
+    for names in found.values():
+        names.sort(key=lambda name: re.search(r"\b(?:nominal|set|target)\b", header_words(name)) is not None)
     return found
+
+
+def unit_in(table: TextTable, name: str, meaning: str) -> str:
+    """Return the unit of a column; one that is called RPM needs none."""
+    unit = table.unit(name)
+    return "rpm" if meaning == "rotation" and not unit and header_words(name) == "rpm" else unit
 
 
 def _rounded(value: float) -> float:
     """Return a value with two digits if that changes it by less than 1 %, else with three."""
     rough = float(f"{value:.2g}")
     return rough if abs(rough / value - 1) < 0.01 else float(f"{value:.3g}")
+
+
+def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
+    """Return friction coefficients and how they were obtained; None if the rig gives none."""
+    if "normal_force" not in found:
+        return None
+    normal = found["normal_force"][0]
+    if "friction_force" in found:
+        force = found["friction_force"][0]
+        if table.unit(force) and table.unit(force) == table.unit(normal):
+            pairs = zip(_cells(table, force), _cells(table, normal), strict=True)  # the unit cancels
+        else:
+            pairs = zip(_numbers(table, force, "force", "N"), _numbers(table, normal, "force", "N"), strict=True)
+        return _quotients(pairs), f"friction = |{show(force)} / {show(normal)}|"
+    if "torque" in found:
+        torque = found["torque"][0]
+        arm = _length(table, ARM, settings.arm)
+        if arm is None:
+            raise InputError(
+                f"{table.path}: {show(torque)} is a torque; its arm makes it a friction force: say arm = '20 mm' in [fit] of "
+                f"the case, or add a column 'arm [mm]'. The columns are {', '.join(map(show, table.written))}."
+            )
+        lengths, origin = arm
+        forces = zip(_numbers(table, torque, "torque", "mN m"), lengths, strict=True)
+        values = [None if moment is None or not length else moment / length for moment, length in forces]
+        pairs = zip(values, _numbers(table, normal, "force", "N"), strict=True)
+        return _quotients(pairs), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
+    return None
+
+
+def _quotients(pairs: Iterable[tuple[float | None, float | None]]) -> list[float | None]:
+    return [abs(f / n) if f is not None and n else None for f, n in pairs]
+
+
+def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[float | None], str] | None:
+    """Return a length for each row and where it is from: the case, a column, or a line above the header; None if nowhere.
+
+    A diameter is halved.
+    """
+    if given is not None:
+        return [given] * len(table.rows), f"{1e3 * given:g} mm of the case"
+    for name in filter(None, table.header):
+        if is_named(name, pattern) and has_dimension(table.unit(name) or "-", "length"):
+            factor = 0.5 if _is_diameter(name) else 1.0
+            values = _numbers(table, name, "length", "mm")
+            return [None if value is None else factor * value for value in values], f"of column {show(name)}"
+    for number, text in table.above:
+        found = _STATED.fullmatch(text.strip())
+        if not found or not is_named(found["name"].strip(), pattern):
+            continue
+        unit = next((each for each in found.group("before", "after") if each), "").strip()
+        read = number_of(found["value"], "," if "," in found["value"] else ".")
+        if not has_dimension(unit or "-", "length") or read is None:
+            continue
+        length = read[0] * si_factor(unit, "length", found["name"]) * (0.5 if _is_diameter(found["name"]) else 1.0)
+        return [length] * len(table.rows), f"{1e3 * length:g} mm by row {number}"
+    return None
+
+
+def _is_diameter(name: str) -> bool:
+    return re.search("diameter|durchmesser", name, re.IGNORECASE) is not None
 
 
 def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
@@ -174,6 +283,10 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
         pairs = zip(_numbers(table, first, "speed", "m/s"), _numbers(table, second, "speed", "m/s"), strict=True)
         values = [None if a is None or b is None else abs(a + b) for a, b in pairs]
         return values, f"speed = {show(first)} + {show(second)}"
+    if len(found.get("surface_speeds", [])) == 1 and not settings.rolls and "slide_to_roll" not in found:
+        name = found["surface_speeds"][0]
+        values = [None if value is None else abs(value) for value in _numbers(table, name, "speed", "m/s")]
+        return values, f"speed = {show(name)}, with the other surface at rest"
     if "sliding_speed" in found and "slide_to_roll" in found:
         name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
         pairs = zip(_numbers(table, name, "speed", "m/s"), _ratios(table, ratio), strict=True)
@@ -193,22 +306,43 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
             values,
             f"speed = 2 x {show(name)} / {settings.ratios[0]:g}, the slide-to-roll ratio; the sum of the surface speeds",
         )
+    if "rotation" in found:
+        return _speed_of_rotation(table, found, settings)
     return None
+
+
+def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str]:
+    """Return the speed on a track that turns, and how it was obtained."""
+    name = found["rotation"][0]
+    if settings.rolls or "slide_to_roll" in found or len(found["rotation"]) > 1:
+        raise InputError(
+            f"{table.path}: {show(name)} is the rotation of one surface where both move; write a column 'mean speed' or "
+            "'sum of speeds'."
+        )
+    radius = _length(table, TRACK, settings.track_radius)
+    if radius is None:
+        raise InputError(
+            f"{table.path}: {show(name)} is a rotation; the radius of its track makes it a speed: say track_radius = '20 mm' "
+            "in [fit] of the case, or add a column 'track radius [mm]'."
+        )
+    lengths, origin = radius
+    pairs = zip(_numbers(table, name, "rotation", "rpm"), lengths, strict=True)
+    values = [None if turns is None or length is None else turns * length for turns, length in pairs]
+    return values, f"speed = {show(name)} x the radius of the track, {origin}"
 
 
 def _ratios(table: TextTable, name: str) -> list[float | None]:
     """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
-    factor = 0.01 if split_header(name)[1] == "%" else 1.0
+    factor = 0.01 if table.unit(name) == "%" else 1.0
     return [None if value is None else factor * value for value in _cells(table, name)]
 
 
 def _numbers(table: TextTable, name: str, dimension: str, unit: str) -> list[float | None]:
     """Return the numbers of a column in SI units."""
-    at = table.header.index(name)
-    written = split_header(name)[1] or (table.units_row[at] if table.units_row else "")
+    written = unit_in(table, name, dimension)
     if not written:
         raise InputError(f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{unit}]'.")
-    factor = to_si(f"1 {written}", dimension, f"the unit of column {show(name)}")
+    factor = si_factor(written, dimension, f"the unit of column {show(name)}")
     return [None if value is None else factor * value for value in _cells(table, name)]
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING, number_of, split_header
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.columns import ABSCISSAS, BARE
+from stribeck.fits.table.columns import ABSCISSAS
+from stribeck.fits.table.units import BARE, DIMENSION
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Values"]
-
-DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
 
 LARGEST_FRICTION = 10.0
 """Friction coefficient from which percent are suspected."""
@@ -70,19 +69,6 @@ class Values:
     def _checked(self, value: float, cell: str, meaning: str, where: str) -> float:
         if self.settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
             value = abs(value)
-        if meaning in ABSCISSAS and value <= 0:
-            kind = "negative" if value < 0 else "zero, which is static friction and not a point of the curve"
-            raise InputError(
-                f"{where}: {show(cell)} is {kind}; take the row out, or set magnitudes = true in [fit] where the sign "
-                "is the direction of a stroke."
-                if value < 0
-                else f"{where}: {show(cell)} is {kind}; take the row out."
-            )
-        if meaning == "friction" and value <= 0:
-            raise InputError(
-                f"{where}: {show(cell)} must be positive; take the row out, correct the zero of the force, or set "
-                "magnitudes = true in [fit] where the sign is the direction of a stroke."
-            )
         if meaning == "friction" and value > LARGEST_FRICTION:
             raise InputError(
                 f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "

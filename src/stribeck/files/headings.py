@@ -1,0 +1,245 @@
+"""Headers of tables in text: which line names the columns, which gives units, which names curves side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Self
+
+from stribeck.files.cells import MISSING, cells_of, has_number, looks_like_units
+from stribeck.quantities.units import InputError
+
+__all__ = ["Heading", "Line", "headings_in"]
+
+MARKS = ("\t", ";", ",", "|")
+"""What separates columns, beside white space: what comes first here wins where a line has several."""
+
+MOST_LINES = 4
+"""Lines above rows of numbers that may name columns, units and curves."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line that is not empty.
+
+    Parameters
+    ----------
+    number : int
+        Its row in the file.
+    text : str
+        Its text, without the sign of a comment.
+    comment : bool
+        Whether it began with one.
+    numbers : int
+        How many of its cells are numbers.
+    """
+
+    number: int
+    text: str
+    comment: bool
+    numbers: int
+
+    @classmethod
+    def of(cls, number: int, text: str) -> Self:
+        """Return a line of a file."""
+        comment = text.lstrip().startswith("#")
+        text = text.lstrip().lstrip("#") if comment else text
+        return cls(number, text, comment, 0 if comment else _numbers_in(text))
+
+    @property
+    def numeric(self) -> bool:
+        """Whether two of its cells or more are numbers."""
+        return self.numbers > 1
+
+
+@dataclass(frozen=True)
+class Heading:
+    """The lines between text or numbers above and the numbers of a table.
+
+    Parameters
+    ----------
+    at : int
+        Place of the names among the lines.
+    first : int
+        Place of the first line that belongs to the table.
+    below : int
+        Place of the first line below the heading.
+    separator : str
+        What separates the columns; empty for white space.
+    names : tuple of str
+        The names, empty for a column without one.
+    units : tuple of str
+        Units below the names; empty if there are none.
+    labels : tuple of str
+        Names of curves above the names or below them; empty if there are none.
+    known : int
+        Names that the caller knows.
+    rows : int
+        Lines of numbers below it.
+    """
+
+    at: int
+    first: int
+    below: int
+    separator: str
+    names: tuple[str, ...]
+    units: tuple[str, ...] = ()
+    labels: tuple[str, ...] = ()
+    known: int = 0
+    rows: int = 0
+
+    @classmethod
+    def at_line(cls, lines: Sequence[Line], i: int) -> Self:
+        """Return the heading whose names stand in a line, whatever is below."""
+        separator = _separator(lines[i].text)
+        names = tuple(_trimmed(cells_of(lines[i].text, separator, Path(), lines[i].number)))
+        below = i + 1
+        while below < min(len(lines), i + MOST_LINES) and not lines[below].comment and not lines[below].numbers:
+            below += 1
+        plain = cls(at=i, first=i, below=below, separator=separator, names=names)
+        return plain if below == len(lines) else plain._with_others(lines, range(i, below))
+
+    def row(self, text: str, path: Path, number: int, filled_up: bool = False) -> list[str]:
+        """Return the cells of a row, with as many as there are names if what differs is empty."""
+        width = len(self.names)
+        cells = cells_of(text, self.separator, path, number)
+        while len(cells) > width and not cells[-1]:
+            cells.pop()
+        if len(cells) != width and self.separator == "\t":
+            by_spaces = cells_of(text, "", path, number)
+            cells = by_spaces if len(by_spaces) == width else cells
+        if len(cells) < width and (filled_up or not any(self.names[len(cells) :])):
+            cells += [""] * (width - len(cells))
+        return cells
+
+    def fits(self, line: Line) -> bool:
+        """Return whether a line has a cell for each name."""
+        try:
+            return len(self.row(line.text, Path(), line.number, filled_up=self.separator == "\t")) == len(self.names)
+        except InputError:
+            return False
+
+    def _with_others(self, lines: Sequence[Line], stack: Sequence[int]) -> Self:
+        """Return the heading with the units and labels that other lines of the stack give."""
+        units: tuple[str, ...] = ()
+        labels: tuple[str, ...] = ()
+        first = self.at
+        for i in sorted(stack, key=lambda i: (i < self.at, abs(i - self.at))):
+            cells = () if i == self.at else tuple(self._padded(lines[i]))
+            if not cells:
+                continue
+            if i > self.at and not units and _are_units(cells):
+                units = tuple("" if cell.lower() in MISSING else cell.strip("[]()") for cell in cells)
+            elif not labels and self._tells_apart(cells):
+                labels, first = cells, min(first, i)
+        return replace(self, units=units, labels=labels, first=first)
+
+    def _padded(self, line: Line) -> list[str]:
+        try:
+            cells = self.row(line.text, Path(), line.number, filled_up=True)
+        except InputError:
+            return []
+        return cells if len(cells) == len(self.names) else []
+
+    def _tells_apart(self, labels: Sequence[str]) -> bool:
+        """Return whether labels tell columns of the same name apart."""
+        starts = [i for i, label in enumerate(labels) if label]
+        blocks = [self.names[i:j] for i, j in zip(starts, [*starts[1:], len(self.names)], strict=True)]
+        repeated = {name for name in self.names if name and self.names.count(name) > 1}
+        return len({labels[i] for i in starts}) == len(starts) > 1 and all(
+            repeated & set(block) and all(block.count(name) < 2 for name in repeated) for block in blocks
+        )
+
+
+def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Heading]:
+    """Return the headings of all tables among lines, from above.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        The lines of a file.
+    knows : callable
+        Whether the caller knows a name.
+
+    Returns
+    -------
+    list of Heading
+        One for each run of rows of numbers below names of columns.
+    """
+    found: list[Heading] = []
+    stack: list[int] = []
+    comments: list[int] = []
+    for i, line in enumerate(lines):
+        if line.comment:
+            comments.append(i)
+        elif not line.numeric:
+            stack.append(i)
+        else:
+            if stack or (comments and not found):
+                # A comment names the columns only where nothing else does.
+                heading = _best(lines, stack[-MOST_LINES:], i, knows) or (
+                    _best(lines, comments[-MOST_LINES:], i, knows) if not found else None
+                )
+                if heading:
+                    found.append(heading)
+            stack, comments = [], []
+    ends = [*(each.first for each in found), len(lines)][1:]
+    counts = [sum(line.numeric for line in lines[each.below : end]) for each, end in zip(found, ends, strict=False)]
+    return [replace(each, rows=rows) for each, rows in zip(found, counts, strict=True)]
+
+
+def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callable[[str], bool]) -> Heading | None:
+    """Return the heading of rows of numbers whose names are known best, or most, or stand highest; None if none fits."""
+    fitting = []
+    for i in stack:
+        for mark in _separators(lines[i]):
+            names = tuple(_trimmed(_split(lines[i].text, mark)))
+            given = [name for name in names if name]
+            separator = _separator(lines[below].text) if lines[i].comment else mark
+            heading = Heading(at=i, first=i, below=below, separator=separator, names=names)
+            if len(given) < 2 or any(map(has_number, names)) or not heading.fits(lines[below]):
+                continue
+            fitting.append(replace(heading, known=len({name for name in given if knows(name)})))
+            break
+    if not fitting:
+        return None
+    best = max(fitting, key=lambda each: (not _are_units(each.names), each.known, sum(map(bool, each.names)), -each.at))
+    return best._with_others(lines, stack)
+
+
+def _separators(line: Line) -> tuple[str, ...]:
+    """Return what may separate names in a line; a comment need not have the separator of the numbers."""
+    return (*(mark for mark in MARKS if mark in line.text), "") if line.comment else (_separator(line.text),)
+
+
+def _separator(text: str) -> str:
+    return next((mark for mark in MARKS if mark in text), "")
+
+
+def _split(text: str, separator: str) -> list[str]:
+    try:
+        return cells_of(text, separator, Path(), 0)
+    except InputError:
+        return []
+
+
+def _trimmed(cells: list[str]) -> list[str]:
+    """Return cells without the empty ones at the end."""
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells
+
+
+def _numbers_in(text: str) -> int:
+    """Return how many cells of a line are numbers, taken for several where its quotes are wrong."""
+    try:
+        return sum(map(has_number, cells_of(text, _separator(text), Path(), 0)))
+    except InputError:
+        return sum(sign.isdigit() for sign in text)
+
+
+def _are_units(cells: Sequence[str]) -> bool:
+    """Return whether most cells are units and none a number."""
+    given = [cell for cell in cells if cell.lower() not in MISSING]
+    return bool(given) and 2 * sum(map(looks_like_units, given)) > len(given)

@@ -1,0 +1,128 @@
+"""Rows of strokes to and fro: those at rest, and those in which friction has not turned round with the speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.cells import MISSING, number_of
+from stribeck.files.text_table import TextTable
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["without_stops"]
+
+AT_REST = 1e-9
+"""Speed over the largest of the file below which it is zero but for rounding."""
+
+MANY = 10
+"""Rows that a sentence lists."""
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Rows of one kind, and what is said of one and of several of them."""
+
+    name: str
+    rows: Flags
+    one: str
+    several: str
+
+
+def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
+    """Return the table without rows at rest and reversals, if its signs are directions of strokes.
+
+    Parameters
+    ----------
+    table : TextTable
+        The cells.
+    abscissa : str
+        Column of the speed.
+    friction : sequence of str
+        Columns of friction.
+    settings : FitSettings
+        Whether signs are directions.
+
+    Returns
+    -------
+    TextTable
+        The table; what was left out is in its notes.
+
+    Raises
+    ------
+    InputError
+        If there are such rows, or negative ones, and the settings do not say that signs are directions.
+    """
+    speeds = _numbers(table, abscissa)
+    frictions = {name: _numbers(table, name) for name in friction}
+    largest = np.nanmax(np.abs(speeds), initial=0.0)
+    rest = np.abs(speeds) <= AT_REST * largest
+    if settings.magnitudes:
+        return _moving(table, speeds, rest, list(frictions.values()))
+    kinds = [
+        _Kind(abscissa, speeds == 0, "is zero, which is static friction and no point of the curve", "zero (static friction)"),
+        _Kind(abscissa, speeds < 0, "is negative", "negative"),
+        *(_Kind(name, mu <= 0, "must be positive", "not positive") for name, mu in frictions.items()),
+    ]
+    kinds = [each for each in kinds if each.rows.any()]
+    if not kinds:
+        return table
+    said = " and ".join(_sentence(table, each) for each in kinds)
+    raise InputError(
+        f"{table.path}: {said}; where signs are directions of strokes, set magnitudes = true in [fit], which leaves "
+        "rows at rest and reversals out (repeats = true puts rows at the same speed together); otherwise take the rows out "
+        "or correct the zero of the force."
+    )
+
+
+def _moving(table: TextTable, speeds: Array, rest: Flags, frictions: list[Array]) -> TextTable:
+    """Return the table without rows at rest, without friction, and with friction of the other direction."""
+    idle = np.logical_or.reduce([mu == 0 for mu in frictions])
+    turning = np.zeros(len(speeds), dtype=bool)
+    for mu in frictions:
+        direction = np.sign(speeds * mu)[~rest]
+        # Without both signs in both columns, one of them has been made a magnitude before.
+        if all((values[~rest] < 0).any() and (values[~rest] > 0).any() for values in (speeds, mu)):
+            usual = 1.0 if np.nansum(direction) >= 0 else -1.0
+            turning |= np.sign(speeds * mu) == -usual
+    notes = []
+    for rows, what in (
+        (rest, "at rest"),
+        (idle & ~rest, "without friction"),
+        (turning & ~rest & ~idle, "in which friction has not turned round with the speed"),
+    ):
+        if rows.any():
+            count = int(rows.sum())
+            notes.append(f"{count} row{'s' * (count > 1)} {what} left out: {_listed(table, rows)}.")
+    kept = np.flatnonzero(~(rest | idle | turning)).tolist()
+    if not kept:
+        raise InputError(f"{table.path}: no row is in motion; check the columns of speed and friction.")
+    return replace(
+        table,
+        rows=tuple(table.rows[i] for i in kept),
+        numbers=tuple(table.numbers[i] for i in kept),
+        notes=(*table.notes, *notes),
+    )
+
+
+def _sentence(table: TextTable, kind: _Kind) -> str:
+    count = int(kind.rows.sum())
+    first = int(np.flatnonzero(kind.rows)[0])
+    if count == 1:
+        return f"row {table.numbers[first]}, column {show(kind.name)}: {show(table.column(kind.name)[first])} {kind.one}"
+    return f"column {show(kind.name)} is {kind.several} in {count} rows ({_listed(table, kind.rows)})"
+
+
+def _listed(table: TextTable, rows: Flags) -> str:
+    numbers = [str(table.numbers[i]) for i in np.flatnonzero(rows)]
+    return ", ".join(numbers[:MANY]) + (", ..." if len(numbers) > MANY else "")
+
+
+def _numbers(table: TextTable, name: str) -> Array:
+    """Return the numbers of a column as written, NaN where there is none."""
+    decimal = "," if table.decimal_comma else "."
+    read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
+    return np.array([np.nan if each is None else each[0] for each in read])

@@ -1,0 +1,375 @@
+"""Files as rigs, rheometers, digitizers and spreadsheets write them: read without a setting, or refused with true advice.
+
+Their numbers follow one curve, so that what is read is compared with it.
+"""
+
+import io
+import time
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import call, case_text
+
+import stribeck as sb
+from stribeck.cases.fit_settings import check_fit_table
+
+DATA = Path(__file__).parent / "data"
+SPEEDS = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0])  # [mm/s]
+
+
+def curve(speed):
+    """Return the friction of the files at a speed in mm/s."""
+    return 0.55 / (1 + (speed / 8) ** 0.9) + 0.02 + 0.0006 * speed**0.6
+
+
+def read(path, geometry="point", **table):
+    """Return the measurements in a file, or in one of the data of the tests."""
+    path = Path(path)
+    return sb.read_measurements(path if path.is_absolute() else DATA / path, check_fit_table(table, geometry))
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return a function that writes a file and returns its path."""
+
+    def write(content, name="rig.csv"):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    return write
+
+
+def assert_on_curve(found, *, sum_over_measured=1.0, rtol=2e-3):
+    speeds = 1e3 * found.values / sum_over_measured
+    assert np.unique(np.round(np.log10(speeds), 2)).size == 8
+    assert speeds.min() == pytest.approx(0.1, rel=0.01) and speeds.max() == pytest.approx(300, rel=0.01)
+    assert found.friction == pytest.approx(curve(speeds), rel=rtol)
+
+
+def refusal(path, **table):
+    """Return the sentence with which a file is refused."""
+    with pytest.raises(sb.InputError) as caught:
+        read(path, **table)
+    return str(caught.value)
+
+
+READ_AS_THEY_ARE = {
+    "01_rtec_preamble_trailing_comma.csv": ({"load": 3.0}, 8, 1.0, 2e-3),
+    "02_umt_units_row_steps_grams.csv": ({"load": 1.96}, 16, 1.0, 2e-3),
+    "04_ball_on_disc_duplicate_and_blank_headers.txt": ({"load": 2.0, "slide_to_roll": 1.0}, 16, 2.0, 2e-3),
+    "05_rheometer_utf16_intervals.csv": ({"load": 1.0}, 8, 1.0, 2e-3),
+    "06_pin_on_disc_max_linear_speed_nominal_load.txt": ({"load": 2.0}, 48, 1.0, 0.011),  # one part in a hundred of run-out
+    "10_header_in_comment.txt": ({}, 8, 1.0, 1e-12),
+    "12_three_header_rows.txt": ({}, 8, 1.0, 2e-3),
+    "13_plus_minus_cells.csv": ({}, 8, 1.0, 2e-3),
+}
+
+
+@pytest.mark.parametrize("name", READ_AS_THEY_ARE)
+def test_a_file_of_a_rig_is_read_without_a_setting(name):
+    inputs, rows, sum_over_measured, rtol = READ_AS_THEY_ARE[name]
+    found = read(name)
+    assert found.abscissa == "speed" and len(found) == rows
+    assert_on_curve(found, sum_over_measured=sum_over_measured, rtol=rtol)
+    assert found.inputs == ({key: pytest.approx(value) for key, value in inputs.items()},)
+
+
+def test_the_command_reads_a_file_of_a_rig(tmp_path, capsys):
+    case = tmp_path / "ball.toml"
+    contact = {"geometry": '"point"', "load": '"2 N"', "modulus": '"1.6 MPa"', "radius": '"9.5 mm"'}
+    case.write_text(case_text(contact, fit={"free": '["boundary_friction"]'}))
+    answer = call(capsys, "fit", DATA / "14_log_speed.csv", case)
+    assert answer.code == 2 and "'log speed [mm/s]' is a logarithm, which is no speed" in answer.err
+    answer = call(capsys, "fit", DATA / "08_torque_instead_of_force.csv", case)
+    assert answer.code == 2 and "arm = '20 mm' in [fit]" in answer.err
+
+
+def test_a_row_of_units_stays_when_the_header_comes_again(written):
+    name = "02_umt_units_row_steps_grams.csv"
+    assert "'V1' as speed" in read(name).taken
+    made = read(written((DATA / name).read_text().replace(",COF", ",x")))
+    assert made.friction == pytest.approx(read(name).friction, rel=1e-4)  # grams over grams
+    assert "friction = |'Fx' / 'Fz'|" in made.taken
+
+
+def test_the_standard_error_after_a_plus_minus_sign_is_that_of_friction():
+    found = read("13_plus_minus_cells.csv")
+    assert found.error == pytest.approx(0.05 * found.friction, rel=1e-3)
+
+
+def test_strokes_to_and_fro_leave_rows_at_rest_out_and_count_them():
+    name = "07_reciprocating_stops_and_reversals.txt"
+    found = read(name, magnitudes=True)
+    speeds = 1e3 * found.values
+    assert len(found) == 176 and found.friction == pytest.approx(curve(speeds), rel=2e-3)
+    assert found.notes[0].startswith("16 rows at rest left out: 2, 14, 26,")
+    sentence = refusal(name)
+    assert "zero (static friction) in 16 rows" in sentence and "negative in 88 rows" in sentence
+    assert "magnitudes = true in [fit]" in sentence and "repeats = true" in sentence
+
+
+def test_rows_in_which_friction_has_not_turned_round_are_reversals(written):
+    rows = [(1, 0.5), (2, 0.4), (3, 0.3), (-0.1, 0.2), (-1, -0.5), (-2, -0.4), (-3, -0.3), (0.1, -0.2), (0, 0.0)]
+    text = "\n".join(["speed [mm/s];mu", *(f"{u};{mu}" for u, mu in rows)])
+    found = read(written(text), magnitudes=True)
+    assert sorted(found.friction) == pytest.approx([0.3, 0.3, 0.4, 0.4, 0.5, 0.5])
+    assert "1 row at rest left out: 10." in found.notes
+    assert "2 rows in which friction has not turned round with the speed left out: 5, 9." in found.notes
+    unsigned = read(written(text.replace("-", "").replace("0;0.0", "4;0.25")), magnitudes=True)
+    assert len(unsigned) == 9  # a rig that writes the size of friction shows no reversals
+
+
+def test_a_torque_needs_its_arm(written):
+    name = "08_torque_instead_of_force.csv"
+    sentence = refusal(name)
+    assert "'Torque [mN m]' is a torque" in sentence and "'Normal Force [N]'" in sentence and "'load" not in sentence
+    found = read(name, arm="6 mm")
+    assert_on_curve(found)
+    assert found.inputs == ({"load": 1.0},) and "arm 6 mm of the case" in found.taken
+    text = (DATA / name).read_text()
+    lines = text.splitlines()
+    column = "\n".join([lines[0] + ";Arm [cm]", *(line + ";0.6" for line in lines[1:])])
+    assert_on_curve(read(written(column)))
+    assert_on_curve(read(written("Arm length: 6 mm\n\n" + text)))
+    assert_on_curve(read(written(text.replace("mN m", "mNm")), arm="6 mm"))
+
+
+def test_a_logarithm_is_no_speed(written):
+    name = "14_log_speed.csv"
+    assert "'log speed [mm/s]' is a logarithm, which is no speed" in refusal(name)
+    assert "is a logarithm, which is no speed" in refusal(name, columns={"speed": "log speed"})
+    text = (DATA / name).read_text()
+    for header in ("log10(speed [mm/s])", "lg velocity (mm/s)", "ln u", "log(speed)"):
+        assert "is a logarithm" in refusal(written(text.replace("log speed [mm/s]", header)))
+    assert "is a logarithm, which is no friction" in refusal(written("speed [mm/s];ln(mu)\n1;-0.5\n2;-1\n"))
+    beside = "\n".join(f"{a};{b}" for a, b in zip(["speed [mm/s]", *SPEEDS], text.splitlines(), strict=True))
+    assert_on_curve(read(written(beside)))
+
+
+def test_curves_side_by_side_in_a_workbook_have_their_names_and_errors():
+    found = read("15_merged_header.xlsx")
+    assert found.curves == ("water", "glycerol")
+    for k, factor in enumerate((1.0, 0.9)):
+        own = found.curve == k
+        assert found.friction[own] == pytest.approx(factor * curve(SPEEDS), rel=1e-12)
+        assert found.error[own] == pytest.approx(0.05 * curve(SPEEDS), rel=1e-9)
+
+
+def test_pairs_of_columns_of_a_digitizer_are_curves_once_their_meaning_is_said(written):
+    name = "11_digitizer_pairs_of_columns.csv"
+    assert "as in speed = 'X' and friction = 'Y', and the unit of the speed in [fit.units]" in refusal(name)
+    said = {"columns": {"speed": "X", "friction": "Y"}, "units": {"speed": "mm/s"}}
+    found = read(name, **said)
+    assert found.curves == ("PDMS 10 mPas", "PDMS 50 mPas")
+    first, second = found.curve == 0, found.curve == 1
+    assert 1e3 * found.values[second] == pytest.approx(1.1 * SPEEDS) and 1e3 * found.values[first] == pytest.approx(SPEEDS)
+    assert found.friction[second] == pytest.approx(1.1 * curve(SPEEDS), rel=1e-3)
+    text = (DATA / name).read_text().replace("X,Y,X,Y", "speed [mm/s],COF,speed [mm/s],COF")
+    assert read(written(text)).curves == found.curves
+    shorter = "\n".join(text.splitlines()[:-1]) + "\n,,330,0.064547\n"
+    assert len(read(written(shorter))) == 15
+    unnamed = "\n".join(text.splitlines()[1:])
+    assert read(written(unnamed)).curves == ("1", "2")
+
+
+ROWS = list(zip(SPEEDS, curve(SPEEDS), strict=True))
+
+
+def table(header, *columns, separator=";", rows=ROWS):
+    """Return a table whose columns are made of speed in mm/s and friction."""
+    lines = [separator.join(f"{column(u, mu):.9g}" for column in columns) for u, mu in rows]
+    return "\n".join([header, *lines]) + "\n"
+
+
+def speed(u, mu):
+    return u
+
+
+def friction(u, mu):
+    return mu
+
+
+PLAIN = table("speed [mm/s];COF", speed, friction)
+GERMAN = table("Geschwindigkeit [mm/s];Reibwert", speed, friction).replace(".", ",")
+
+VARIATIONS = {
+    "trailing separators everywhere": PLAIN.replace("\n", ";;\n"),
+    "trailing separators in the rows": PLAIN.replace("\n", ";;\n").replace("COF;;", "COF"),
+    "trailing separators above": "Recipe;Radius;;\na;b;1;2;3\n" + PLAIN.replace("\n", ";\n"),
+    "a column without a name": table(";speed [mm/s];COF", lambda u, mu: 7, speed, friction),
+    "an empty column": table("speed [mm/s];;COF", speed, friction).replace("\n", "\n").replace(";0.", ";;0."),
+    "a column twice": table("COF;speed [mm/s];COF", friction, speed, friction),
+    "other columns twice": table("T;speed [mm/s];T;COF", speed, speed, friction, friction),
+    "a column called like an input": table("Alpha (°);Radius (s);speed [mm/s];COF", speed, speed, speed, friction),
+    "decimal commas of a German export": GERMAN,
+    "German words": "Gerät;Tribometer 3\nPrüfer;N.N.\n\n" + GERMAN.replace("Geschwindigkeit", "Gleitgeschwindigkeit"),
+    "a unit with an exponent": PLAIN.replace("mm/s", "mm s-1"),
+    "a unit with a minus sign": PLAIN.replace("mm/s", "mm s−1"),
+    "a unit with a raised exponent": PLAIN.replace("mm/s", "mm·s⁻¹"),
+    "a unit without brackets": PLAIN.replace("speed [mm/s]", "Speed, mm/s"),
+    "a symbol in brackets": PLAIN.replace("speed [mm/s];COF", "Sliding speed (v) [mm/s];Friction coefficient (µ)"),
+    "a header of savetxt": "# " + PLAIN.replace(";", " ").replace("speed [mm/s] COF", "speed [mm/s], COF"),
+    "comments above the one that is the header": "# rig 7\n# operator N.N.\n# " + PLAIN,
+    "units in a comment": "# " + PLAIN.replace("speed [mm/s];COF", "speed;COF\n# mm/s;-"),
+    "units and curves below the names": PLAIN.replace("speed [mm/s];COF", "Speed;Friction\nmm/s;\nPDMS;PDMS on glass"),
+    "a footer": PLAIN + "\nTotal time\n00:12:56.57\n",
+    "text between steps": PLAIN + "\nStep No. 2\n\n" + PLAIN.partition("\n")[2],
+    "a standard deviation of the speed": table("speed [mm/s];SD;COF", speed, lambda u, mu: 0.1 * u, friction),
+    "a standard deviation of a force": table("speed [mm/s];COF;SD [N]", speed, friction, lambda u, mu: 3.0),
+    "a speed of rotation beside the speed": table("RPM;speed [mm/s];COF", lambda u, mu: 3 * u, speed, friction),
+    "two names of one column": table("mu;speed [mm/s];friction", friction, speed, friction),
+    "forces in grams": table("speed [mm/s];Fx [g];Fz [g]", speed, lambda u, mu: 200 * mu, lambda u, mu: -200),
+    "forces in their own unit": table("speed [mm/s];Fx [mN];Fz [N]", speed, lambda u, mu: 2e3 * mu, lambda u, mu: 2),
+    "a prefix of the channel": table("DAQ.Speed (mm/s);DAQ.COF ()", speed, friction),
+    "one speed of a surface": table("Disc speed [mm/s];COF", speed, friction),
+    "a voltage called V": table("V [V];speed [mm/s];COF", lambda u, mu: 5 + u, speed, friction),
+    "a shorter table of something else": "stiffness;damping\n3;4\n5;6\n\n" + PLAIN,
+}
+
+
+@pytest.mark.parametrize("name", VARIATIONS)
+def test_a_layout_of_another_program_is_read_as_it_is(written, name):
+    found = read(written(VARIATIONS[name]))
+    assert found.abscissa == "speed" and found.error is None
+    assert_on_curve(found)
+    assert not any("decimal comma" in note for note in found.notes) or "German" in name
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig", "cp1252"])
+def test_text_of_any_encoding_of_windows_is_read(written, encoding):
+    text = PLAIN.replace("COF", "µ").replace("speed [mm/s]", "speed [µm/s]").replace("\n", "\r\n")
+    found = read(written(text.encode(encoding)))
+    assert 1e6 * found.values == pytest.approx(SPEEDS)
+
+
+ROTATION = {
+    "the case": (table("Speed [rpm];COF", speed, friction), {"track_radius": "9 mm"}),
+    "RPM in capitals": (table("Rotational speed (RPM);COF", speed, friction), {"track_radius": "9 mm"}),
+    "RPM as a name": (table("RPM;COF", speed, friction), {"track_radius": "9 mm"}),
+    "German": (table("Drehzahl [U/min];Reibwert", speed, friction), {"track_radius": "9 mm"}),
+    "turns per minute": (table("n [1/min];COF", speed, friction), {"track_radius": "9 mm"}),
+    "radians": (table("Angular velocity [rad/s];COF", lambda u, mu: u * 2 * np.pi / 60, friction), {"track_radius": "9 mm"}),
+    "turns per second": (table("Speed [1/s];COF", lambda u, mu: u / 60, friction), {"track_radius": "9 mm"}),
+    "a column": (table("Speed [rpm];Track radius [mm];COF", speed, lambda u, mu: 9, friction), {}),
+    "a diameter": (table("Speed [rpm];Wear track diameter [mm];COF", speed, lambda u, mu: 18, friction), {}),
+    "a line above": ("Track radius [mm];9\n\n" + table("Speed [rpm];COF", speed, friction), {}),
+    "a diameter above": ("Track diameter: 1.8 cm\n\n" + table("Speed [rpm];COF", speed, friction), {}),
+    "a comment above": ("# track radius = 9 mm\n" + table("Speed [rpm];COF", speed, friction), {}),
+}
+
+
+@pytest.mark.parametrize("name", ROTATION)
+def test_a_rotation_is_a_speed_by_the_radius_of_its_track(written, name):
+    text, settings = ROTATION[name]
+    found = read(written(text), **settings)
+    assert found.values == pytest.approx(SPEEDS * 2 * np.pi / 60 * 9e-3, rel=1e-8)
+    assert "x the radius of the track" in found.taken
+
+
+def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
+    path = written(table("Ball diameter: 12 mm\nSpeed [rpm];COF", speed, friction))
+    assert "'Speed [rpm]' is a rotation" in refusal(path) and "track_radius = '20 mm' in [fit]" in refusal(path)
+    assert "track_radius = -1" in str(pytest.raises(sb.InputError, check_fit_table, {"track_radius": -1}).value)
+
+
+def test_advice_is_true_or_absent(written):
+    force = refusal(written("Fx (N);Fz (N);V2 [mm/s]\n0.5;1;1\n0.4;1;2\n0.3;1;3\n"))
+    assert force.endswith("as in speed = 'V2 [mm/s]'.")
+    assert "as in" not in refusal(written("a;b;c\n1;2;3\n4;5;7\n"))
+    ragged = refusal(written("speed [mm/s],COF\n0.1,0.5\n0.3,0.4,0.3\n"))
+    assert "row 3 has 3 cells where the header has 2" in ragged and "decimal" not in ragged
+    assert "begin decimals" in refusal(written("speed [mm/s],COF\n0,1,0,5\n0,3,0,4\n"))
+    several = refusal(written("A [mm/s];B [mm/s];COF\n1;2;0.3\n4;5;0.7\n"))
+    assert "speed =" not in several and "'A [mm/s]', 'B [mm/s]', 'COF'" in several
+
+
+def test_a_name_twice_stops_the_reading_only_where_it_is_needed(written):
+    twice = "T;mu;speed [mm/s];T;mu\n20;0.5;1;21;0.5\n20;0.4;2;22;0.4\n"
+    assert read(written(twice)).friction.tolist() == [0.5, 0.4]
+    other = twice.replace("22;0.4", "22;0.3")
+    assert "'mu' is there twice, with different numbers" in refusal(written(other))
+
+
+def test_the_standard_deviation_beside_friction_is_its_error(written):
+    text = table("speed [mm/s];SD;COF;SD", speed, lambda u, mu: 0.2 * u, friction, lambda u, mu: 0.03 * mu)
+    found = read(written(text))
+    assert found.error == pytest.approx(0.03 * found.friction, rel=1e-6)
+    text = table("speed [mm/s];COF (%);Std. Dev. (%)", speed, lambda u, mu: 100 * mu, lambda u, mu: 3 * mu)
+    assert read(written(text)).error == pytest.approx(0.03 * found.friction, rel=1e-6)
+
+
+def workbook(tmp_path, **sheets):
+    """Return the path of a workbook of sheets of rows."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for title, rows in sheets.items():
+        sheet = book.create_sheet(title)
+        for row in rows:
+            sheet.append(row)
+    path = tmp_path / "rig.xlsx"
+    book.save(path)
+    return path
+
+
+def test_the_sheet_of_a_workbook_is_named_and_chosen(tmp_path):
+    water = [["speed [mm/s]", "COF"], *([u, mu] for u, mu in ROWS)]
+    oil = [["speed [mm/s]", "COF"], *([u, 0.5 * mu] for u, mu in ROWS[:-1])]
+    path = workbook(tmp_path, water=water, oil=oil, notes=[["none"]])
+    found = read(path)
+    assert_on_curve(found)
+    assert "Sheet 'water' read, not 'oil'; sheet = ... in [fit] chooses another." in found.notes
+    assert read(path, sheet="oil").friction == pytest.approx(0.5 * curve(SPEEDS[:-1]))
+    assert "has no sheet 'glycerol'; its sheets are 'water', 'oil', 'notes'" in refusal(path, sheet="glycerol")
+    assert "is no workbook" in refusal("12_three_header_rows.txt", sheet="oil")
+    assert "sheet = 3" in str(pytest.raises(sb.InputError, check_fit_table, {"sheet": 3}).value)
+
+
+def test_a_workbook_with_gaps_texts_and_units_is_read(tmp_path):
+    rows = [['Disc 5"', None, True], [], ["Speed", None, "COF", "remark"], ["mm/s", None, "-"]]
+    rows += [[u, None, mu, "ok"] if u < 100 else [u, None, mu] for u, mu in ROWS]
+    found = read(workbook(tmp_path, data=rows))
+    assert_on_curve(found)
+    assert found.rows[0] == 5
+
+
+SHEET = "xl/worksheets/sheet1.xml"
+
+
+def changed(path, change):
+    """Change the text of the first sheet of a workbook."""
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    parts[SHEET] = change(parts[SHEET].decode()).encode()
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as book:
+        for name, part in parts.items():
+            book.writestr(name, part)
+    path.write_bytes(content.getvalue())
+    return path
+
+
+def test_a_workbook_that_unpacks_to_anything_is_read_or_refused_at_once(tmp_path):
+    water = [["speed [mm/s]", "COF"], *([u, mu] for u, mu in ROWS)]
+    last = '<row r="1048576"><c r="XFD1048576" s="0"/></row></sheetData>'
+    hostile = {
+        "a blank in the last cell": lambda text: text.replace("</sheetData>", last).replace("A1:B9", "A1:XFD1048576"),
+        "a number in the last cell": lambda text: text.replace("</sheetData>", last.replace('s="0"/>', "><v>1</v></c>")),
+        "no such cell": lambda text: text.replace("</sheetData>", '<row r="2"><c r="ZZZZZZ2"><v>1</v></c></row></sheetData>'),
+        "no such row": lambda text: text.replace("</sheetData>", '<row r="99999999999"/></sheetData>'),
+        "a bomb": lambda text: text.replace("</sheetData>", 120_000_000 * " " + "</sheetData>"),
+        "entities": lambda text: '<!DOCTYPE a [<!ENTITY b "c">]>' + text.partition("?>")[2],
+        "nested": lambda text: text.replace("</sheetData>", 100_000 * "<a>" + "</sheetData>"),
+    }
+    for name, change in hostile.items():
+        path = changed(workbook(tmp_path, data=water), change)
+        assert path.stat().st_size < 1_000_000
+        began = time.process_time()
+        if "blank" in name:
+            assert_on_curve(read(path))
+        else:
+            assert "rig.xlsx" in refusal(path), name
+        assert time.process_time() - began < 2, name
