@@ -226,6 +226,25 @@ VARIATIONS = {
     "a prefix of the channel": table("DAQ.Speed (mm/s);DAQ.COF ()", speed, friction),
     "one speed of a surface": table("Disc speed [mm/s];COF", speed, friction),
     "a voltage called V": table("V [V];speed [mm/s];COF", lambda u, mu: 5 + u, speed, friction),
+    "a unit behind an underscore": table("speed_mm_s,friction", speed, friction, separator=","),
+    "a comment of Matlab": table("% speed [mm/s], friction", speed, friction, separator=","),
+    "columns aligned by spaces": table("  Sliding Speed (mm/s)    Friction Coefficient (-)", speed, friction, separator="   "),
+    "a line for the separator": "sep=;\n" + PLAIN,
+    "an index without a name": table(",speed (mm/s),cof_mean", lambda u, mu: 7, speed, friction, separator=","),
+    "pages": table("speed [mm/s];COF", speed, friction, rows=ROWS[:4])
+    + "Page 2\n"
+    + table("speed [mm/s];COF", speed, friction, rows=ROWS[4:]),
+    "a remark with commas and points": table("speed [mm/s];COF;Remark", speed, friction)
+    .replace("\n3;", "\n3;")
+    .replace("\n", ";stick-slip, 2.5 N\n")
+    .replace("Remark;stick-slip, 2.5 N", "Remark"),
+    "means of samples": table("Speed mean [mm/s];Speed SD [mm/s];COF mean", speed, lambda u, mu: 0.01 * u, friction),
+    "a normal load above": "Normal load;2 N\n\n" + table("Speed [mm/s];Friction force [N]", speed, lambda u, mu: 2 * mu),
+    "a stroke in millimetres": table("Stroke (mm);Mean Sliding Speed (m/s);COF", speed, lambda u, mu: u / 1e3, friction),
+    "a longer table at one speed": table(
+        "Time [s];COF;speed [mm/s]", speed, lambda u, mu: 0.3, lambda u, mu: 50, rows=3 * ROWS
+    )
+    + PLAIN,
     "a shorter table of something else": "stiffness;damping\n3;4\n5;6\n\n" + PLAIN,
 }
 
@@ -234,6 +253,7 @@ VARIATIONS = {
 def test_a_layout_of_another_program_is_read_as_it_is(written, name):
     found = read(written(VARIATIONS[name]))
     assert found.abscissa == "speed" and found.error is None
+    assert set(found.inputs[0]) <= {"load"}
     assert_on_curve(found)
     assert not any("decimal comma" in note for note in found.notes) or "German" in name
 
@@ -326,6 +346,15 @@ def test_the_sheet_of_a_workbook_is_named_and_chosen(tmp_path):
     assert "has no sheet 'glycerol'; its sheets are 'water', 'oil', 'notes'" in refusal(path, sheet="glycerol")
     assert "is no workbook" in refusal("12_three_header_rows.txt", sheet="oil")
     assert "sheet = 3" in str(pytest.raises(sb.InputError, check_fit_table, {"sheet": 3}).value)
+
+
+def test_a_table_that_would_take_minutes_is_refused(written):
+    assert "more than 500000 rows" in refusal(written("speed [mm/s];mu\n" + 500_000 * "1;1\n"))
+    assert "more than 4000000 cells" in refusal(written("speed [mm/s];mu\n1" + 4_000_000 * ";1"))
+    path = written("speed [mm/s];mu\n")
+    with path.open("r+b") as file:
+        file.truncate(10**10)  # sparse: it takes no room on the disk
+    assert "more than 20000000 bytes" in refusal(path)
 
 
 def test_a_workbook_with_gaps_texts_and_units_is_read(tmp_path):

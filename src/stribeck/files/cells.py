@@ -33,7 +33,7 @@ _UNIT = re.compile(
     r"(?:[pnuµμcmkMG]?(?:m|g|s|N|Pa|J|W|V|A|Hz|C|St|P|Nm|bar)|K|%|‰|°|°C|°F|deg|rad|sec|min|h|hr|hour|rpm|RPM|rev|in|ft|lbf?|"
     r"k?gf|[Nn]ewton|a\.?u\.?|1)(?:\^?[-−]?[0-9]|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
 )
-_WITHOUT_BRACKETS = re.compile(r"(.+?)[\s,_]+([pnuµμcmk]?m ?/ ?(?:s|sec|min|h)|rpm|RPM|%|[uµmk]?N)\s*")
+_WITHOUT_BRACKETS = re.compile(r"(.+?)[\s,_]+([pnuµμcmk]?m(?: ?/ ?|_per_|_)(?:s|sec|min|h)|rpm|RPM|%|[uµmk]?N)\s*")
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 
@@ -43,7 +43,7 @@ def split_header(header: str) -> tuple[str, str]:
     if parts is None or not parts[1]:
         return header.strip(), ""
     unit = next(unit for unit in parts.groups()[1:] if unit is not None).strip()
-    return parts[1].strip(), "" if unit in SYMBOLS else unit
+    return parts[1].strip(), "" if unit in SYMBOLS else re.sub("_per_|_", "/", unit)
 
 
 def header_words(header: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +15,9 @@ __all__ = ["Heading", "Line", "headings_in"]
 
 MARKS = ("\t", ";", ",", "|")
 """What separates columns, beside white space: what comes first here wins where a line has several."""
+
+GAP = "  "
+"""What separates names of several words in columns that are aligned by spaces."""
 
 MOST_LINES = 4
 """Lines above rows of numbers that may name columns, units and curves."""
@@ -75,6 +79,8 @@ class Heading:
         Names of curves above the names or below them; empty if there are none.
     known : int
         Names that the caller knows.
+    end : int
+        Place of the next heading, or the number of lines.
     rows : int
         Lines of numbers below it.
     """
@@ -87,6 +93,7 @@ class Heading:
     units: tuple[str, ...] = ()
     labels: tuple[str, ...] = ()
     known: int = 0
+    end: int = 0
     rows: int = 0
 
     @classmethod
@@ -186,7 +193,7 @@ def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Hea
             stack, comments = [], []
     ends = [*(each.first for each in found), len(lines)][1:]
     counts = [sum(line.numeric for line in lines[each.below : end]) for each, end in zip(found, ends, strict=False)]
-    return [replace(each, rows=rows) for each, rows in zip(found, counts, strict=True)]
+    return [replace(each, end=end, rows=rows) for each, end, rows in zip(found, ends, counts, strict=False)]
 
 
 def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callable[[str], bool]) -> Heading | None:
@@ -194,9 +201,9 @@ def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callab
     fitting = []
     for i in stack:
         for mark in _separators(lines[i]):
-            names = tuple(_trimmed(_split(lines[i].text, mark)))
+            names = tuple(_names(lines[i].text, mark))
             given = [name for name in names if name]
-            separator = _separator(lines[below].text) if lines[i].comment else mark
+            separator = _separator(lines[below].text) if lines[i].comment or mark == GAP else mark
             heading = Heading(at=i, first=i, below=below, separator=separator, names=names)
             if len(given) < 2 or any(map(has_number, names)) or not heading.fits(lines[below]):
                 continue
@@ -210,7 +217,14 @@ def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callab
 
 def _separators(line: Line) -> tuple[str, ...]:
     """Return what may separate names in a line; a comment need not have the separator of the numbers."""
-    return (*(mark for mark in MARKS if mark in line.text), "") if line.comment else (_separator(line.text),)
+    marks = tuple(mark for mark in MARKS if mark in line.text)
+    if line.comment:
+        return (*marks, "", GAP)
+    return marks[:1] or ("", GAP)
+
+
+def _names(text: str, mark: str) -> list[str]:
+    return _trimmed(re.split(r"\s{2,}", text.strip()) if mark == GAP else _split(text, mark))
 
 
 def _separator(text: str) -> str:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, split_header
+from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, number_of, split_header
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEETS, sheet_of
@@ -26,6 +26,9 @@ SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
 LARGEST_TABLE = 20_000_000  # [byte]
 
+MOST_ROWS, MOST_CELLS = 500_000, 4_000_000
+"""Rows and cells of a table that are read, in about a quarter of a minute."""
+
 BLOCK = "step"
 """Header of the column that numbers the tables of a file that has the same header above each."""
 
@@ -33,6 +36,12 @@ CURVE = "curve"
 """Header of the column that names the curves of a file that has them side by side."""
 
 EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
+
+SAMPLED = 200
+"""Rows of each table by which tables are compared."""
+
+SAME = 0.05
+"""Relative difference of numbers up to which a column has only one setting."""
 
 MANY = 10
 """Rows that a sentence lists."""
@@ -144,16 +153,16 @@ def read_table(
     rows, numbers, steps, text = _body(path, lines, heading, same, others, filled_up, elsewhere)
     if not rows:
         raise InputError(f"{path} has a header in row {number} and no rows of numbers below it{elsewhere}.")
-    skipped = sum(not line.comment for line in lines[: heading.at])
+    tables = [each for each in others if each.rows > 1]
+    inside = {i for each in tables for i in range(each.first, each.end)}
+    skipped = sum(not line.comment and i not in inside for i, line in enumerate(lines[: heading.at]))
     if skipped:
         notes += (f"{skipped} row{'s' * (skipped > 1)} of other text above the header skipped.",)
-    for other in others:
-        count = other.rows
-        if count > 1:
-            at = lines[other.at].number
-            notes += (
-                f"A table of {count} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
-            )
+    for other in tables:
+        at = lines[other.at].number
+        notes += (
+            f"A table of {other.rows} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
+        )
     if text:
         notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {_some(text)}.",)
     units = heading.units
@@ -245,12 +254,21 @@ def _lines(path: Path, sheet: str | None) -> tuple[list[Line], tuple[str, ...], 
         found = sheet_of(path, sheet)
         others = ", ".join(map(show, found.others))
         note = f"Sheet {show(found.name)} read, not {others}; sheet = ... in [fit] chooses another." if others else ""
-        return [Line.of(*each) for each in found.lines], ((note,) if note else ()), True
+        return _within_bounds(path, found.lines), ((note,) if note else ()), True
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
     text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
-    filled = ((i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|"))
-    return [Line.of(i, line) for i, line in filled], (), False
+    filled = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")]
+    return _within_bounds(path, filled), (), False
+
+
+def _within_bounds(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
+    """Return the lines of a table, or refuse one that would take minutes to read."""
+    cells = sum(line.count(mark) for _, line in filled for mark in SEPARATORS)
+    for count, most, what in ((len(filled), MOST_ROWS, "rows"), (cells, MOST_CELLS, "cells")):
+        if count > most:
+            raise InputError(f"{path} has more than {most} {what}; keep the rows and columns of the curve, or means of them.")
+    return [Line.of(*each) for each in filled]
 
 
 def _heading(
@@ -274,19 +292,38 @@ def _heading(
         asked = lines[plain[0]].text.strip()
         own = [each for each in tables.get(asked, []) if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
         return own[0], own, [each for each in found if each not in own and each.at > plain[0]]
-    ranked = sorted(tables.values(), key=lambda each: (min(each[0].known, 2), sum(one.rows for one in each)), reverse=True)
+    told = {id(each): min(_telling(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
+    count = {id(each): sum(one.rows for one in each) for each in tables.values()}
+    ranked = sorted(tables.values(), key=lambda each: (told.get(id(each), 0), count[id(each)]), reverse=True)
     best = ranked[0]
-    rows = [sum(one.rows for one in each) for each in ranked]
-    for other, count in zip(ranked[1:], rows[1:], strict=True):
-        if min(other[0].known, 2) == min(best[0].known, 2) and 1 < rows[0] <= 2 * count:
-            first, second = sorted((lines[best[0].at].number, lines[other[0].at].number))
+    for other in ranked[1:]:
+        if told[id(other)] == told[id(best)] and 1 < count[id(best)] <= 2 * count[id(other)]:
+            (first, one), (second, two) = sorted((lines[each[0].at].number, count[id(each)]) for each in (best, other))
             raise InputError(
-                f"{path}: rows {first} and {second} are headers of two tables of {rows[0]} and {count} rows; say which one to "
+                f"{path}: rows {first} and {second} are headers of two tables of {one} and {two} rows; say which one to "
                 f"read, header_row = {first} or header_row = {second} in [fit]."
                 if expected == EXPECTED
                 else f"{path}: rows {first} and {second} are headers of two tables; {expected}."
             )
     return best[0], best, [each for each in found if each not in best]
+
+
+def _telling(lines: list[Line], headings: list[Heading], knows: Callable[[str], bool]) -> int:
+    """Return how many columns of known names hold more than one setting: at rest or at one speed nothing is a curve."""
+    heading = headings[0]
+    telling = 0
+    cells = [
+        heading.row(line.text, Path(), line.number, filled_up=True)
+        for each in headings
+        for line in [line for line in lines[each.below : each.end] if line.numeric][:SAMPLED]
+        if heading.fits(line)
+    ]
+    for at, name in enumerate(heading.names):
+        if knows(name):
+            read = [number_of(row[at].replace(",", "."), ".") for row in cells]
+            values = [abs(each[0]) for each in read if each is not None]
+            telling += bool(values) and min(values) < (1 - SAME) * max(values)
+    return telling
 
 
 def _body(

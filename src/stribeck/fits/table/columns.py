@@ -12,7 +12,7 @@ import numpy as np
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG
+from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.units import InputError, show
@@ -53,7 +53,8 @@ WORDS = {
 OTHER_SPEED = (
     r"(?:(?:mean|average|avg) (?=linear|sliding|tangential))?"
     r"(?:(?:max|maximum|peak|linear|lin|sliding|tangential|circumferential|actual|measured|set|nominal|target|track|test|table|"
-    r"stage|stroke) )+(?:speed|velocity|vel)|vel"
+    r"stage|stroke) )+(?:speed|velocity|vel)|vel|(?:mean|average|avg) (?:speed|velocity)|"
+    r"(?:speed|velocity) (?:mean|average|avg)"
 )
 """Headers of a speed that is taken where there is none by a plainer name."""
 
@@ -122,6 +123,9 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
         free = [name for name in free if not _LOGARITHM.search(name)]
     for pattern in (WORDS[meaning], *([OTHER_SPEED] if meaning == "speed" else [])):
         names = [name for name in free if is_named(name, pattern)]
+        if meaning == "speed":
+            rolling = PATTERNS["entrainment_speed"]
+            names = [name for name in names if not is_named(name, rolling) or is_mean_of_time(table, name, settings)]
         fitting = [name for name in names if _fits(table, name, meaning, settings)]
         # A speed or a friction of another unit is refused by its unit; other columns with one mean something else.
         if names and (fitting or meaning in ("friction", *ABSCISSAS)):

@@ -35,8 +35,8 @@ PATTERNS = {
     "surface_speeds": rf"(?:ball|disc|disk|upper|lower|roller|ring) ?\d? {_SPEED}",
     "slide_to_roll": r"srr|slide (to )?roll( ratio)?|slip ratio",
     "friction_force": r"(?:mean |average )?(?:friction(?:al)?|traction|tangential|lateral|shear) force|f ?[xtf]|ft|"
-    r"reib(?:ungs)?kraft|friction",
-    "normal_force": rf"{_FORCE_OF}+force|{_FORCE_OF}*load|f ?[zn]|normalkraft",
+    r"(?:friction force|f ?[xtf]) (?:mean|average|avg)|reib(?:ungs)?kraft|friction",
+    "normal_force": rf"(?:{_FORCE_OF}+force|{_FORCE_OF}*load|f ?[zn]|normalkraft)(?: mean| average| avg)?",
     "run": r"run|repeat|repetition|cycle|stroke|pass|step|sweep|test( no)?|lauf",
     "rotation": rf"rpm|n|(?:rotation(?:al)?|rotary|spindle|angular|shaft|disc|disk|motor|drive|set|actual)? ?{_SPEED}|"
     r"rotation|drehzahl|rotational frequency",
@@ -74,7 +74,7 @@ MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
 
 _STATED = re.compile(
     r"(?P<name>[^\d:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
-    r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[a-zµμ]*)[\])]?[\s;,]*"
+    r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[A-Za-zµμ]*)[\])]?[\s;,]*"
 )
 
 NEXT_LEVEL = 1.1
@@ -190,6 +190,10 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
             unit = unit_in(table, name, meaning)
             if meaning in DIMENSIONS_OF and unit and not has_dimension(unit, DIMENSIONS_OF[meaning]):
                 continue
+            if meaning == "run" and table.unit(name):
+                continue  # a stroke in mm
+            if meaning == "entrainment_speed" and is_mean_of_time(table, name, settings):
+                continue
             if not unit and meaning in ("rotation", "torque") or (not unit and header_words(name) == "friction"):
                 continue
             found.setdefault(meaning, []).append(name)
@@ -197,6 +201,16 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
     for names in found.values():
         names.sort(key=lambda name: re.search(r"\b(?:nominal|set|target)\b", header_words(name)) is not None)
     return found
+
+
+def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
+    """Return whether a column called mean speed is a mean of samples, as other columns of the table are."""
+    if settings.rolls or re.search("entrain|rolling", header_words(name)):
+        return False
+    words = [header_words(each) for each in table.header if each != name]
+    return not any(re.fullmatch(PATTERNS["slide_to_roll"], each) for each in words) and any(
+        re.search(r"\b(?:mean|average|avg)\b", each) and not re.search(_SPEED, each) for each in words
+    )
 
 
 def unit_in(table: TextTable, name: str, meaning: str) -> str:
@@ -213,17 +227,24 @@ def _rounded(value: float) -> float:
 
 def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
     """Return friction coefficients and how they were obtained; None if the rig gives none."""
-    if "normal_force" not in found:
-        return None
-    normal = found["normal_force"][0]
     if "friction_force" in found:
         force = found["friction_force"][0]
+        if "normal_force" not in found:
+            stated = _stated(table, PATTERNS["normal_force"], "force")
+            if stated is None:
+                return None
+            value, number, name = stated
+            values = _numbers(table, force, "force", "N")
+            return [
+                None if each is None else abs(each / value) for each in values
+            ], f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
+        normal = found["normal_force"][0]
         if table.unit(force) and table.unit(force) == table.unit(normal):
-            pairs = zip(_cells(table, force), _cells(table, normal), strict=True)  # the unit cancels
-        else:
-            pairs = zip(_numbers(table, force, "force", "N"), _numbers(table, normal, "force", "N"), strict=True)
-        return _quotients(pairs), f"friction = |{show(force)} / {show(normal)}|"
-    if "torque" in found:
+            return _quotients(zip(_cells(table, force), _cells(table, normal), strict=True)), _ratio_of(force, normal)
+        tangential, vertical = (_numbers(table, name, "force", "N") for name in (force, normal))
+        return _quotients(zip(tangential, vertical, strict=True)), _ratio_of(force, normal)
+    if "torque" in found and "normal_force" in found:
+        normal = found["normal_force"][0]
         torque = found["torque"][0]
         arm = _length(table, ARM, settings.arm)
         if arm is None:
@@ -232,11 +253,15 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
                 f"the case, or add a column 'arm [mm]'. The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
-        forces = zip(_numbers(table, torque, "torque", "mN m"), lengths, strict=True)
-        values = [None if moment is None or not length else moment / length for moment, length in forces]
+        moments = zip(_numbers(table, torque, "torque", "mN m"), lengths, strict=True)
+        values = [None if moment is None or not length else moment / length for moment, length in moments]
         pairs = zip(values, _numbers(table, normal, "force", "N"), strict=True)
         return _quotients(pairs), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
     return None
+
+
+def _ratio_of(force: str, normal: str) -> str:
+    return f"friction = |{show(force)} / {show(normal)}|"
 
 
 def _quotients(pairs: Iterable[tuple[float | None, float | None]]) -> list[float | None]:
@@ -255,16 +280,24 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[f
             factor = 0.5 if _is_diameter(name) else 1.0
             values = _numbers(table, name, "length", "mm")
             return [None if value is None else factor * value for value in values], f"of column {show(name)}"
+    stated = _stated(table, pattern, "length")
+    if stated is None:
+        return None
+    length, number, name = stated
+    length *= 0.5 if _is_diameter(name) else 1.0
+    return [length] * len(table.rows), f"{1e3 * length:g} mm by row {number}"
+
+
+def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
+    """Return a quantity [SI] that a line above the header gives with its unit, the row and its name; None if none does."""
     for number, text in table.above:
         found = _STATED.fullmatch(text.strip())
         if not found or not is_named(found["name"].strip(), pattern):
             continue
         unit = next((each for each in found.group("before", "after") if each), "").strip()
         read = number_of(found["value"], "," if "," in found["value"] else ".")
-        if not has_dimension(unit or "-", "length") or read is None:
-            continue
-        length = read[0] * si_factor(unit, "length", found["name"]) * (0.5 if _is_diameter(found["name"]) else 1.0)
-        return [length] * len(table.rows), f"{1e3 * length:g} mm by row {number}"
+        if read is not None and read[0] > 0 and has_dimension(unit or "-", dimension):
+            return read[0] * si_factor(unit, dimension, found["name"]), number, found["name"].strip()
     return None
 
 

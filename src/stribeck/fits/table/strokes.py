@@ -30,6 +30,7 @@ class _Kind:
     rows: Flags
     one: str
     several: str
+    at_rest: bool = False
 
 
 def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
@@ -63,7 +64,13 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
     if settings.magnitudes:
         return _moving(table, speeds, rest, list(frictions.values()))
     kinds = [
-        _Kind(abscissa, speeds == 0, "is zero, which is static friction and no point of the curve", "zero (static friction)"),
+        _Kind(
+            abscissa,
+            speeds == 0,
+            "is zero, which is static friction and no point of the curve",
+            "zero (static friction)",
+            at_rest=True,
+        ),
         _Kind(abscissa, speeds < 0, "is negative", "negative"),
         *(_Kind(name, mu <= 0, "must be positive", "not positive") for name, mu in frictions.items()),
     ]
@@ -71,6 +78,10 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
     if not kinds:
         return table
     said = " and ".join(_sentence(table, each) for each in kinds)
+    if len(kinds) == 1 and kinds[0].at_rest:
+        raise InputError(
+            f"{table.path}: {said}; take such rows out, or set magnitudes = true in [fit], which leaves them out."
+        )
     raise InputError(
         f"{table.path}: {said}; where signs are directions of strokes, set magnitudes = true in [fit], which leaves "
         "rows at rest and reversals out (repeats = true puts rows at the same speed together); otherwise take the rows out "
