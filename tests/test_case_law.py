@@ -2,10 +2,11 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
-from command_line import CONTACT, call, case_text
+from command_line import CONTACT, PDMS, call, case_text
 from sweep_files import write
 
 import stribeck as sb
@@ -69,14 +70,14 @@ def test_asperities_give_the_coefficients_or_the_contact_does(case, law, kind):
     expected = kind.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
     assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
     assert found.law == kind()
-    bare = sb.load_case(case(law)).contact
-    assert (bare.alpha, bare.beta, bare.law) == (2.0, 0.06, kind())
+    bare = sb.load_case(case(law, {"alpha": "1.0"})).contact
+    assert (bare.alpha, bare.beta, bare.law) == (1.0, 0.06, kind())
 
 
 def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_one_in_disguise(case):
     assert set(MAY_HAVE) == set(LAWS)
     for law in sorted(set(LAWS) - set(NEEDED)):
-        found = sb.load_case(case(law)).contact.law
+        found = sb.load_case(case(law, {"alpha": "1.0"})).contact.law
         assert found == NAMED[law]
         assert (found is None) == (law == "exponential")
 
@@ -293,3 +294,37 @@ def test_wrong_lists_are_refused_in_a_sentence(case, law, tables, sentence):
     with pytest.raises(sb.InputError) as problem:
         sb.load_case(case(law, **tables))
     assert sentence in str(problem.value)
+
+
+# --- one word ---
+
+
+@pytest.mark.parametrize("law", ["greenwood-williamson", "greenwood-tripp"])
+@pytest.mark.parametrize("command", ["check", "solve", "curve", "regimes"])
+def test_a_law_refuses_the_alpha_of_another_and_says_what_its_own_numbers_are(capsys, case, command, law):
+    answer = call(capsys, command, case(law))
+    assert answer.code == 2 and answer.out == ""
+    assert "alpha = 2 is of another contact law" in answer.err and "[asperities]" in answer.err
+
+
+def test_a_contact_takes_the_name_of_a_law_as_solve_does():
+    contact = sb.load_case(PDMS).contact.replace(alpha=1.0)
+    named = contact.replace(law="greenwood-tripp")
+    assert named == contact.replace(law=sb.GreenwoodTripp())
+    assert sb.LineContact(**dict(contact.inputs()), law="greenwood-tripp") == named
+    assert sb.Groups(1e-3, 0.1, 1e-3, law="greenwood-tripp") == sb.Groups(1e-3, 0.1, 1e-3, law=sb.GreenwoodTripp())
+    assert contact.replace(law="exponential").law is None
+    for make in (contact.replace, lambda law: sb.solve(contact, law=law), lambda law: sb.Groups(1, 1, 1, law=law)):
+        with pytest.raises(sb.InputError, match="law = 'greenwod'; names are 'exponential', "):
+            make(law="greenwod")
+    with pytest.raises(sb.InputError, match="alpha = 2 is of another contact law"):
+        sb.solve(contact.replace(alpha=2.0), law="greenwood-williamson")
+
+
+def test_a_check_says_what_two_laws_have_in_common(case):
+    found = sb.load_case(case("greenwood-williamson", {"alpha": "1.0"})).contact
+    [said] = [each.sentence for each in sb.check(found) if each.name == "contact law at the centre"]
+    gap = float(re.search(r"central gap is ([0-9.]+) h_rms", said)[1])
+    beta = float(re.search(r"alpha = 2 and beta = ([0-9.e-]+) does", said)[1])
+    same = found.beta * float(np.exp(sb.GreenwoodWilliamson().log_pressure(np.array([gap]))[0]))
+    assert beta * math.exp(-2 * gap) == pytest.approx(same, rel=2e-2)

@@ -28,7 +28,7 @@ MODELS = {
     "both move": {"slide_to_roll": 0.5},
     "layer": {"solid": sb.solids.Layer("1 mm")},
     "viscoelastic": {"solid": sb.solids.StandardLinearSolid("1 ms", 2.0)},
-    "Greenwood-Tripp": {"law": "greenwood-tripp"},
+    "finite surface": {"law": sb.FiniteSurface(2.0)},
     "exit": {"cavitation": "exit"},
     "exit, Barus": {"cavitation": "exit", "fluid": sb.fluids.Barus("20 1/GPa")},
     "reform": {"cavitation": "reform", "cavity_pressure": "-1 kPa"},

@@ -181,7 +181,11 @@ def some_case(random, kind, folder):
     elif surface == "asperities":
         tables["asperities"] = {"density": "1e10 1/m^2", "radius": "10 um", "deviation": "0.5 um"}
     if surface is None or surface.startswith("table"):
-        contact |= {"roughness": float(10 ** random.uniform(-7, -5)), "alpha": 2, "beta": float(10 ** random.uniform(-2, 0))}
+        contact |= {
+            "roughness": float(10 ** random.uniform(-7, -5)),
+            "alpha": 1 if "greenwood" in law else 2,
+            "beta": float(10 ** random.uniform(-2, 0)),
+        }
     if law == "table":
         tables["table"] = (
             {"file": "law.csv"} if surface == "table file" else {"separation": [0, 1, 2, 4.5], "pressure": [1, 0.4, 0.1, 1e-3]}
@@ -394,6 +398,15 @@ def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
         assert choices.state_of(shown, name)["value"] == ("" if name == "preset" else value)
         check_link_and_saved_case(shown)
         assert choices.choose(shown, name, choices.CHOICES[name].first).model in ("", shown.model)
+
+
+def test_a_law_that_is_chosen_presses_as_the_one_before_at_a_gap_of_one_h_rms():
+    tripp = choices.choose(START, "law", "greenwood-tripp")
+    before, after = START.contact, tripp.contact
+    pressure = after.beta * float(np.exp(after.law.log_pressure(np.array([after.alpha]))[0]))
+    assert after.alpha == 1.0 and pressure == pytest.approx(before.beta * math.exp(-before.alpha))
+    back = choices.choose(tripp, "law", "exponential").contact
+    assert (back.alpha, back.beta) == pytest.approx((before.alpha, before.beta))
 
 
 @pytest.mark.parametrize("start", ["cylinder", "ball", "surface", "ball on a surface"])

@@ -27,7 +27,7 @@ CASES = {
     ),
     "Persson, spectrum": (NOTHING | {"law": '"persson"'}, {"surface": SPECTRUM}),
     "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}),
-    "Greenwood-Tripp": ({"law": '"greenwood-tripp"'}, {}),
+    "Greenwood-Tripp": ({"law": '"greenwood-tripp"', "alpha": "1.0"}, {}),
     "Greenwood-Williamson, asperities": (NOTHING | {"law": '"greenwood-williamson"'}, {"asperities": ASPERITIES}),
     "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}),
 }
@@ -86,6 +86,8 @@ def check_round_trip(capsys, folder, contact, tables, free):
 @pytest.mark.parametrize("name", CASES)
 def test_a_fitted_case_of_every_law_has_the_fitted_curve(capsys, tmp_path, name, free):
     contact, tables = CASES[name]
+    if "Greenwood" in name:  # its alpha is one
+        free = tuple(each for each in free if each != "alpha")
     check_round_trip(capsys, tmp_path, contact, tables, free)
 
 

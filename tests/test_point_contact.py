@@ -163,7 +163,7 @@ def test_replaced_values_are_checked_too():
 
 @pytest.mark.quick
 def test_a_ball_travels_to_other_processes():
-    c = ball(law=sb.GreenwoodTripp())
+    c = ball(law=sb.GreenwoodTripp(), alpha=1.0)
     assert pickle.loads(pickle.dumps(c)) == c
 
 

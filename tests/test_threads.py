@@ -38,7 +38,7 @@ class FactorisedError(Exception):
 
 def fit_solved():
     data = measured(np.geomspace(1e-3, 1e-1, 5), np.full(5, 0.5))
-    return sb.fit(data, TRUE.replace(law=sb.GreenwoodTripp()), intervals=False)
+    return sb.fit(data, TRUE.replace(law=sb.GreenwoodTripp(), alpha=1.0), intervals=False)
 
 
 @pytest.mark.parametrize(

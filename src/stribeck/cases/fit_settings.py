@@ -134,7 +134,7 @@ class FitSettings:
     curves: dict[str, dict[str, Any]] = field(default_factory=dict)
     geometry: str = "line"
     slide_to_roll: float = PURE_SLIDING
-    scales_surface: bool = False
+    scales_surface: bool = field(default=False, compare=False)
 
     @classmethod
     def of(cls, contact: Contact) -> Self:

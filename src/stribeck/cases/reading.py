@@ -23,7 +23,7 @@ from stribeck.quantities.given.conversions import read_given
 from stribeck.quantities.given.uncertain import has_error, split_error
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
 from stribeck.quantities.part_inputs import PART_INPUTS
-from stribeck.quantities.units import DIMENSIONS, InputError
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 __all__ = ["check_case", "contact_inputs", "geometry_of", "group_inputs", "load_case"]
 
@@ -117,6 +117,11 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         except InputError as problem:
             said = str(problem).splitlines()
             problems = [line if line.startswith(("[", "the table")) else in_file(line, "contact") for line in said]
+        else:
+            if "alpha" in errors and hasattr(contact.law, "fixed_alpha"):
+                problems.append(
+                    f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."
+                )
     if problems:
         raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
     return Case(

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from stribeck.checks.check import Check, Verdict, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
+from stribeck.contacts.contact import Contact
 from stribeck.curves.regime import Transition
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
-from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum_note
+from stribeck.solver.notes import ADVICE, LAW_RANGE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
 WORTH_SAYING = 0.005
@@ -74,11 +77,24 @@ def range_at_centre(subject: Subject) -> Check | None:
     if notes:
         sentence = " ".join(notes)
     elif matters(contact, state.observables):
-        sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law."
+        sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law.{_in_common(contact, ratio)}"
     else:
         limit = math.inf
         sentence = f"The central gap is {ratio:.3g} h_rms; asperities carry too little for the law to matter."
     return Check("contact law at the centre", ratio, limit, verdict, sentence, "h_rms", limit == low)
+
+
+def _in_common(contact: Contact, ratio: float) -> str:
+    """Return what a law with an alpha of its own has in common with the exponential one; nothing for others."""
+    law = contact.law
+    if law is None or not hasattr(law, "fixed_alpha") or ratio <= 0:
+        return ""
+    excess = float(law.log_pressure(np.array([contact.alpha * ratio]))[0]) + USUAL_ALPHA * ratio
+    beta = contact.beta * math.exp(excess)
+    return (
+        f" There the {law.name} law with beta = {contact.beta:.3g} presses as the exponential law with alpha = "
+        f"{USUAL_ALPHA:g} and beta = {beta:.3g} does: their coefficients are not those of each other."
+    )
 
 
 def range_at_minimum(subject: Subject) -> Check | None:

@@ -111,6 +111,9 @@ class _GaussianHeights:
     order: ClassVar[float]
     name: ClassVar[str]
     lowest: ClassVar[float] = -math.inf
+    fixed_alpha: ClassVar[float] = 1.0
+    """The only alpha: separations are in standard deviations of the summit heights, which is the h_rms of the contact."""
+    beta_formula: ClassVar[str]
 
     @property
     def parameters(self) -> dict[str, float | str]:
@@ -153,6 +156,7 @@ class GreenwoodWilliamson(_GaussianHeights):
 
     order: ClassVar[float] = 1.5
     name: ClassVar[str] = "greenwood-williamson"
+    beta_formula: ClassVar[str] = "4/3 density radius deviation (deviation/radius)^(1/2)"
 
     @staticmethod
     def coefficients(*, density: str | float, radius: str | float, deviation: str | float) -> dict[str, float]:
@@ -203,6 +207,7 @@ class GreenwoodTripp(_GaussianHeights):
 
     order: ClassVar[float] = 2.5
     name: ClassVar[str] = "greenwood-tripp"
+    beta_formula: ClassVar[str] = "4.739 (density radius deviation)^2 (deviation/radius)^(1/2)"
 
     @staticmethod
     def coefficients(*, density: str | float, radius: str | float, deviation: str | float) -> dict[str, float]:

@@ -93,6 +93,19 @@ def largest_load(law: AsperityLaw | None) -> float:
     return 1.0 if is_exponential(law) else math.inf
 
 
+def check_alpha(law: AsperityLaw | None, alpha: float) -> None:
+    """Refuse the alpha of another law where a law has one of its own."""
+    fixed = getattr(law, "fixed_alpha", alpha)
+    if law is None or math.isclose(alpha, fixed, rel_tol=1e-9):
+        return
+    formula = getattr(law, "beta_formula", "")
+    raise InputError(
+        f"alpha = {alpha:g} is of another contact law: under {law.name} it is {fixed:g}, roughness is the standard deviation "
+        f"of the summit heights, and beta is {formula}. Give density, radius and deviation of the summits, in a table "
+        f"[asperities] or to sb.{type(law).__name__}.coefficients(...), or alpha = {fixed:g} with the beta of this law."
+    )
+
+
 _ACCEPTED: WeakValueDictionary[int, Any] = WeakValueDictionary()
 """Laws that were looked at: those of a curve are the same object at all its states."""
 

@@ -8,12 +8,13 @@ which the groups of a state carry; :class:`ScaledLaw` makes the contact law of i
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
-from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.quantities.units import InputError, show
 
 NAMED: dict[str, AsperityLaw | None] = {
@@ -153,6 +154,11 @@ class BlendedLaw:
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return none: no result has this law."""
         return ()
+
+
+def law_of(law: Any) -> AsperityLaw | None:
+    """Return a contact law, given itself or by its name; None is the exponential one."""
+    return named_law(law) if isinstance(law, str) else check_law(law)
 
 
 def named_law(name: str) -> AsperityLaw | None:

@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 
-from stribeck.contact_laws.law import AsperityLaw, check_law
+from stribeck.contact_laws.law import AsperityLaw, check_alpha
+from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import contact_values, refuse_former, replaced
 from stribeck.quantities.given.conversions import converted
@@ -70,25 +71,26 @@ class Contact(ABC):
     WIDTH: ClassVar[str] = "Hertz half-width"
 
     @refuse_former
-    def __init__(self, *, law: AsperityLaw | None = None, **inputs: Any) -> None:
+    def __init__(self, *, law: str | AsperityLaw | None = None, **inputs: Any) -> None:
         self._keep(law, inputs)
 
-    def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
+    def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
         for name, value in contact_values(converted(inputs, self.INPUTS), self.INPUTS).items():
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "law", check_law(law))
+        object.__setattr__(self, "law", law_of(law))
+        check_alpha(self.law, self.alpha)
         self._check_scales()
 
     @classmethod
-    def of_kept(cls, inputs: Mapping[str, Any], law: AsperityLaw | None) -> Self:
+    def of_kept(cls, inputs: Mapping[str, Any], law: str | AsperityLaw | None) -> Self:
         """Return the contact that keeps these inputs, in SI units.
 
         Parameters
         ----------
         inputs : mapping of str to float
             What :meth:`inputs` gives; others by their default.
-        law : AsperityLaw or None
-            The contact law.
+        law : str or AsperityLaw or None
+            The contact law, or its name.
 
         Returns
         -------

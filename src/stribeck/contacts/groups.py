@@ -13,8 +13,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
-from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, is_exponential
-from stribeck.contact_laws.scaled import ScaledLaw
+from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
+from stribeck.contact_laws.scaled import ScaledLaw, law_of
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
 from stribeck.quantities.inputs import quantity
@@ -93,8 +93,7 @@ class Groups:
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
-        if self.law is not None:
-            check_law(self.law)
+        object.__setattr__(self, "law", law_of(self.law))
         check_geometry(self.geometry)
         if not isinstance(self.model, Model):
             raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")

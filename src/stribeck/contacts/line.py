@@ -67,8 +67,9 @@ class LineContact(WithParts):
         Young's modulus of the other body where it is soft too [Pa].
     poisson_ratio_2 : float, optional
         Poisson ratio of the other body [-].
-    law : AsperityLaw, optional
-        Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
+    law : str or AsperityLaw, optional
+        Contact law, or the name of one that needs no surface,
+        :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
     fluid : Fluid or law of sb.fluids, optional
         The fluid, whose viscosity at ambient pressure and low rate is ``viscosity``; Newtonian without it.
     cavitation : {"none", "exit", "reform"}

@@ -170,7 +170,7 @@ class WithParts(Contact):
         """The parts that are no inputs of its geometry."""
         return NAMES - set(self.INPUTS.names)
 
-    def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
+    def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
         names = self._part_names
         for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
             row = PART_INPUTS[PART_LETTERS.get(name, name)]

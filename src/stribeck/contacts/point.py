@@ -85,8 +85,9 @@ class PointContact(WithParts):
         Young's modulus of the other body where it is soft too [Pa].
     poisson_ratio_2 : float, optional
         Poisson ratio of the other body [-].
-    law : AsperityLaw, optional
-        Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
+    law : str or AsperityLaw, optional
+        Contact law, or the name of one that needs no surface,
+        :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
     fluid, cavitation, cavity_pressure, flow_factors, solid : object, optional
         As in :class:`stribeck.LineContact`; those that a ball does not have are refused by :func:`stribeck.solve`.
 
@@ -133,7 +134,7 @@ class PointContact(WithParts):
     __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(POINT))
 
     @refuse_former
-    def __init__(self, *, law: AsperityLaw | None = None, **inputs: Any) -> None:
+    def __init__(self, *, law: str | AsperityLaw | None = None, **inputs: Any) -> None:
         speed, ratio = inputs.get("speed"), inputs.get("slide_to_roll")
         if speed is not None and ratio is not None and quantity("slide_to_roll", ratio, POINT) != PURE_SLIDING:
             raise InputError(

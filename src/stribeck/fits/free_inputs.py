@@ -88,6 +88,8 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
     contacts = [contact.replace(**inputs) for inputs in data.inputs]
     for name in names:
         _check_matters(name, data)
+        if name == "alpha" and hasattr(contact.law, "fixed_alpha"):
+            raise InputError(f"alpha is free, but this law has only {contact.alpha:g}; free beta or roughness instead.")
         values = {curve: value for curve, each in enumerate(contacts) if (value := getattr(each, name, None)) is not None}
         if not values:
             raise InputError(f"{name} is free, but no curve has one: it belongs to {_owner(name)}; give it in the case.")

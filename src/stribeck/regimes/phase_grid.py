@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw, check_law
-from stribeck.contact_laws.scaled import named_law
+from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
@@ -191,7 +191,7 @@ def empty_diagram(
 
 def _unit_groups(law: str | AsperityLaw | None) -> Groups:
     """Return groups that have a contact law, for what they have beside their numbers."""
-    return Groups(1.0, 1.0, 1.0, law=named_law(law) if isinstance(law, str) else check_law(law))
+    return Groups(1.0, 1.0, 1.0, law=law_of(law))
 
 
 def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int]:

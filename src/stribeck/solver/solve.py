@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contact_laws.scaled import named_law
+from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
@@ -297,8 +297,7 @@ def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups
     """Return the problem with another contact law, unless none is given."""
     if law is None or not isinstance(problem, Groups | Contact):
         return problem
-    shape = named_law(law) if isinstance(law, str) else law
-    return replace(problem, law=shape) if isinstance(problem, Groups) else problem.replace(law=shape)
+    return replace(problem, law=law_of(law)) if isinstance(problem, Groups) else problem.replace(law=law)
 
 
 def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:

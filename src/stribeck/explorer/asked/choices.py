@@ -13,9 +13,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA
+from stribeck.contact_laws.scaled import NAMED
 from stribeck.contacts.model import Model
 from stribeck.explorer.asked.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
@@ -309,7 +313,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         if value == "persson":
             tables["surface"] = {key: TYPICAL[key] for key in SURFACE[0]}
             return _of_surface(now, tables | {"law": value})
-        return _with(now, {**tables, "law": value})
+        return _with(now, {**tables, "law": value}, **_same_pressure(now, NAMED[value]))
     if name == "geometry":
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         motion = tables.pop("motion", {})
@@ -324,6 +328,20 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         if value == choice.first:
             del table[choice.key]
     return _with(now, {**tables, where: table})
+
+
+def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
+    """Return alpha and beta with which another law presses as the present one does at a gap of one h_rms."""
+    old = now.contact.law
+    if not (hasattr(law, "fixed_alpha") or hasattr(old, "fixed_alpha")):
+        return {}
+    alpha = getattr(law, "fixed_alpha", float(now.table.quantities["alpha"].typical))
+
+    def log_pressure(of: AsperityLaw | None, separation: float) -> float:
+        return -separation if of is None else float(of.log_pressure(np.array([separation]))[0])
+
+    beta = now.contact.beta * math.exp(log_pressure(old, now.contact.alpha) - log_pressure(law, alpha))
+    return {"alpha": alpha, "beta": beta}
 
 
 def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
