@@ -245,6 +245,12 @@ VARIATIONS = {
         "Time [s];COF;speed [mm/s]", speed, lambda u, mu: 0.3, lambda u, mu: 50, rows=3 * ROWS
     )
     + PLAIN,
+    "letters behind the names": table("Sliding velocity, u (mm/s);Friction coefficient, mu", speed, friction),
+    "a letter with an index": table("v_s [mm/s];µ [-]", speed, friction),
+    "a set speed beside the measured one": table(
+        "Set speed [mm/s];Measured speed [mm/s];COF", lambda u, mu: 1, speed, friction
+    ),
+    "a Hersey number beside the speed": table("Hersey number;speed [mm/s];COF", lambda u, mu: 7 * u, speed, friction),
     "a shorter table of something else": "stiffness;damping\n3;4\n5;6\n\n" + PLAIN,
 }
 
@@ -277,6 +283,7 @@ ROTATION = {
     "a diameter": (table("Speed [rpm];Wear track diameter [mm];COF", speed, lambda u, mu: 18, friction), {}),
     "a line above": ("Track radius [mm];9\n\n" + table("Speed [rpm];COF", speed, friction), {}),
     "a diameter above": ("Track diameter: 1.8 cm\n\n" + table("Speed [rpm];COF", speed, friction), {}),
+    "a table above": ("Type;Radius (mm)\nRotary;9\n\n" + table("Rotary.Velocity (rpm);COF", speed, friction), {}),
     "a comment above": ("# track radius = 9 mm\n" + table("Speed [rpm];COF", speed, friction), {}),
 }
 
@@ -302,6 +309,9 @@ def test_advice_is_true_or_absent(written):
     ragged = refusal(written("speed [mm/s],COF\n0.1,0.5\n0.3,0.4,0.3\n"))
     assert "row 3 has 3 cells where the header has 2" in ragged and "decimal" not in ragged
     assert "begin decimals" in refusal(written("speed [mm/s],COF\n0,1,0,5\n0,3,0,4\n"))
+    columns = refusal(written("speed [mm/s];COF water;COF oil\n1;0.3;0.2\n2;0.2;0.1\n"))
+    assert columns.endswith("as in friction = ['COF water', 'COF oil'].")
+    assert "without marks between thousands" in refusal(written("speed [mm/s];mu\n1,000.5;0.3\n2,000.5;0.2\n"))
     several = refusal(written("A [mm/s];B [mm/s];COF\n1;2;0.3\n4;5;0.7\n"))
     assert "speed =" not in several and "'A [mm/s]', 'B [mm/s]', 'COF'" in several
 

@@ -26,6 +26,8 @@ MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "
 SYMBOLS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
 """What may stand in the brackets of a header in place of a unit: the letter of the quantity."""
 
+_LETTER = re.compile(r"(?<=[a-zäöüß]{3}) (?:u|v|mu|[µμ]|f ?[nt]|w)$")
+
 POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
@@ -53,9 +55,13 @@ def header_words(header: str) -> str:
 
 
 def is_named(header: str, pattern: str) -> bool:
-    """Return whether the words of a header match a pattern, with what stands before a dot in it or without, as ``DAQ.``."""
-    words = split_header(header)[0]
-    return any(re.fullmatch(pattern, header_words(each)) for each in (header, re.split(r"[.:]", words)[-1]))
+    """Return whether the words of a header match a pattern.
+
+    What stands before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
+    """
+    parts = (header, re.split(r"[.:]", split_header(header)[0])[-1])
+    words = [header_words(part) for part in parts]
+    return any(re.fullmatch(pattern, each) for each in (*words, *(_LETTER.sub("", each) for each in words)))
 
 
 def is_called(header: str, name: str) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
+from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.units import InputError, show
@@ -36,7 +36,8 @@ _FRICTION = (
 _ERROR = r"(?:err(?:or)?|uncertainty|sd|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
 
 WORDS = {
-    "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|(?:gleit)?geschwindigkeit|" + "|".join(SUMS),
+    "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|[uv] (?:s|sl|slide|sliding|rel)|(?:gleit)?geschwindigkeit|"
+    + "|".join(SUMS),
     "speed_viscosity": "eta u|etau|speed viscosity|viscosity speed|viscosity times speed",
     "hersey_number": "hersey|hersey number",
     "friction": _FRICTION,
@@ -113,6 +114,8 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
         found["error"] = [error]
     if "friction" not in found or not any(name in found for name in ABSCISSAS):
         _ask_for_columns(table, found)
+    if "speed" in found:  # what was set; the others follow from it
+        found = {meaning: names for meaning, names in found.items() if meaning not in ABSCISSAS[1:]}
     return found
 
 
@@ -127,6 +130,8 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
             rolling = PATTERNS["entrainment_speed"]
             names = [name for name in names if not is_named(name, rolling) or is_mean_of_time(table, name, settings)]
         fitting = [name for name in names if _fits(table, name, meaning, settings)]
+        measured = [name for name in fitting if not is_set(name)]
+        fitting = measured or fitting
         # A speed or a friction of another unit is refused by its unit; other columns with one mean something else.
         if names and (fitting or meaning in ("friction", *ABSCISSAS)):
             return fitting or names
@@ -199,8 +204,9 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
     used = {name for names in found.values() for name in names}
     unknown = [name for name in table.written if name not in used and name in table.header and not _LOGARITHM.search(name)]
     unknown = [name for name in unknown if not _OF_ERROR.fullmatch(header_words(name))]
-    examples = {
-        "speed": [name for name in unknown if has_dimension(table.unit(name), "speed")],
+    mean = re.compile("mean|average|entrain|rolling|ball|disc|disk|upper|lower", re.IGNORECASE)  # no sum of speeds
+    examples: dict[str, list[str | list[str]]] = {
+        "speed": [name for name in unknown if has_dimension(table.unit(name), "speed") and not mean.search(name)],
         "friction": [name for name in unknown if table.unit(name) in BARE and _may_be_friction(table, name)],
     }
     if "friction" in missing and not examples["friction"]:
@@ -210,17 +216,18 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
                 f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
                 "friction, the friction force over the normal force."
             )
+    units = ""
     if [name.lower() for name in unknown] == ["x", "y"]:
-        examples = {"speed": unknown[:1], "friction": unknown[1:]}  # of a program that reads curves off pictures
+        examples = {"speed": [unknown[0]], "friction": [unknown[1]]}  # of a program that reads curves off pictures
+        units = ", and the unit of the speed in [fit.units]"
+    several = [name for name in unknown if re.match(rf"(?:{_FRICTION}) .", header_words(name)) and table.unit(name) in BARE]
+    if len(several) > 1:
+        examples["friction"] = [several]
     sure = [f"{name} = {show(examples[name][0])}" for name in missing if len(examples[name]) == 1]
     raise InputError(
         f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
-        f"the case{', as in ' if sure else ''}{' and '.join(sure)}{_and_units(table, examples['speed'], missing)}."
+        f"the case{', as in ' if sure else ''}{' and '.join(sure)}{units}."
     )
-
-
-def _and_units(table: TextTable, speeds: list[str], missing: list[str]) -> str:
-    return ", and the unit of the speed in [fit.units]" if "speed" in missing and not any(map(table.unit, speeds)) else ""
 
 
 def _alike(meaning: str) -> tuple[str, ...]:

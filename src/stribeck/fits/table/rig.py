@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, header_words, is_called, is_named, number_of
+from stribeck.files.cells import MISSING, header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.repeats import FEWEST
 from stribeck.fits.table.units import has_dimension, si_factor
@@ -199,8 +199,13 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
             found.setdefault(meaning, []).append(name)
             break
     for names in found.values():
-        names.sort(key=lambda name: re.search(r"\b(?:nominal|set|target)\b", header_words(name)) is not None)
+        names.sort(key=is_set)
     return found
+
+
+def is_set(name: str) -> bool:
+    """Return whether a column holds what was asked of the rig and not what it measured."""
+    return re.search(r"\b(?:nominal|set|target)\b", header_words(name)) is not None
 
 
 def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
@@ -290,15 +295,35 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[f
 
 def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
     """Return a quantity [SI] that a line above the header gives with its unit, the row and its name; None if none does."""
-    for number, text in table.above:
-        found = _STATED.fullmatch(text.strip())
-        if not found or not is_named(found["name"].strip(), pattern):
-            continue
-        unit = next((each for each in found.group("before", "after") if each), "").strip()
-        read = number_of(found["value"], "," if "," in found["value"] else ".")
-        if read is not None and read[0] > 0 and has_dimension(unit or "-", dimension):
-            return read[0] * si_factor(unit, dimension, found["name"]), number, found["name"].strip()
+    for number, text, below in zip(*_lines_above(table), strict=True):
+        for name, unit, value in _statements(text, below):
+            read = number_of(value, "," if "," in value else ".")
+            if (
+                is_named(name, pattern)
+                and read is not None
+                and read[0] > 0
+                and has_dimension(read[1] or unit or "-", dimension)
+            ):
+                return read[0] * si_factor(read[1] or unit, dimension, name), number, name
     return None
+
+
+def _lines_above(table: TextTable) -> tuple[list[int], list[str], list[str]]:
+    """Return number and text of each line above the header, and the text of the next line."""
+    texts = [text for _, text in table.above]
+    return [number for number, _ in table.above], texts, [*texts[1:], ""][: len(texts)]
+
+
+def _statements(text: str, below: str) -> list[tuple[str, str, str]]:
+    """Return name, unit and value of what a line gives: one quantity, or several whose values stand below their names."""
+    found = _STATED.fullmatch(text.strip())
+    if found:
+        return [(found["name"].strip(), (found["before"] or found["after"] or "").strip(), found["value"])]
+    mark = next((mark for mark in "\t;," if mark in text), "")
+    if not mark:
+        return []
+    pairs = zip(text.split(mark), below.split(mark), strict=False)
+    return [(*split_header(name.strip()), value.strip()) for name, value in pairs]
 
 
 def _is_diameter(name: str) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING, number_of, split_header
 from stribeck.files.text_table import TextTable
@@ -11,6 +13,8 @@ from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Values"]
+
+THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?$")
 
 LARGEST_FRICTION = 10.0
 """Friction coefficient from which percent are suspected."""
@@ -33,7 +37,9 @@ class Values:
             return None
         found = number_of(cell, self.decimal)
         if found is None:
-            raise InputError(f"{where}: {show(cell)} is not a number; leave the cell empty where a value is missing.")
+            thousands = "write it without marks between thousands"
+            advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
+            raise InputError(f"{where}: {show(cell)} is not a number; {advice}.")
         number, unit = found
         value = number * (self._factor(unit, meaning, where) if unit else self._unit(column, at, meaning))
         return self._checked(value, cell, meaning, where)
