@@ -95,6 +95,20 @@ def test_a_row_of_units_stays_when_the_header_comes_again(written):
     assert "friction = |'Fx' / 'Fz'|" in made.taken
 
 
+def test_the_temperature_of_the_rows_is_said():
+    [note] = [note for note in read("04_ball_on_disc_duplicate_and_blank_headers.txt").notes if "Temperature" in note]
+    assert note.startswith("Temperature by 'Lube Temp (°C)': 25.1 °C; the viscosity of the case must be that")
+
+
+def test_units_below_the_names_of_a_tabulated_law_count(written):
+    rows = "\n".join(f"{s},{p}" for s, p in [(0.1, 9), (0.5, 6), (1, 4), (2, 2), (3, 1)])
+    numbers = {"alpha": 2.0, "beta": 0.05, "roughness": 1e-6, "modulus": 2e6}
+    in_header = written(f"gap [um],pressure [kPa]\n{rows}\n", "a.csv")
+    below = written(f"gap,pressure\num,kPa\n{rows}\n", "b.csv")
+    laws = [sb.TableLaw.read(path, **numbers) for path in (in_header, below)]
+    assert laws[0] == laws[1]
+
+
 def test_the_standard_error_after_a_plus_minus_sign_is_that_of_friction():
     found = read("13_plus_minus_cells.csv")
     assert found.error == pytest.approx(0.05 * found.friction, rel=1e-3)

@@ -220,7 +220,9 @@ def read_two_columns(
     table = read_table(path, expected=advice)
     found = [_NAMED.fullmatch(cell) for cell in table.header]
     names = tuple(match[1].strip().lower() if match else "" for match in found)
-    units = [match[2] for match in found if match]
+    units = [
+        (match[2] if match else None) or table.unit(name) or None for match, name in zip(found, table.header, strict=True)
+    ]
     values = values_of(path, table.rows, table.numbers, comma=table.decimal_comma, missing=False)
     if names == plain and units == [None, None]:
         return values, None

@@ -21,7 +21,7 @@ from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
 from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats
-from stribeck.fits.table.rig import prepared
+from stribeck.fits.table.rig import prepared, temperature_note
 from stribeck.fits.table.strokes import without_stops
 from stribeck.fits.table.values import Values
 from stribeck.quantities.formats import format_si
@@ -195,7 +195,11 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         curves=names,
         inputs=differing,
         rows=np.array([rows[i][1] for i in order]),
-        notes=(*_notes(table, columns, empty, made, run), *(() if averaged is None else averaged.notes)),
+        notes=(
+            *_notes(table, columns, empty, made, run),
+            *temperature_note(table),
+            *(() if averaged is None else averaged.notes),
+        ),
         taken=_taken(columns, written, made, run),
         run_in=() if averaged is None else averaged.run_in,
     )

@@ -20,7 +20,7 @@ from stribeck.fits.table.repeats import FEWEST
 from stribeck.fits.table.units import has_dimension, si_factor
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["MADE_SPEED", "RIG", "prepared"]
+__all__ = ["MADE_SPEED", "RIG", "prepared", "temperature_note"]
 
 RIG = ("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run")
 """What a column of a rig may be beside those of a friction curve."""
@@ -77,6 +77,12 @@ _STATED = re.compile(
     r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[A-Za-zµμ]*)[\])]?[\s;,]*"
 )
 
+TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K", "°F": "°F", "ºC": "°C"}
+"""Units of temperatures, and how they are printed."""
+
+SAME_TEMPERATURE = 0.1
+"""Difference of temperatures that a sentence does not tell apart."""
+
 NEXT_LEVEL = 1.1
 """Ratio of neighbouring values from which they belong to two settings, and not to the noise of one."""
 
@@ -132,6 +138,19 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
             table, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
             said += sentences
     return table, tuple(said), found.get("run", [""])[0]
+
+
+def temperature_note(table: TextTable) -> tuple[str, ...]:
+    """Return a sentence on the measured temperature, for which the viscosity of a case has to be; none without it."""
+    names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
+    names.sort(key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", header_words(name)) is None)
+    for name in names:
+        values = [value for value in _cells_or_none(table, name) if value is not None]
+        if values:
+            low, high, unit = min(values), max(values), TEMPERATURES[table.unit(name)]
+            said = f"{low:g} {unit}" if high - low < SAME_TEMPERATURE else f"{low:g} to {high:g} {unit}"
+            return (f"Temperature by {show(name)}: {said}; the viscosity of the case must be that at this temperature.",)
+    return ()
 
 
 def _levelled(
@@ -405,14 +424,18 @@ def _numbers(table: TextTable, name: str, dimension: str, unit: str) -> list[flo
 
 
 def _cells(table: TextTable, name: str) -> list[float | None]:
-    at, decimal = table.header.index(name), "," if table.decimal_comma else "."
-    found: list[float | None] = []
-    for number, row in zip(table.numbers, table.rows, strict=True):
-        read = None if row[at].lower() in MISSING else number_of(row[at], decimal)
-        if read is None and row[at].lower() not in MISSING:
-            raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(row[at])} is not a number.")
-        found.append(None if read is None else read[0])
+    """Return the numbers of a column as written, None where there is none; refuse text."""
+    found = _cells_or_none(table, name)
+    for number, cell, value in zip(table.numbers, table.column(name), found, strict=True):
+        if value is None and cell.lower() not in MISSING:
+            raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(cell)} is not a number.")
     return found
+
+
+def _cells_or_none(table: TextTable, name: str) -> list[float | None]:
+    decimal = "," if table.decimal_comma else "."
+    read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
+    return [None if each is None else each[0] for each in read]
 
 
 def _with_column(table: TextTable, name: str, values: Sequence[float | None]) -> TextTable:
