@@ -8,7 +8,7 @@ import textwrap
 import matplotlib
 import numpy as np
 import pytest
-from command_line import HEAVY, PDMS, run_python
+from command_line import HEAVY, PDMS, call, run_python
 
 import stribeck as sb
 from stribeck.curves.plot import plot_curve, plot_profile
@@ -87,20 +87,18 @@ def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
 
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
     axes = plot_curve(curve).axes[0]
-    for label, values in (
-        ("friction", curve.friction),
-        ("from asperities", curve.friction_contact),
-        ("from the fluid", curve.friction_viscous),
-    ):
+    for label, values in (("from asperities", curve.friction_contact), ("from the fluid", curve.friction_viscous)):
         np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
         np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
+    drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
+    assert set(zip(curve.hersey_number, np.asarray(curve.friction), strict=True)) <= drawn
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
 
 
 def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
     axes = plot_curve(curve).axes[1]
-    np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.hydrodynamic_friction)
-    np.testing.assert_array_equal(line(axes, "friction").get_ydata(), curve.friction)
+    drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
+    assert set(zip(curve.hydrodynamic_friction, np.asarray(curve.friction), strict=True)) <= drawn
     law = line(axes, "as smooth surfaces")
     np.testing.assert_array_equal(law.get_xdata(), law.get_ydata())
 
@@ -141,7 +139,7 @@ def test_a_curve_over_load_or_roughness_has_it_as_abscissa():
     for over, unit in (("load", "N/m"), ("roughness", "m")):
         curve = KINDS[f"over {over}"]()
         axes = plot_curve(curve).axes[0]
-        np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.values)
+        assert set(curve.values) <= set(line(axes, "friction").get_xdata())
         assert axes.get_xlabel().startswith(over) and axes.get_xlabel().endswith(f"({unit})")
 
 
@@ -188,7 +186,12 @@ def test_where_the_law_is_beyond_its_range_the_picture_says_so(curve, heavy):
     hatched = [patch.get_label() for patch in plot_curve(heavy).axes[0].collections]
     assert "contact law outside its range" in hatched
     assert "outside its range, as asperities cannot carry this load" in words(plot_curve(heavy))
-    assert "contact law outside its range" not in [c.get_label() for c in plot_curve(curve).axes[0].collections]
+    [strip] = [c for c in plot_curve(curve, abscissa="speed").axes[0].collections if "outside" in c.get_label()]
+    low, high = strip.get_datalim(strip.axes.transData).intervalx
+    beyond = curve.values[np.array([any("beyond" in note for note in each.notes) for each in curve.solutions])]
+    assert low < beyond.min() <= beyond.max() < high < 3 * beyond.max()
+    inside = curve_of(PDMS, speed=("0.1 mm/s", "3 mm/s"), points=3)
+    assert not any("outside" in c.get_label() for c in plot_curve(inside).axes[0].collections)
 
 
 def test_an_interrupted_curve_says_how_many_points_it_has():
@@ -199,6 +202,56 @@ def test_an_interrupted_curve_says_how_many_points_it_has():
     found = words(plot_curve(sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=5, on_point=stop)))
     assert "2 of 5 points" in found
     assert "Interrupted; the finished points are kept" in found
+
+
+def test_notes_stand_in_a_caption_of_the_colour_of_the_text_and_stay_away_if_not_wanted(heavy, solution):
+    for result in (heavy, heavy.solutions[0]):
+        said = [text for text in result.plot().texts if text.get_color() == "#1f2328" and text.get_size() == 8]
+        assert len(said) >= len(result.notes) > 0
+        assert "outside its range" in " ".join(text.get_text() for text in said)
+        without = words(result.plot(notes=False))
+        assert "outside its range," not in without and "stribeck 0." in without
+
+
+def test_the_marks_lie_on_the_line_that_is_drawn(heavy):
+    axes = heavy.plot().axes[0]
+    drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
+    for label in ("minimum", "fluid carries half the load"):
+        assert set(zip(*line(axes, label).get_data(), strict=True)) <= drawn
+
+
+@pytest.mark.parametrize("kind", ["over speed", "over load", "over roughness"])
+def test_the_contact_itself_is_marked_where_it_lies(kind):
+    curve = KINDS[kind]()
+    own = getattr(curve.contact, curve.over)
+    axes = curve.plot(**({"abscissa": "speed"} if curve.over == "speed" else {})).axes[0]
+    np.testing.assert_allclose(line(axes, "this contact, at ").get_xdata(), own, rtol=1e-9)
+    beyond = KINDS["over speed"]().contact.replace(speed=50.0)
+    far = sb.stribeck_curve(beyond, speed=("1 mm/s", "1 m/s"), points=2).plot()
+    assert not any(each.get_label().startswith("this contact") for each in far.axes[0].lines)
+
+
+def test_the_lower_axis_is_the_one_that_is_wanted(curve):
+    axes = curve.plot(abscissa="speed").axes[0]
+    assert axes.get_xlabel() == "sliding speed $U$ (m/s)"
+    np.testing.assert_array_equal(line(axes, "from the fluid").get_xdata(), curve.values)
+    axes.figure.canvas.draw()
+    assert axes.child_axes[0].get_xlabel().startswith("Hersey number")
+    np.testing.assert_allclose(axes.child_axes[0].get_xlim(), curve.hersey_number[[0, -1]], rtol=1e-12)
+    with pytest.raises(sb.InputError, match=r"abscissa = 'sped'; it must be 'hersey' or 'speed'\.$"):
+        curve.plot(abscissa="sped")
+
+
+def test_the_command_leaves_the_notes_out_of_the_picture_and_prints_them(tmp_path, capsys):
+    texts = {}
+    for extra in ((), ("--no-notes",)):
+        path = tmp_path / f"curve{len(extra)}.svg"
+        answer = call(
+            capsys, "curve", HEAVY, "--points", 3, "--range", "1 mm/s", "1 m/s", "--rtol", "1e-4", "--plot", path, *extra
+        )
+        assert answer.code == 0 and "outside its range" in answer.out.replace("\n", " ")
+        texts[extra] = path.stat().st_size
+    assert texts[("--no-notes",)] < 0.95 * texts[()]
 
 
 # --- legibility ---

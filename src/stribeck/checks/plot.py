@@ -41,7 +41,7 @@ def plot_checks(
     """
     if not len(checks):
         raise InputError("no check could be made, so that there is nothing to draw.")
-    size, headline = (9.5, 1.2 + 0.28 * len(checks)), [(checks.headline, GREY)]
+    size, headline = (9.5, 1.2 + 0.28 * len(checks)), [[checks.headline]]
     figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", ax=ax, left=2.2, right=2.3)
     ax.set_xscale("log")
     for verdict, colour in COLOURS.items():

@@ -67,7 +67,7 @@ def next_command(
         found = sb.fit(data, loaded, intervals=False, on_step=lambda what, n: progress(n, n + 1, what))
         plan = sb.next_runs(found, number, **choices, on_step=lambda n, m: progress(n, m, "states"))
     for picture in pictures:
-        plan.plot(picture, force=force)
+        plan.plot(picture, force=force, title=loaded.title)
     if json:
         from stribeck.cli.reports import json as report_json
 

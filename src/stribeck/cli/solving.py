@@ -20,6 +20,7 @@ from stribeck.cli.arguments import (
     Flag,
     FlowFactorsWord,
     GroupsLaw,
+    NoNotes,
     Number,
     Pair,
     SlideToRoll,
@@ -56,6 +57,7 @@ def solve_command(
     flow_factors: FlowFactorsWord = None,
     rtol: Number = None,
     plot: File = None,
+    no_notes: NoNotes = False,
     json: Flag = False,
     force: Flag = False,
 ) -> int:
@@ -77,6 +79,8 @@ def solve_command(
         Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     plot
         Draw gap and pressure to this file (.png, .svg or .pdf).
+    no_notes
+        Leave the notes out of the picture; they are printed.
     json
         Print JSON: every observable under its name, both friction coefficients and, with a case, SI values.
     force
@@ -97,7 +101,7 @@ def solve_command(
     for picture in pictures:
         from stribeck.curves.plot import plot_profile
 
-        plot_profile(solution, picture, force=force, title=title)
+        plot_profile(solution, picture, force=force, title=title, notes=not no_notes)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
     from stribeck.cli.reports.words import conversions_json, print_conversions
@@ -125,6 +129,7 @@ def curve_command(
     *,
     output: Annotated[list[Path] | None, Parameter(name=["--output", "-o"], negative="", show_default=False)] = None,
     plot: File = None,
+    no_notes: NoNotes = False,
     over: Word = None,
     range: Pair = None,
     points: Number = None,
@@ -160,6 +165,8 @@ def curve_command(
         Write the data to this file (.nc or .csv); may be given several times.
     plot
         Draw the curve to this file (.png, .svg or .pdf).
+    no_notes
+        Leave the notes out of the picture; they are printed.
     over
         What varies: speed, load or roughness; defaults to the value in the case, or speed.
     range
@@ -193,7 +200,7 @@ def curve_command(
         progress.writes = True
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
-        written, problems = _write(curve, title, outputs, pictures, force)
+        written, problems = _write(curve, title, outputs, pictures, force, not no_notes)
     from stribeck.checks.table import checks_of_curve
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
@@ -341,7 +348,7 @@ def figures_command(
 
 
 def _write(
-    curve: sb.StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
+    curve: sb.StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool, notes: bool
 ) -> tuple[list[str], list[str]]:
     """Write the files of a curve; return their names, and sentences about those that failed."""
     actions: dict[Path, Callable[[], object]] = {}
@@ -355,7 +362,7 @@ def _write(
     for path in pictures:
         from stribeck.curves.plot import plot_curve
 
-        actions[path] = lambda path=path: plot_curve(curve, path, force=force, title=title)  # type: ignore[misc]
+        actions[path] = lambda path=path: plot_curve(curve, path, force=force, title=title, notes=notes)  # type: ignore[misc]
     return attempted(actions)
 
 

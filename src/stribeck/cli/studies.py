@@ -14,6 +14,7 @@ from stribeck.cli.arguments import (
     CaseFile,
     File,
     Flag,
+    NoNotes,
     Number,
     Word,
     as_number,
@@ -120,6 +121,7 @@ def fit_command(
     free: Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)] = None,
     out: File = None,
     plot: File = None,
+    no_notes: NoNotes = False,
     robust: Flag = False,
     posterior: Number = None,
     json: Flag = False,
@@ -144,6 +146,8 @@ def fit_command(
         Write the case with the fitted values to this file (.toml).
     plot
         Draw data, fit and residuals to this file (.png, .svg or .pdf).
+    no_notes
+        Leave the notes out of the picture; they are printed.
     robust
         Limit the influence of outliers.
     posterior
@@ -173,7 +177,9 @@ def fit_command(
     for picture in pictures:
         from stribeck.fits.plot import plot_fit
 
-        actions[picture] = lambda picture=picture: plot_fit(found, picture, force=force, title=loaded.title)  # type: ignore[misc]
+        actions[picture] = lambda picture=picture: plot_fit(  # type: ignore[misc]
+            found, picture, force=force, title=loaded.title, notes=not no_notes
+        )
     if out is not None and found.converged:
         actions[out] = lambda: write_fitted_case(found, loaded, out, force=force)
     written, problems = attempted(actions)
@@ -205,6 +211,7 @@ def surface_command(
     gamma: Number = None,
     keep_spikes: Flag = False,
     plot: File = None,
+    no_notes: NoNotes = False,
     out: File = None,
     json: Flag = False,
     force: Flag = False,
@@ -242,6 +249,8 @@ def surface_command(
         Keep spikes (single points far above or below all neighbours) instead of replacing them.
     plot
         Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
+    no_notes
+        Leave the notes out of the picture; they are printed.
     out
         Write the table [surface] of a case file to this file (.toml).
     json
@@ -264,7 +273,7 @@ def surface_command(
     for picture in pictures:
         from stribeck.surfaces.plot import plot_surface
 
-        plot_surface(surface, picture, force=force)
+        plot_surface(surface, picture, force=force, notes=not no_notes)
     if out is not None:
         surfaces.write_surface_table(surface, out, force=force)
     written = [str(name) for name in (*pictures, *([out] if out is not None else []))]

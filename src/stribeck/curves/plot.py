@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -24,14 +24,14 @@ from stribeck.files.pictures import (
     add_legend,
     figure_of,
     finish_figure,
-    footer_lines,
     make_logarithmic,
     new_figure,
     picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import si_text
-from stribeck.quantities.units import DIMENSIONS
+from stribeck.quantities.units import DIMENSIONS, InputError, show
+from stribeck.solver.notes import law_notes
 from stribeck.solver.plot import law_text, plot_profile
 
 if TYPE_CHECKING:
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve
 
 __all__ = ["plot_atlas_curve", "plot_curve", "plot_profile"]
+
+Abscissa = Literal["hersey", "speed"]
 
 DECADES_BELOW = 1.3
 """How far the axis extends below the minimum friction, so that both parts of the friction show."""
@@ -58,14 +60,21 @@ FEW = 25
 
 @picture()
 def plot_curve(
-    curve: StribeckCurve, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    curve: StribeckCurve,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    force: bool = False,
+    title: str = "",
+    notes: bool = True,
+    abscissa: Abscissa = "hersey",
 ) -> Figure:
     """Draw a Stribeck curve.
 
     The first panel shows friction and its parts against the Hersey number, or, over load or roughness, against that
     quantity; the second shows friction against the law of the hydrodynamic branch, or the shares of the load where
-    that law does not hold. Regimes are shaded, minimum and transitions marked; the footer holds
-    the inputs.
+    that law does not hold. Regimes are shaded, minimum, transitions and the contact itself marked; the caption holds
+    the inputs and the notes.
 
     Parameters
     ----------
@@ -73,7 +82,11 @@ def plot_curve(
         The curve.
     ax : matplotlib.axes.Axes, optional
         Axes to draw friction into, over the coordinate of the curve, instead of a new figure.
+    abscissa : {"hersey", "speed"}
+        Lower axis of a curve over the speed of a contact; the other one stands above.
     """
+    if abscissa not in ("hersey", "speed"):
+        raise InputError(f"abscissa = {show(abscissa)}; it must be 'hersey' or 'speed'.")
     if ax is not None:
         figure = figure_of(ax)
         label = _abscissa_of_values(curve)
@@ -85,28 +98,29 @@ def plot_curve(
     by_speed = curve.over == "speed" and curve.contact is not None
     figure, (left, right) = new_figure(
         (11.0, 5.0 if by_speed else 4.6),
-        _footer(curve),
+        *_caption(curve, notes),
         columns=2,
         top=1.0 if by_speed else 0.6,
         title=title or "Stribeck curve",
     )
-    x, label = _abscissa(curve)
+    x, label = _abscissa(curve, abscissa)
     _draw_friction(left, curve, x)
     _strip(left, curve, x)
     left.set_xlabel(label)
     for axes in (left, right):
         axes.set_ylabel(_ordinate(curve))
     if by_speed and curve.contact is not None:
-        per_hersey = RULES[curve.groups.geometry].hersey(curve.contact)
+        above, above_label = _abscissa(curve, "speed" if abscissa == "hersey" else "hersey")
+        factor = float(above[0] / x[0])
 
-        def speed(hersey: Any) -> Any:
-            return hersey * per_hersey
+        def up(values: Any) -> Any:
+            return values * factor
 
-        def hersey(speed: Any) -> Any:
-            return speed / per_hersey
+        def down(values: Any) -> Any:
+            return values / factor
 
-        top = left.secondary_xaxis("top", functions=(speed, hersey))
-        top.set_xlabel(f"{speed_words(curve.contact)} $U$ (m/s)", color=GREY, fontsize=9)
+        top = left.secondary_xaxis("top", functions=(up, down))
+        top.set_xlabel(above_label, color=GREY, fontsize=9)
         top.tick_params(colors=GREY, labelsize=8, direction="in", which="both")
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":
@@ -148,7 +162,7 @@ def plot_atlas_curve(
     """
     read = f"read off the atlas, within {curve.table.error:.1g}"
     lines = [[*_given(curve), read, f"stribeck {version('stribeck')}"]]
-    figure, (axes,) = new_figure((6.8, 4.6), footer_lines(lines, [], 110), title=title or "Stribeck curve", ax=ax)
+    figure, (axes,) = new_figure((6.8, 4.6), lines, title=title or "Stribeck curve", ax=ax)
     _draw_friction(axes, curve, curve.values)
     axes.set(xlabel=_abscissa_of_values(curve), ylabel=_ordinate(curve))
     if ax is None:
@@ -158,8 +172,10 @@ def plot_atlas_curve(
     return finish_figure(figure, path, force)
 
 
-def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
+def _abscissa(curve: StribeckCurve, wanted: Abscissa) -> tuple[Array, str]:
     """Return the first panel's abscissa and its label."""
+    if curve.over == "speed" and curve.contact is not None and wanted == "speed":
+        return curve.values, f"{speed_words(curve.contact)} $U$ (m/s)"
     if curve.over == "speed":
         return curve.hersey_number, f"Hersey number ${RULES[curve.groups.geometry].hersey_symbol}$"
     return curve.values, _abscissa_of_values(curve)
@@ -183,11 +199,13 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
     """Draw the sizes of friction and its parts, the regimes and the landmarks against x."""
     total, contact, viscous = map(np.abs, (np.asarray(curve.friction), curve.friction_contact, curve.friction_viscous))
     error = curve.friction_error
-    style: dict[str, Any] = {"marker": "o", "ms": 3.0} if len(curve) <= FEW else {}
     make_logarithmic(axes, "x", x)
     if (total > 0).any():
         axes.set_yscale("log")
-    axes.plot(x, total, color=INK, lw=2.2, zorder=4, label=r"friction $\mu$", **style)
+    # Through the marks too, which lie beside straight lines between few points.
+    order = np.argsort(places := np.concatenate([curve.values, [mark.value for mark in curve.transitions]]), kind="stable")
+    heights = np.concatenate([total, [abs(mark.friction) for mark in curve.transitions]])[order]
+    axes.plot(_along(curve, x, places[order]), heights, color=INK, lw=2.2, zorder=4, label=r"friction $\mu$")
     if parts:
         axes.plot(
             x,
@@ -199,6 +217,8 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
             label="from asperities",
         )
         axes.plot(x, viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
+    if len(curve) <= FEW:
+        axes.plot(x, total, color=INK, ls="", marker="o", ms=3.0, zorder=4)
     if (error > 0.01 * total).any():
         axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="estimated error")
     if (total > 0).any():
@@ -209,13 +229,25 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
         axes.set_xlim(x.min(), x.max())
     _shade(axes, curve, x)
     for mark in curve.transitions:
-        at = np.exp(np.interp(math.log(mark.value), np.log(curve.values), np.log(x)))
+        at = _along(curve, x, mark.value)
         if mark is curve.minimum:
             label = rf"minimum, $\mu$ = {mark.friction:.3g} at {_place(curve, mark.value)}"
             axes.plot(at, abs(mark.friction), "o", ms=8, color=MARK, mec="white", mew=1.2, zorder=6, label=label)
         elif "50 %" in mark.name:
             label = f"fluid carries half the load, at {_place(curve, mark.value)}"
             axes.plot(at, abs(mark.friction), "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
+    own = None if curve.contact is None else getattr(curve.contact, curve.over)
+    if own is not None and len(curve) > 1 and curve.values.min() <= own <= curve.values.max():
+        axes.axvline(
+            _along(curve, x, own), color=GREY, lw=1.2, ls=(0, (1, 2)), zorder=2, label=f"this contact, at {_place(curve, own)}"
+        )
+
+
+def _along(curve: StribeckCurve | AtlasCurve, x: Array, values: Any) -> Any:
+    """Return where values of what varies lie along an abscissa that the points of a curve have; its points exactly."""
+    found = np.exp(np.interp(np.log(values), np.log(curve.values), np.log(x)))
+    known = dict(zip(curve.values.tolist(), x.tolist(), strict=True))
+    return np.array([known.get(float(value), at) for value, at in np.broadcast(values, found)]).reshape(np.shape(values))
 
 
 def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:
@@ -242,7 +274,7 @@ def _shade(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array) -> None:
     for regime, low, high in curve.regime_ranges:
         if whole == 0:
             continue
-        first, last = np.exp(np.interp(np.log([low, high]), np.log(curve.values), np.log(x)))
+        first, last = _along(curve, x, np.array([low, high]))
         axes.axvspan(first, last, color=TINTS[regime], lw=0, zorder=0)
         share = abs(math.log(last / first)) / whole
         if share > 0.0165 * len(regime):
@@ -260,14 +292,15 @@ def _shade(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array) -> None:
 
 
 def _strip(axes: Axes, curve: StribeckCurve, x: Array) -> None:
-    """Hatch a strip along the axis where the contact law is outside its range."""
-    outside = np.array([any("outside its range" in note for note in s.notes) for s in curve.solutions])
+    """Hatch a strip along the axis where the contact law is outside its range: there the check of it is not fine."""
+    outside = np.array([bool(law_notes(s.groups, s.contact, s.observables)) for s in curve.solutions])
     if outside.any():
+        middles = np.sqrt(x[:-1] * x[1:])
         axes.fill_between(
-            x,
+            np.column_stack([np.append(x[0], middles), np.append(middles, x[-1])]).ravel(),
             0.0,
             0.035,
-            where=outside.tolist(),
+            where=np.repeat(outside, 2).tolist(),
             transform=axes.get_xaxis_transform(),
             facecolor="none",
             edgecolor=CONTACT,
@@ -292,7 +325,8 @@ def _given(curve: StribeckCurve | AtlasCurve) -> list[str]:
     return first
 
 
-def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
+def _caption(curve: StribeckCurve, notes: bool) -> tuple[list[list[str]], list[str]]:
+    """Return what stands below the picture: inputs and how they were solved, and the notes where they are wanted."""
     count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
     law = law_text(curve.solutions[0]) if len(curve) else ""
     first = _given(curve)
@@ -309,5 +343,5 @@ def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
         count,
         f"stribeck {version('stribeck')}",
     ]
-    notes = list(curve.notes) if curve.outcome.ok else [curve.outcome.value, *curve.notes]
-    return footer_lines([first, second], notes, 172)
+    said = [] if curve.outcome.ok else [curve.outcome.value]
+    return [first, second], [*said, *(curve.notes if notes else ())]

@@ -19,7 +19,6 @@ from stribeck.files.pictures import (
     MARK,
     add_legend,
     finish_figure,
-    footer_lines,
     make_logarithmic,
     new_figure,
     picture,
@@ -36,7 +35,13 @@ __all__ = ["plot_comparison", "plot_plan"]
 
 @picture()
 def plot_comparison(
-    comparison: Comparison, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    comparison: Comparison,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    force: bool = False,
+    title: str = "",
+    notes: bool = True,
 ) -> Figure:
     """Draw by how much each law is behind the preferred one, with its weight.
 
@@ -47,8 +52,8 @@ def plot_comparison(
     """
     laws = comparison.candidates
     size = 8.0, 1.4 + 0.35 * len(laws)
-    footer = footer_lines([[comparison.sentence]], [f"{name}: {why}" for name, why in comparison.failed.items()], 112)
-    figure, (ax,) = new_figure(size, footer, title=title or "Which the data prefer", ax=ax, left=2.3)
+    failed = [f"{name}: {why}" for name, why in comparison.failed.items()] if notes else []
+    figure, (ax,) = new_figure(size, [[comparison.sentence]], failed, title=title or "Which the data prefer", ax=ax, left=2.3)
     rows = np.arange(len(laws))
     ax.barh(rows, [each.difference for each in laws], height=0.6, color=[INK, *[GREY] * (len(laws) - 1)])
     for row, each in enumerate(laws):

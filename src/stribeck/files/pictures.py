@@ -6,7 +6,6 @@ that they need no display and change no settings of the caller.
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -36,13 +35,15 @@ TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
 
 LINE = 0.19
 LEGEND = 0.55
-"""Heights of a line of the footer and of the legend [inch]."""
+EDGE = 0.15
+"""Heights of a line of the caption and of the legend, and what stays free beside a caption [inch]."""
 
 ARGUMENTS = {
     "path": "str or path-like, optional\n    Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.",
     "ax": "matplotlib.axes.Axes, optional\n    Axes to draw into, in place of a new figure.",
     "force": "bool\n    Whether an existing file is replaced; otherwise it is kept.",
     "title": "str\n    Headline.",
+    "notes": "bool\n    Whether the notes stand below the picture.",
 }
 """The arguments that functions share which draw."""
 
@@ -79,7 +80,8 @@ def blank_figure(width: float, height: float, dpi: float = 150, **options: Any) 
 
 def new_figure(
     size: tuple[float, float],
-    footer: Sequence[tuple[str, str]],
+    footer: Sequence[Sequence[str]],
+    notes: Sequence[str] = (),
     *,
     title: str,
     ax: Axes | None = None,
@@ -89,16 +91,18 @@ def new_figure(
     left: float = 0.8,
     right: float = 0.25,
 ) -> tuple[Figure, list[Axes]]:
-    """Return an empty figure in house style, with title and footer, and its axes, between margins in inches.
+    """Return an empty figure in house style, with title, caption of :func:`caption_lines` and axes, between margins in inches.
 
     Of axes that a caller gave it returns their figure, and them alone.
     """
     if ax is not None:
         return figure_of(ax), [ax]
     width, height = size
-    height += LINE * len(footer) + LEGEND
     figure = blank_figure(width, height)
-    low = (LINE * len(footer) + LEGEND + 0.72) / height
+    caption = caption_lines(figure, footer, notes, width - 0.8 - EDGE)
+    height += LINE * len(caption) + LEGEND
+    figure.set_size_inches(width, height)
+    low = (LINE * len(caption) + LEGEND + 0.72) / height
     high = 1 - top / height
     grid = figure.add_gridspec(
         rows, columns, left=left / width, right=1 - right / width, bottom=low, top=high, wspace=0.2, hspace=0.08
@@ -113,8 +117,10 @@ def new_figure(
     headline = textwrap.shorten(title, int(7.3 * width), placeholder=" …")
     place = 0.8 / width, 1 - 0.16 / height
     figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
-    for i, (line, colour) in enumerate(reversed(footer)):
-        figure.text(0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom")
+    for i, (line, colour) in enumerate(reversed(caption)):
+        figure.text(
+            0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom", parse_math=colour == GREY
+        )
     return figure, axes
 
 
@@ -177,21 +183,53 @@ def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
     return figure
 
 
-def footer_lines(parts: Sequence[Sequence[str]], notes: Sequence[str], width: int) -> list[tuple[str, str]]:
-    """Return lines of text with their colours, none longer than ``width``."""
-    lines: list[tuple[str, str]] = []
+def caption_lines(figure: Figure, parts: Sequence[Sequence[str]], notes: Sequence[str], room: float) -> list[tuple[str, str]]:
+    """Return the lines below a picture with their colours, broken as they are measured so that each fits into its room.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Whose letters they are made of.
+    parts : sequence of sequence of str
+        What was given: each part begins a line, its items stand in a row; they may hold formulas.
+    notes : sequence of str
+        Sentences, each of which begins a line.
+    room : float
+        Width of a line [inch].
+
+    Returns
+    -------
+    list of (str, str)
+        Text and colour of each line.
+    """
+    probe = figure.text(0.0, 0.0, "", size=8)
+
+    def fits(line: str) -> bool:
+        probe.set_text(line)
+        return bool(probe.get_window_extent().width <= room * figure.dpi)
+
+    lines = []
     for part in parts:
-        line = ""
-        for item in filter(None, part):
-            if line and len(_plain(line)) + len(_plain(item)) + 2 > width:
-                lines.append((line + ",", GREY))
-                line = ""
-            line += f", {item}" if line else item
-        if line:
-            lines.append((line, GREY))
-    return lines + [(line, CONTACT) for note in notes for line in textwrap.wrap(note, width)]
+        items = [item for item in part if item]
+        pieces = [f"{item}," for item in items[:-1]] + items[-1:]
+        whole = [word for piece in pieces for word in ([piece] if fits(piece) else piece.split(" "))]
+        lines += [(line, GREY) for line in _broken(whole, fits)]
+    probe.set_parse_math(False)
+    lines += [(line, INK) for note in notes for line in _broken(note.split(), fits)]
+    probe.remove()
+    return lines
 
 
-def _plain(text: str) -> str:
-    """Return text without the signs of mathematical typesetting, to count its letters."""
-    return re.sub(r"\\mathrm|\\(alpha|beta|eta|mu|pi)|[$_{}^\\]", "x", text).replace("xx", "x")
+def _broken(words: Sequence[str], fits: Callable[[str], bool]) -> list[str]:
+    """Return words as lines that fit; a word longer than a line is cut."""
+    lines: list[str] = []
+    for word in words:
+        if lines and fits(f"{lines[-1]} {word}"):
+            lines[-1] += f" {word}"
+            continue
+        while not fits(word):
+            most = max(1, sum(fits(word[:n]) for n in range(1, len(word))))
+            lines.append(word[:most])
+            word = word[most:]
+        lines.append(word)
+    return lines

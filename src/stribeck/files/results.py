@@ -32,7 +32,8 @@ class Drawn:
         force : bool
             Whether an existing file is replaced; otherwise it is kept and the call refused.
         **options
-            What this picture alone takes: ``title`` of most, ``colours="interference"`` of a ball.
+            What this picture alone takes: ``title`` of most, ``notes=False`` of those with notes below,
+            ``abscissa="speed"`` of a curve, ``colours="interference"`` of a ball.
 
         Returns
         -------

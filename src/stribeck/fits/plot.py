@@ -18,7 +18,6 @@ from stribeck.files.pictures import (
     MARK,
     add_legend,
     finish_figure,
-    footer_lines,
     make_logarithmic,
     new_figure,
     picture,
@@ -50,7 +49,13 @@ LABELS = {
 
 @picture()
 def plot_fit(
-    fit: Fit, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    fit: Fit,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    force: bool = False,
+    title: str = "",
+    notes: bool = True,
 ) -> Figure:
     """Draw a fit.
 
@@ -62,7 +67,8 @@ def plot_fit(
         Axes to draw friction into, in place of a new figure.
     """
     data = fit.data
-    figure, (above, *others) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction", ax=ax)
+    caption = _caption(fit, notes)
+    figure, (above, *others) = new_figure((8.5, 6.2), *caption, rows=2, title=title or "Fit to measured friction", ax=ax)
     bars: Any = fit._minimum.objective.sigma
     bars = None if bars is None else bars * (data.friction if fit.logarithmic else 1.0)
     styles = _draw_measured(above, data, bars)
@@ -132,9 +138,10 @@ def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, 
     return styles
 
 
-def _footer(fit: Fit) -> list[tuple[str, str]]:
+def _caption(fit: Fit, notes: bool) -> tuple[list[list[str]], list[str]]:
+    """Return what stands below the picture: values and how the fit ended, and the notes where they are wanted."""
     parts = [f"{each.label} {format_value(each)} (95 % {format_interval(each, 0.95)})" for each in fit.inputs]
     noise = "" if math.isnan(fit.noise) else f" Noise {fit.noise:.2g}{', relative' if fit.logarithmic else ''}."
     ended = f"{fit.outcome.value}{noise} Contact law: {fit.law}; friction: {fit.definition}."
-    warnings = [*fit.quality.messages, *(each.message for each in fit.undetermined)]
-    return footer_lines([[f"Fitted: {parts[0]}", *parts[1:]], [ended]], warnings, 132)
+    warnings = [*fit.quality.messages, *(each.message for each in fit.undetermined)] if notes else []
+    return [[f"Fitted: {parts[0]}", *parts[1:]], [ended]], warnings

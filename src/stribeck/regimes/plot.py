@@ -19,13 +19,11 @@ from stribeck.files.pictures import (
     GREY,
     INK,
     LEGEND,
-    LINE,
     MARK,
     TINTS,
     add_legend,
     figure_of,
     finish_figure,
-    footer_lines,
     new_figure,
     picture,
 )
@@ -101,9 +99,9 @@ def plot_phase_diagram(
         draw_phase_diagram(ax, dataset, load)
         return finish_figure(figure, path, force)
     plane = _plane(dataset, load)
+    inputs, said = _caption(dataset, [float(plane["load"])])
     # An empty line leaves room for the third row of the legend.
-    footer = [("", GREY), *_footer(dataset, [float(plane["load"])])]
-    figure, (axes,) = new_figure((9.0, 5.6), footer, title=title or "Phase diagram")
+    figure, (axes,) = new_figure((9.0, 5.6), [[" "], *inputs], said, title=title or "Phase diagram")
     draw_phase_diagram(axes, dataset, load)
     add_legend(figure, [axes], columns=3)
     return finish_figure(figure, path, force)
@@ -120,10 +118,9 @@ def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, f
     """
     _plane(dataset, None)
     loads = dataset["load"].values
-    footer = _footer(dataset, [loads[0], loads[-1]])
-    figure, (flat,) = new_figure((9.0, 6.4), footer, title=title or "Phase diagram")
+    figure, (flat,) = new_figure((9.0, 6.4), *_caption(dataset, [loads[0], loads[-1]]), title=title or "Phase diagram")
+    bottom = flat.get_position().y0 + (LEGEND - 0.72) / figure.get_figheight()
     flat.remove()
-    bottom = (LINE * len(footer) + 2 * LEGEND) / figure.get_figheight()
     axes = figure.add_axes((0.0, bottom, 0.97, 0.97 - bottom), projection="3d")
     draw_phase_space(axes, dataset)
     add_legend(figure, [axes], columns=3)
@@ -315,8 +312,8 @@ def _decades(axis: Any) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"$10^{{{value:.0f}}}$"))
 
 
-def _footer(dataset: xarray.Dataset, loads: list[float]) -> list[tuple[str, str]]:
-    """Return what the diagram was made with, as lines with colours."""
+def _caption(dataset: xarray.Dataset, loads: list[float]) -> tuple[list[list[str]], list[str]]:
+    """Return what the diagram was made with, and how it ended where it is not whole."""
     attributes = dataset.attrs
     values = dict.fromkeys(
         format_si(load, QUANTITIES["load"].dimension, 4) if dataset["load"].attrs["units"] != "1" else f"{load:.4g}"
@@ -339,5 +336,4 @@ def _footer(dataset: xarray.Dataset, loads: list[float]) -> list[tuple[str, str]
         count,
         f"stribeck {version('stribeck')}",
     ]
-    notes = [] if attributes["complete"] else [attributes["outcome"]]
-    return footer_lines([first, second], notes, 140)
+    return [first, second], [] if attributes["complete"] else [attributes["outcome"]]

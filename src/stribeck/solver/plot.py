@@ -21,7 +21,6 @@ from stribeck.files.pictures import (
     MARK,
     add_legend,
     finish_figure,
-    footer_lines,
     make_logarithmic,
     new_figure,
     picture,
@@ -43,7 +42,7 @@ __all__ = [
     "axis_in_si",
     "draw_gap",
     "draw_pressures",
-    "footer_of",
+    "caption_of",
     "law_text",
     "mark_failure",
     "plot_fields",
@@ -60,6 +59,7 @@ def plot_profile(
     ax: Axes | None = None,
     force: bool = False,
     title: str = "",
+    notes: bool = True,
 ) -> Figure:
     """Draw gap and pressures along the contact, of a ball on its plane too, in SI units where the solution has a contact.
 
@@ -73,8 +73,9 @@ def plot_profile(
     if not isinstance(solution, Solution):
         from stribeck.solver.point.plot import plot_point_solution
 
-        return plot_point_solution(solution, path, force=force, title=title)
-    figure, (*above, below) = new_figure((7.5, 6.0), footer_of(solution), rows=2, title=title or "Gap and pressure", ax=ax)
+        return plot_point_solution(solution, path, force=force, title=title, notes=notes)
+    caption = caption_of(solution, notes)
+    figure, (*above, below) = new_figure((7.5, 6.0), *caption, rows=2, title=title or "Gap and pressure", ax=ax)
     x = _positions(solution)
     fields = solution.profile(x)
     if solution.contact is None:
@@ -187,8 +188,8 @@ def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to
     axes.tick_params(labelbottom=False)
 
 
-def footer_of(solution: BaseSolution) -> list[tuple[str, str]]:
-    """Return the text below the picture of a state: inputs, groups, law, error and notes."""
+def caption_of(solution: BaseSolution, notes: bool) -> tuple[list[list[str]], list[str]]:
+    """Return what stands below the picture of a state: inputs, groups, law and error, and the notes where they are wanted."""
     groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
         law_text(solution),
@@ -196,8 +197,8 @@ def footer_of(solution: BaseSolution) -> list[tuple[str, str]]:
         f"estimated error {solution.error_estimate:.1e}",
         f"stribeck {version('stribeck')}",
     ]
-    notes = list(solution.notes) if solution.outcome.ok else [solution.outcome.value, *solution.notes]
-    return footer_lines([[*input_texts(solution.contact), *groups], second], notes, 112)
+    said = [] if solution.outcome.ok else [solution.outcome.value]
+    return [[*input_texts(solution.contact), *groups], second], [*said, *(solution.notes if notes else ())]
 
 
 def _positions(solution: Solution) -> Array:

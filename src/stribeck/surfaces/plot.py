@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, blank_figure, figure_of, finish_figure, picture
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure, new_figure, picture
 from stribeck.files.writing import PathLike
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import DIMENSIONS
@@ -29,7 +29,13 @@ MOST_PIXELS = 1024
 
 @picture()
 def plot_surface(
-    surface: Surface, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    surface: Surface,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    force: bool = False,
+    title: str = "",
+    notes: bool = True,
 ) -> Figure:
     """Draw the heights of a surface, its spectrum with the fit, and its contact law.
 
@@ -46,16 +52,20 @@ def plot_surface(
         figure = figure_of(ax)
         _draw_heights(figure, ax, surface)
         return finish_figure(figure, path, force)
-    figure = blank_figure(14.0, 5.2, dpi=130)
-    heights, spectrum, law = figure.subplots(1, 3)
-    figure.subplots_adjust(left=0.055, right=0.95, top=0.86, bottom=0.27, wspace=0.42)
-    figure.suptitle(title or surface.topography.source or "Surface", x=0.055, ha="left", size=13, color=INK)
+    figure, (heights, spectrum, law) = new_figure(
+        (14.0, 4.4),
+        [_found(surface)],
+        surface.notes if notes else (),
+        title=title or surface.topography.source or "Surface",
+        columns=3,
+        right=0.7,
+    )
+    heights.get_gridspec().update(wspace=0.42)  # type: ignore[union-attr]
     _draw_heights(figure, heights, surface)
     _draw_spectrum(spectrum, surface)
     _draw_law(law, surface)
     for axes in (spectrum, law):
         axes.legend(fontsize=8, frameon=False, loc="lower left")
-    _footer(figure, surface)
     return finish_figure(figure, path, force)
 
 
@@ -150,9 +160,8 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
     axes.set_title("Contact law", size=10, color=GREY, loc="left")
 
 
-def _footer(figure: Figure, surface: Surface) -> None:
-    import textwrap
-
+def _found(surface: Surface) -> list[str]:
+    """Return what was found, for the caption."""
     found, (alpha, beta) = surface.to_dict(), surface.fit.exponential_limit(surface.gamma)
     parts = [
         rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {error_text(found['h_rms_error'])}",
@@ -166,10 +175,7 @@ def _footer(figure: Figure, surface: Surface) -> None:
     ]
     if found["body_radius"] is not None:
         parts.insert(4, f"radius of the body {format_si(found['body_radius'], 'length')}")
-    lines: list[tuple[str, Any]] = [(", ".join(parts), GREY)]
-    lines += [(line, CONTACT) for note in surface.notes for line in textwrap.wrap(note, 190)]
-    for i, (line, color) in enumerate(lines[:6]):
-        figure.text(0.055, 0.125 - 0.026 * i, line, size=8, color=color)
+    return parts
 
 
 def _scale(length: float) -> tuple[float, str]:

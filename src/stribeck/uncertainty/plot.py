@@ -42,7 +42,7 @@ def plot_uncertainty(
     if not shown:
         raise InputError("no value of this state is positive, so that there is no interval to draw.")
     size = 8.5, 1.2 + 0.28 * len(shown)
-    footer = [(line, GREY) for line in (f"Regime: {found.probabilities}.", *found.sources)]
+    footer = [[f"Regime: {found.probabilities}."], *([line] for line in found.sources)]
     figure, (ax,) = new_figure(size, footer, title=title or "Uncertainty of a state", ax=ax, left=3.4)
     ends = np.clip([[*each.interval_95, *each.interval_68, each.median] for each in shown], 0.0, None)
     ends = np.clip(ends / np.array([[each.value] for each in shown]), LEAST, 1 / LEAST)

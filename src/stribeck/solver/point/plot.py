@@ -27,7 +27,7 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.plot import axis_in_si, draw_gap, draw_pressures, footer_of, mark_failure, scales_of
+from stribeck.solver.plot import axis_in_si, caption_of, draw_gap, draw_pressures, mark_failure, scales_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,6 +87,7 @@ def plot_point_solution(
     colours: Colours = "film",
     force: bool = False,
     title: str = "",
+    notes: bool = True,
 ) -> Figure:
     """Draw film and pressure of a ball, in SI units where the solution has a contact.
 
@@ -104,7 +105,7 @@ def plot_point_solution(
     if colours == "interference" and solution.contact is None:
         raise InputError("colours = 'interference' needs a film thickness in metres; solve a PointContact instead of Groups.")
     figure, (film, *others) = new_figure(
-        SIZE, footer_of(solution), rows=2, columns=2, title=title or "Film and pressure of a ball", ax=ax
+        SIZE, *caption_of(solution, notes), rows=2, columns=2, title=title or "Film and pressure of a ball", ax=ax
     )
     if others:
         film.get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
