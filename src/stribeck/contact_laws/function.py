@@ -5,21 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
-
-import numpy as np
 
 from stribeck._types import Array
+from stribeck.contact_laws.law import check_slopes
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FunctionLaw"]
 
-SLOPE_TOLERANCE = 1e-5
-"""Relative difference between a function's derivative and the differences of its values that is refused."""
-
 
 TAKEN = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table", "smooth")
-"""Names by which files and reports know other laws."""
+"""Names of the laws of the package, and of surfaces without any, which outputs use."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +66,7 @@ class FunctionLaw:
                 f"lowest = {show(self.lowest)}, checked = {show(self.checked)}; lowest must be 0 or below, "
                 "checked two increasing positive separations."
             )
-        s = np.geomspace(low, high, 400)
-        values, slopes = _values("log_pressure", self.log_pressure, s), _values("log_slope", self.log_slope, s)
-        _refuse("log_slope", slopes, slopes >= 0, s, "it must be negative everywhere")
-        step = 1e-5 * s
-        ahead, behind = (_values("log_pressure", self.log_pressure, s + sign * step) for sign in (1, -1))
-        wrong = (
-            np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_TOLERANCE * np.abs(slopes) + 1e-10 * np.abs(values) / step
-        )
-        _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, but finite differences disagree")
+        check_slopes(self.log_pressure, self.log_slope, low, high)
 
     @property
     def parameters(self) -> dict[str, float | str]:
@@ -102,22 +89,3 @@ class FunctionLaw:
         if separation >= self.checked[0]:
             return ()
         return (f"The minimum separation is {separation:.2g}, below the range in which the contact law was checked.",)
-
-
-def _values(name: str, function: Callable[[Array], Array], s: Array) -> Array:
-    with np.errstate(all="ignore"):
-        found = function(s)
-    try:
-        values = np.asarray(found, dtype=float)
-    except (TypeError, ValueError):
-        values = np.empty(0)
-    if values.shape != s.shape:
-        raise InputError(f"{name} must return a number for each separation of an array; it returned {show(found)}.")
-    _refuse(name, values, ~np.isfinite(values), s, "it must be finite")
-    return values
-
-
-def _refuse(name: str, values: Array, wrong: Any, s: Array, what: str) -> None:
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise InputError(f"{name} is {values[i]:.6g} at separation {s[i]:.6g}; {what}.")

@@ -3,9 +3,12 @@ r"""The protocols of a contact law: dimensionless, and scaled to a load and a ro
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Protocol, runtime_checkable
 from weakref import WeakValueDictionary
+
+import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.exponential import SpectralExponential
@@ -106,6 +109,43 @@ def check_alpha(law: AsperityLaw | None, alpha: float) -> None:
     )
 
 
+SLOPE_TOLERANCE = 1e-5
+"""Largest relative difference between the slope of a law of somebody else's and differences of its values."""
+
+CHECKED = (1e-3, 100.0)
+"""Separations between which such a law is checked."""
+
+
+def check_slopes(log_pressure: Callable[[Array], Array], log_slope: Callable[[Array], Array], low: float, high: float) -> None:
+    """Refuse two functions that are not ln(Phi), falling, and its derivative between two separations."""
+    s = np.geomspace(low, high, 400)
+    values, slopes = _values("log_pressure", log_pressure, s), _values("log_slope", log_slope, s)
+    _refuse("log_slope", slopes, slopes >= 0, s, "it must be negative everywhere, as the pressure falls")
+    step = 1e-5 * s
+    ahead, behind = (_values("log_pressure", log_pressure, s + sign * step) for sign in (1, -1))
+    wrong = np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_TOLERANCE * np.abs(slopes) + 1e-10 * np.abs(values) / step
+    _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, but finite differences disagree")
+
+
+def _values(name: str, function: Callable[[Array], Array], s: Array) -> Array:
+    with np.errstate(all="ignore"):
+        found = function(s)
+    try:
+        values = np.asarray(found, dtype=float)
+    except (TypeError, ValueError):
+        values = np.empty(0)
+    if values.shape != s.shape:
+        raise InputError(f"{name} must return a number for each separation of an array; it returned {show(found)}.")
+    _refuse(name, values, ~np.isfinite(values), s, "it must be finite")
+    return values
+
+
+def _refuse(name: str, values: Array, wrong: Any, s: Array, what: str) -> None:
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise InputError(f"{name} is {values[i]:.6g} at separation {s[i]:.6g}; {what}.")
+
+
 _ACCEPTED: WeakValueDictionary[int, Any] = WeakValueDictionary()
 """Laws that were looked at: those of a curve are the same object at all its states."""
 
@@ -115,6 +155,8 @@ def check_law(law: Any) -> AsperityLaw | None:
     if law is None or _ACCEPTED.get(id(law)) is law:
         return law
     if isinstance(law, AsperityLaw) and not isinstance(law, type):
+        if not type(law).__module__.startswith("stribeck."):
+            check_slopes(law.log_pressure, law.log_slope, *CHECKED)
         with suppress(TypeError):  # what allows no weak reference is looked at again
             _ACCEPTED[id(law)] = law
         return law

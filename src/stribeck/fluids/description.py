@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from stribeck.fluids.check_law import check_law
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, Smooth, ViscosityLaw
 from stribeck.fluids.newtonian import Newtonian
@@ -59,6 +60,8 @@ class Fluid:
             law = getattr(self, name)
             if law is not None and not (isinstance(law, kind) and not isinstance(law, type)):
                 raise InputError(f"{name} = {show(law)} is no law of this kind; give one of sb.fluids: {examples}.")
+            if law is not None:
+                check_law(law)
 
     @property
     def name(self) -> str:
@@ -157,6 +160,7 @@ def as_flow_factors(factors: Any) -> FlowFactors | None:
 
         return EffectiveMedium() if factors == "effective-medium" else PatirCheng()
     if isinstance(factors, FlowFactors) and not isinstance(factors, type):
+        check_law(factors)
         return factors
     raise InputError(
         f"flow_factors = {show(factors)}; give 'effective-medium', 'patir-cheng', a law of sb.fluids such as "

@@ -6,6 +6,7 @@ the second.  A new law is one class with the members of its protocol.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol, Self, runtime_checkable
 
@@ -64,13 +65,13 @@ class Law(Protocol):
         """What distinguishes this law from others of its name, for outputs."""
         return {}
 
+    @abstractmethod
     def scaled(self, units: FilmUnits) -> Self:
-        """Return the law in Hertz units."""
-        return self
+        """Return the law in Hertz units; a law without numbers that have a unit returns itself."""
 
+    @abstractmethod
     def milder(self, part: float) -> Self:
         """Return a law of this kind that does less: nearly nothing at part 0, all of it at 1; a way to a state."""
-        return self
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return sentences on where a state leaves the range of the law, in Hertz units; mostly none."""
@@ -81,6 +82,7 @@ class Law(Protocol):
 class ViscosityLaw(Law, Protocol):
     """Viscosity as a function of pressure."""
 
+    @abstractmethod
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return ln(eta/eta0) and its slope."""
 
@@ -89,6 +91,7 @@ class ViscosityLaw(Law, Protocol):
 class DensityLaw(Law, Protocol):
     """Density as a function of pressure."""
 
+    @abstractmethod
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""
 
@@ -105,6 +108,7 @@ class FrictionFactors(NamedTuple):
 class FlowFactors(Law, Protocol):
     """What roughness does to the flow, as a function of the mean gap."""
 
+    @abstractmethod
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow under a pressure gradient over that between smooth surfaces, phi_x > 0, and its slope."""
 
@@ -112,6 +116,7 @@ class FlowFactors(Law, Protocol):
         """Return phi_x alone, as residuals ask for it."""
         return self.pressure(gap)[0]
 
+    @abstractmethod
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
 
@@ -132,6 +137,14 @@ class FlowFactors(Law, Protocol):
 @dataclass(frozen=True)
 class Smooth(FlowFactors):
     """The flow between smooth surfaces, which a gap many times the roughness is too."""
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
+
+    def milder(self, part: float) -> Self:
+        """Return itself: it does nothing."""
+        return self
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return one and zero."""
@@ -169,6 +182,7 @@ class RateLaw(Law, Protocol):
     """
 
     @property
+    @abstractmethod
     def time(self) -> float:
         """One over the rate at which thinning begins."""
 
@@ -177,12 +191,15 @@ class RateLaw(Law, Protocol):
         """Rate x below which the viscosity is constant up to even powers of it; zero where there is no such rate."""
         return 1.0
 
+    @abstractmethod
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
 
+    @abstractmethod
     def rate(self, stress: Array) -> Array:
         """Return x(g)."""
 
+    @abstractmethod
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x, where the stress is g."""
 

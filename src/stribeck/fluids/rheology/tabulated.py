@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from functools import lru_cache
 
@@ -17,7 +18,7 @@ SMALLEST_EXPONENT = 0.05
 
 
 class TabulatedLaw(RateLaw):
-    """A law whose moments and rate come from a table: it adds its stress, :attr:`shape` and :meth:`smallest`.
+    """A law whose moments and rate come from a table made of its stress, its :attr:`shape` and :meth:`smallest`.
 
     Its arguments are the relaxation time, then the numbers of the shape in their order.
     """
@@ -31,13 +32,13 @@ class TabulatedLaw(RateLaw):
         return table_of(type(self), *self.shape).rate(stress)
 
     @property
+    @abstractmethod
     def shape(self) -> tuple[float, ...]:
-        """Its numbers but for the relaxation time."""
-        raise NotImplementedError
+        """Its numbers but for the relaxation time, in the order of its arguments."""
 
+    @abstractmethod
     def smallest(self) -> float:
         """Return the logarithm of the rate below which the law is Newtonian to rounding."""
-        raise NotImplementedError
 
 
 @lru_cache(maxsize=64)

@@ -40,6 +40,14 @@ TENSION = 0.1
 class Constant(ViscosityLaw):
     """The viscosity that does not depend on the pressure."""
 
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
+
+    def milder(self, part: float) -> Self:
+        """Return itself: it does nothing."""
+        return self
+
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return zero twice."""
         return np.zeros_like(pressure), np.zeros_like(pressure)
@@ -187,6 +195,14 @@ class Roelands(ViscosityLaw):
 @dataclass(frozen=True)
 class Incompressible(DensityLaw):
     """The density that does not depend on the pressure."""
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
+
+    def milder(self, part: float) -> Self:
+        """Return itself: it does nothing."""
+        return self
 
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return one and zero."""

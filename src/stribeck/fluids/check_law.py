@@ -1,0 +1,118 @@
+"""The check of a law that somebody else wrote: its slopes, limits and scaling must agree with its values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, Law, RateLaw, ViscosityLaw
+from stribeck.quantities.units import InputError
+
+__all__ = ["check_law"]
+
+RTOL = 1e-5
+"""Largest relative difference; the central differences below are a thousand times nearer."""
+
+STEP = 1e-4
+"""Relative step of the differences."""
+
+RATES = np.geomspace(1e-3, 1e4, 36)
+"""Rates times the relaxation time."""
+
+UNITS = (0.1, 10.0)
+"""Units of time, pressure and length to which laws are scaled."""
+
+
+def check_law(law: Any) -> None:
+    """Refuse a law of somebody else's whose members contradict each other; those of the package have tests of their own."""
+    if type(law).__module__.startswith("stribeck."):
+        return
+    if not isinstance(law, Hashable):
+        raise InputError(f"{_name(law)} cannot be hashed; make it a frozen dataclass.")
+    _checked(law)
+
+
+@lru_cache(maxsize=64)
+def _checked(law: Any) -> None:
+    for kind, check in CHECKS.items():
+        if isinstance(law, kind):
+            check(law)
+
+
+def _rate_law(law: RateLaw) -> None:
+    g, slope = law.stress(RATES)
+    if not (np.diff(g) > 0).all():
+        raise InputError(f"{_name(law)}: the stress must rise with the rate; here it does not.")
+    _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], RATES))
+    if law.plateau >= RATES[0]:
+        low = np.array([1e-3 * law.plateau])
+        _agree(law, "stress", "at low rates the rate, as the viscosity there is that of the contact", law.stress(low)[0], low)
+    _agree(law, "rate", "the inverse of stress", law.rate(g), RATES)
+    for order, what in ((0, "the integral of x dg"), (1, "the integral of g x dg")):
+        change = _difference(lambda x, k=order: law.moments(x, law.stress(x)[0])[k], RATES)  # type: ignore[misc]
+        _agree(law, "moments", what, change, RATES * slope * g**order)
+    for unit in UNITS:
+        scaled = law.scaled(FilmUnits(1.0, unit, 1.0, 1.0))
+        _agree(law, "scaled", "in units of time: time over the unit", np.array(scaled.time), np.array(law.time / unit))
+        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(RATES)[0], g)
+    same = law.milder(1.0)
+    _agree(law, "milder", "the law itself at part 1", same.stress(RATES / law.time * same.time)[0] / same.time, g / law.time)
+
+
+def _pressure_law(law: Any, values: Callable[[Any, Array], tuple[Array, Array]], rest: float, member: str) -> None:
+    at_rest, [first] = values(law, np.zeros(1))
+    _agree(law, member, f"{rest:g} at ambient pressure", at_rest + 1.0, np.array([rest + 1.0]))
+    scale = 1.0 / abs(float(first)) if first != 0 and np.isfinite(first) else 1.0
+    pressures = scale * np.linspace(0.05, 0.8, 6)
+    found, slope = values(law, pressures)
+    _agree(law, member, "its slope", slope * scale, _difference(lambda p: values(law, p)[0], pressures) * scale, 1.0)
+    for unit in UNITS:
+        other, steeper = values(law.scaled(FilmUnits(unit * scale, 1.0, 1.0, 1.0)), pressures / (unit * scale))
+        _agree(law, "scaled", "in units of pressure the same values", other, found, 1.0)
+        _agree(law, "scaled", "in units of pressure the same slopes", steeper / unit, slope * scale, 1.0)
+    _agree(law, "milder", "the law itself at part 1", values(law.milder(1.0), pressures)[0], found, 1.0)
+
+
+def _flow_factors(law: FlowFactors) -> None:
+    for unit in UNITS:
+        scaled = law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, 1.0, 1.0))
+        gaps = np.geomspace(1.0, 30.0, 8) / unit
+        for member in ("pressure", "shear"):
+            of = getattr(scaled, member)
+            _agree(law, member, "its slope", of(gaps)[1], _difference(lambda h, of=of: of(h)[0], gaps), unit)  # type: ignore[misc]
+        _agree(law, "factor", "the first of pressure", scaled.factor(gaps), scaled.pressure(gaps)[0])
+
+
+CHECKS: dict[type, Callable[[Any], None]] = {
+    RateLaw: _rate_law,
+    ViscosityLaw: lambda law: _pressure_law(law, lambda each, p: each.log(p), 0.0, "log"),
+    DensityLaw: lambda law: _pressure_law(law, lambda each, p: each.ratio(p), 1.0, "ratio"),
+    FlowFactors: _flow_factors,
+}
+"""The check of each kind of law."""
+
+
+def _difference(function: Callable[[Array], Array], at: Array) -> Array:
+    """Return the derivative of a function by central differences of two steps, extrapolated."""
+    coarse, fine = ((function(at * (1 + step)) - function(at * (1 - step))) / (2 * step * at) for step in (STEP, 0.5 * STEP))
+    return np.asarray((4 * fine - coarse) / 3)
+
+
+def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: float = 0.0) -> None:
+    """Refuse a member whose values are not right."""
+    found, right = np.broadcast_arrays(np.asarray(found, dtype=float), np.asarray(right, dtype=float))
+    wrong = ~(np.abs(found - right) <= RTOL * np.maximum(np.abs(right), floor))
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise InputError(
+            f"{_name(law)}: {member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}. "
+            "See Add a fluid in for_developers.md."
+        )
+
+
+def _name(law: Law) -> str:
+    return f"the law {law.name or type(law).__name__!r}"

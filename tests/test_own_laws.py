@@ -1,0 +1,171 @@
+"""Laws that users write, as for_developers.md shows: right ones give right films, others are refused with what is wrong."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.fluids.laws import ViscosityLaw
+from stribeck.fluids.rheology.tabulated import TabulatedLaw
+
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="100 mm/s",
+    roughness="0.1 um",
+    alpha=2.0,
+    beta=0.06,
+    boundary_friction=0.7,
+)
+
+
+@dataclass(frozen=True)
+class Yasuda(TabulatedLaw):
+    relaxation_time: float
+    exponent: float
+    name = "yasuda"
+
+    @property
+    def parameters(self):
+        return {"relaxation_time": self.relaxation_time, "exponent": self.exponent}
+
+    @property
+    def time(self):
+        return self.relaxation_time
+
+    @property
+    def shape(self):
+        return (self.exponent,)
+
+    def smallest(self):
+        return np.log(1e-9)
+
+    def scaled(self, units):
+        return replace(self, relaxation_time=self.relaxation_time / units.time)
+
+    def milder(self, part):
+        return replace(self, exponent=1 - part * (1 - self.exponent))
+
+    def stress(self, rate):
+        n, square = self.exponent, rate**2
+        viscosity = (1 + square) ** ((n - 1) / 2)
+        return rate * viscosity, viscosity * (1 + (n - 1) * square / (1 + square))
+
+
+@dataclass(frozen=True)
+class Stiffening(ViscosityLaw):
+    coefficient: float
+    name = "stiffening"
+
+    @property
+    def parameters(self):
+        return {"coefficient": self.coefficient}
+
+    def scaled(self, units):
+        return replace(self, coefficient=self.coefficient * units.pressure)
+
+    def milder(self, part):
+        return replace(self, coefficient=part * self.coefficient)
+
+    def log(self, pressure):
+        return self.coefficient * pressure, np.full_like(pressure, self.coefficient)
+
+
+def other(law, **members):
+    """Return the law with some of its members in another form."""
+    return type(law.__name__, (law,), members)
+
+
+def film(fluid):
+    return sb.solve(CONTACT, fluid=fluid).central_gap
+
+
+def test_laws_that_are_those_of_the_package_give_their_films():
+    assert film(Yasuda(1e-4, 0.5)) == pytest.approx(film(sb.fluids.Carreau("0.1 ms", 0.5)), rel=1e-6)
+    assert film(Stiffening(2e-8)) == pytest.approx(film(sb.fluids.Barus("20 1/GPa")), rel=1e-9)
+
+
+@pytest.mark.parametrize("law", ["Carreau", "Cross", "PowerLaw", "Eyring", "Barus", "Roelands", "DowsonHigginson"])
+def test_the_laws_of_the_package_pass_the_check_of_others(law):
+    given = {"Carreau": ("1 ms", 0.5, "1 mPa*s"), "Cross": ("1 ms", 0.4), "PowerLaw": ("1 ms", 0.7), "Eyring": ("5 kPa",)}
+    arguments = given.get(law, () if law == "DowsonHigginson" else ("20 1/GPa",))
+    sb.fluids.Fluid(**{kind_of(law): other(getattr(sb.fluids, law))(*arguments)})
+
+
+def kind_of(law):
+    return {"Barus": "viscosity", "Roelands": "viscosity", "DowsonHigginson": "density"}.get(law, "rheology")
+
+
+WRONG = {
+    "no units": ("scaled", {"scaled": lambda self, units: self}),
+    "units the other way": (
+        "scaled",
+        {"scaled": lambda self, units: replace(self, relaxation_time=self.relaxation_time * units.time)},
+    ),
+    "another slope": ("stress", {"stress": lambda self, rate: (Yasuda.stress(self, rate)[0], np.ones_like(rate))}),
+    "another viscosity": ("low rates", {"stress": lambda self, rate: tuple(2 * each for each in Yasuda.stress(self, rate))}),
+    "falling": ("rise", {"stress": lambda self, rate: (rate / (1 + rate**2), (1 - rate**2) / (1 + rate**2) ** 2)}),
+    "another rate": ("rate", {"rate": lambda self, stress: stress}),
+    "other moments": ("moments", {"moments": lambda self, rate, stress: (rate * stress, rate * stress**2)}),
+    "another law at part 1": ("milder", {"milder": lambda self, part: replace(self, exponent=0.9)}),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_a_law_of_shear_that_contradicts_itself_is_refused(what):
+    said, members = WRONG[what]
+    with pytest.raises(sb.InputError, match=said):
+        film(other(Yasuda, **members)(1e-4, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("said", "members"),
+    [
+        ("scaled", {"scaled": lambda self, units: self}),
+        (
+            "slope",
+            {"log": lambda self, pressure: (self.coefficient * pressure, np.zeros_like(pressure) + 2 * self.coefficient)},
+        ),
+        (
+            "ambient",
+            {"log": lambda self, pressure: (1 + self.coefficient * pressure, np.full_like(pressure, self.coefficient))},
+        ),
+        ("milder", {"milder": lambda self, part: replace(self, coefficient=0.0)}),
+    ],
+    ids=["no units", "another slope", "not one at rest", "milder"],
+)
+def test_a_law_of_pressure_that_contradicts_itself_is_refused(said, members):
+    with pytest.raises(sb.InputError, match=said):
+        film(other(Stiffening, **members)(2e-8))
+
+
+@pytest.mark.parametrize("lacks", ["scaled", "milder", "stress", "time", "shape", "smallest"])
+def test_a_law_that_lacks_a_member_cannot_be_made(lacks):
+    members = {name: value for name, value in vars(Yasuda).items() if name != lacks and not name.startswith("__")}
+    with pytest.raises(TypeError, match=lacks):
+        type("Lacking", (TabulatedLaw,), members | {"relaxation_time": 1e-4, "exponent": 0.5})()
+
+
+def test_contact_laws_that_contradict_themselves_are_refused():
+    class Own:
+        name, parameters, lowest = "own", {}, 0.0
+
+        def log_pressure(self, separation):
+            return -separation
+
+        def log_slope(self, separation):
+            return -np.ones_like(separation)
+
+        def notes(self, separation):
+            return ()
+
+    plain = sb.solve(CONTACT).central_gap
+    assert sb.solve(CONTACT, law=Own()).central_gap == pytest.approx(plain, rel=1e-6)
+    wrong = type("Wrong", (Own,), {"log_slope": lambda self, separation: -2 * np.ones_like(separation)})
+    rises = type("Rises", (Own,), {"log_pressure": lambda self, s: s, "log_slope": lambda self, s: np.ones_like(s)})
+    for law, said in ((wrong, "log_slope"), (rises, "fall")):
+        with pytest.raises(sb.InputError, match=said):
+            sb.solve(CONTACT, law=law())
