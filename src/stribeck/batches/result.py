@@ -57,7 +57,7 @@ class BatchSolution(Exported, Shown, ByValue):
         The largest of these of each state, as a solution states it.
     own_viscous : dict of str to ndarray
         By definition, viscous friction of each contact and its absolute error [-], where the observables do not give it: of
-        balls in a fluid that thins; else empty.
+        balls in a fluid that thins or in liquid that ends near the contact; else empty.
     """
 
     groups: Groups
@@ -114,8 +114,10 @@ class BatchSolution(Exported, Shown, ByValue):
     ) -> FrictionArray:
         rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
         if beta is not None and self.own_viscous:
+            film = groups.model.film
+            liquid = f"a fluid that thins ({film.name})" if film.uses_speed else "a disc of liquid"
             raise InputError(
-                f"beta = {show(beta)}: the friction of a ball in a fluid that thins ({groups.model.film.name}) needs the flow "
+                f"beta = {show(beta)}: the friction of a ball in {liquid} needs the flow "
                 "up to where the liquid ends, which batches keep for the beta of their contacts alone; leave it out, or solve "
                 "the states one by one."
             )

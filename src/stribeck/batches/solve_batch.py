@@ -89,7 +89,10 @@ def solve_batch(
     values = {name: np.full(total, np.nan) for name in table}
     errors = {name: np.full(total, np.nan) for name in table}
     estimate = np.full(total, np.nan)
-    is_enough = RULES[groups.geometry].is_enough(groups.model)
+    rule = RULES[groups.geometry]
+    is_enough = rule.is_enough(
+        groups.model, [] if contacts is None else [rule.of_contact(each) for each in contacts.ravel().tolist()]
+    )
     own: dict[Definition, Array] = {} if is_enough else {each: np.full((2, total), np.nan) for each in DEFINITIONS}
     each_contact = None if contacts is None else contacts.ravel()
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)

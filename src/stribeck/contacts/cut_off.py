@@ -26,6 +26,18 @@ with K = 0.954293 and K' = -0.257268. The rigid parabola :math:`h = h_0 + r^2/2R
 
 With one surface at rest both together are one radius, 5.034 R.
 
+*A film that is thick at X*, as thick as the parabola rises up to there, is no longer far away: the logarithms alone would turn
+negative. By :math:`J^\mathrm{couette}` the logarithm of the shear begins at a radius :math:`X_0`, which is
+:math:`\sqrt{2 R h_0}` of the rigid parabola and vanishes for thin films. With :math:`y = X_0^2/X^2` that parabola has
+
+.. math::
+
+    J^\mathrm{couette}(X) = \tfrac13 \pi \lambda \ln(1 + 1/y), \qquad
+    J^\mathrm{poiseuille}(X) = J^\mathrm{poiseuille} + \tfrac25 \pi \lambda \ln X
+    + \tfrac15 \pi \lambda \left[\frac{2 y}{1 + y} + \ln(1 + y)\right],
+
+which is taken for every film: exact for thick ones, the logarithms for thin ones, and never a drag along the motion.
+
 Source: ours; K and K' from series in bispherical coordinates of sliding and turning spheres, as in A. J. Goldman, R. G. Cox
 and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chaoui and F. Feuillebois (2003) have 0.95429.
 """
@@ -43,7 +55,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 
-__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "friction_integral", "log_cut_offs"]
+__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "far_error", "friction_integral", "is_far", "log_cut_offs"]
 
 SLIDING, TURNING = 0.954293, -0.257268
 """K and K'."""
@@ -62,14 +74,20 @@ class FarFilm:
         The factor of :math:`-\lambda \cos\theta/r^3` in the film pressure [-].
     couette, poiseuille : float
         Coefficients of :math:`\lambda \ln X` in the two parts of the friction integral [-].
+    rise : float
+        :math:`-J^\mathrm{poiseuille}/(c' \lambda) - \ln X_0` of the rigid parabola: the part within a small disc vanishes [-].
     """
 
     pressure: float
     couette: float
     poiseuille: float
+    rise: float
 
 
-FULL = FarFilm(0.8, COUETTE, POISEUILLE)
+NEAR_EDGE = 5.0
+"""Radius of the disc of liquid below which no far film is taken for the friction up to there, but the film itself [a]."""
+
+FULL = FarFilm(0.8, COUETTE, POISEUILLE, 1.0)
 """The film is full on both sides."""
 
 RUPTURE = 1.249038748131262
@@ -79,6 +97,7 @@ CAVITATED = FarFilm(
     0.40553909094606316,
     (2 / 3) * (math.pi - RUPTURE) + (10 / 27) * (RUPTURE - math.sin(2 * RUPTURE) / 2),
     0.40553909094606316 * math.pi / 2,
+    1.1306,
 )
 """The film ends at ambient pressure; its liquid goes on as streaks in the wake."""
 
@@ -152,9 +171,54 @@ def friction_integral(
         J [-].
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
-    couette = parts["J_couette"] + far.couette * speed * by_shear
-    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * by_pressure
+    moves = np.real(speed) > 0
+    at_shear, at_pressure = (np.exp(-2.0 * (_rise(parts, speed, far) + each)) for each in (by_shear, by_pressure))
+    couette = parts["J_couette"] + far.couette * speed * (by_shear + 0.5 * np.log1p(at_shear))
+    rest = by_pressure + far.rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
+    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * rest
     if definition == "published":
         # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
-        found = found - parts["J_pcx"] + np.where(np.isfinite(wetted_radius), far.poiseuille * speed, 0.0)
-    return np.where(np.real(speed) > 0, found, 0.0)[()]
+        edge = far.poiseuille * speed / (1.0 + at_pressure)
+        found = found - parts["J_pcx"] + np.where(np.isfinite(wetted_radius), edge, 0.0)
+    return np.where(moves, found, 0.0)[()]
+
+
+def far_error(parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_radius: Any, far: FarFilm = FULL) -> Any:
+    r"""Return by how much :func:`friction_integral` may miss that of the film up to where a disc of liquid ends.
+
+    It leaves out the offset of thin films, which is at least minus one indentation.
+
+    Parameters
+    ----------
+    parts : mapping
+        The finite part ``J_couette`` [-].
+    speed : float or ndarray
+        Speed group [-].
+    slide_to_roll : float or ndarray
+        S [-].
+    wetted_radius : float or ndarray
+        Radius of the disc of liquid [a]; infinite for a whole ball, of which none is missed.
+    far : FarFilm
+        How the film ends far away.
+
+    Returns
+    -------
+    float or ndarray
+        :math:`\lambda (|S| c/2 + 3 c')/(X^2 + X_0^2)` with the coefficients of both logarithms [-].
+    """
+    from_there = wetted_radius**2 + np.exp(-2.0 * _rise(parts, speed, far))
+    return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed / from_there
+
+
+def is_far(model: Model, wetted_radius: float) -> bool:
+    """Return whether a far film in closed form holds from where the liquid ends.
+
+    That of a fluid that thins does nowhere, and those of thick films that break are not known.
+    """
+    nearest = NEAR_EDGE if model.cavitation is Cavitation.NONE else math.inf
+    return not model.film.uses_speed and wetted_radius >= nearest
+
+
+def _rise(parts: Mapping[str, Any], speed: Any, far: FarFilm) -> Any:
+    """Return -ln X_0."""
+    return parts["J_couette"] / np.where(np.real(speed) > 0, far.couette * speed, 1.0)

@@ -13,14 +13,14 @@ be complex: a step along the imaginary axis gives exact derivatives.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import FULL, friction_integral
+from stribeck.contacts.cut_off import FULL, far_error, friction_integral, is_far
 from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import Model
@@ -47,9 +47,11 @@ class FrictionRule(NamedTuple):
     parts : callable
         ``parts(definition)`` names the observables that the viscous friction takes.
     is_enough : callable
-        ``is_enough(model)`` is whether these give the viscous friction for any inputs.
+        ``is_enough(model, inputs)`` is whether these give the viscous friction of contacts, by each of their inputs.
     viscous : callable
         ``viscous(parts, speed, load, inputs, definition)`` is the viscous friction coefficient.
+    missed : callable
+        ``missed(parts, speed, load, inputs)`` is by how much it misses that of the film for exact parts.
     scale : callable
         ``scale(parts, speed)`` is what the stated errors of these observables are relative to, by name.
     rubbing : callable
@@ -65,8 +67,9 @@ class FrictionRule(NamedTuple):
     inputs: Mapping[str, Callable[[Contact | None], float]]
     exponents: Mapping[str, Mapping[str, float]]
     parts: Callable[[Definition], tuple[str, ...]]
-    is_enough: Callable[[Model], bool]
+    is_enough: Callable[[Model, Sequence[Values]], bool]
     viscous: Callable[[Values, Any, Any, Values, Definition], Any]
+    missed: Callable[[Values, Any, Any, Values], Any]
     scale: Callable[[Values, Any], dict[str, Any]]
     rubbing: Callable[[Groups, Values], Any]
     hersey: Callable[[Contact], float]
@@ -100,11 +103,11 @@ class FrictionRule(NamedTuple):
         Returns
         -------
         float or ndarray
-            The sum of what each contributes [-].
+            The sum of what each contributes, and of what is missed [-].
         """
         scales = self.scale(parts, speed)
         here = self.viscous(parts, speed, load, inputs, definition)
-        total: Any = 0.0
+        total = self.missed(parts, speed, load, inputs)
         for name in self.parts(definition):
             moved = {**parts, name: parts[name] + errors[name] * scales[name]}
             total = total + np.abs(self.viscous(moved, speed, load, inputs, definition) - here)
@@ -119,13 +122,22 @@ def _line_scale(parts: Values, speed: Any) -> dict[str, Any]:
     return {name: np.abs(value) for name, value in parts.items()}
 
 
-def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
+def _slope(load: Any, inputs: Values) -> Any:
     scaling = SCALINGS["point"]
-    slope = scaling.slope_factor * inputs["beta"] * load**scaling.pressure_exponent
+    return scaling.slope_factor * inputs["beta"] * load**scaling.pressure_exponent
+
+
+def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
+    slope = _slope(load, inputs)
     J = friction_integral(
         parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition, inputs.get("far", FULL)
     )
     return 1.5 / math.pi * slope * J
+
+
+def _ball_missed(parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
+    J = far_error(parts, speed, inputs["slide_to_roll"], inputs["wetted_radius"], inputs.get("far", FULL))
+    return 1.5 / math.pi * _slope(load, inputs) * J
 
 
 def _ball_scale(parts: Values, speed: Any) -> dict[str, Any]:
@@ -171,8 +183,9 @@ RULES: dict[Geometry, FrictionRule] = {
         inputs={"beta": _beta},
         exponents={},
         parts=_line_parts,
-        is_enough=lambda model: True,
+        is_enough=lambda model, inputs: True,
         viscous=_line_viscous,
+        missed=lambda parts, speed, load, inputs: 0.0,
         scale=_line_scale,
         rubbing=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
         hersey=lambda each: each.load / each.viscosity,
@@ -187,8 +200,11 @@ RULES: dict[Geometry, FrictionRule] = {
         },
         exponents={"wetted_radius": {"radius": -1 / 3, "modulus": 1 / 3, "load": -1 / 3}},
         parts=_ball_parts,
-        is_enough=lambda model: not model.film.uses_speed,  # far out a fluid that thins follows no logarithm
+        is_enough=lambda model, inputs: (
+            all(is_far(model, each["wetted_radius"]) for each in inputs) and is_far(model, math.inf)
+        ),
         viscous=_ball_viscous,
+        missed=_ball_missed,
         scale=_ball_scale,
         rubbing=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
         hersey=lambda each: each.load / each.viscosity / each.radius,

@@ -63,7 +63,7 @@ part of the friction."""
 class PointCurve(StribeckCurve):
     """Converged states of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`.
 
-    A film that breaks, a fluid that thins and contacts at rest are known at their points only.
+    Films that break, fluids that thin, liquid that ends near the contact and contacts at rest: known at their points only.
     """
 
     solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
@@ -336,11 +336,11 @@ def point_curve(
     SolveError
         If no state can be solved.
     """
-    start = coordinate.groups_at(math.log(values[-1]))
+    start, rule = coordinate.groups_at(math.log(values[-1])), RULES["point"]
     is_function = (
         start.speed > 0
         and start.model.cavitation is Cavitation.NONE
-        and not start.model.film.uses_speed
+        and rule.is_enough(start.model, [rule.of_contact(coordinate.contact_at(math.log(end))) for end in values[[0, -1]]])
         and coordinate.is_uniform(values)
     )
     trace = _followed if is_function else _point_by_point

@@ -98,9 +98,9 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _solved_path(self) -> SolvedPath:
         if self._function is None:
             raise InputError(
-                "this curve is known at its points only. That is so for a ball at rest, for one whose film breaks or whose "
-                "fluid thins, and where the numbers of a fluid or a layer in Hertz units vary along the curve, as over the "
-                "load; ask for a curve with the values you want as an array."
+                "this curve is known at its points only. That is so for a ball at rest, for one whose film breaks, whose "
+                "fluid thins or whose liquid ends near the contact, and where the numbers of a fluid or a layer in Hertz "
+                "units vary along the curve, as over the load; ask for a curve with the values you want as an array."
             )
         return self._function
 

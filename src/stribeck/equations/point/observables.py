@@ -138,9 +138,10 @@ class FrictionWithin:
     ----------
     mesh : PolarMesh
         The mesh.
-    excess : ndarray, shape (3, panels, degree + 1)
-        At the nodes: both parts up to there less their finite parts and logarithms, and ``-oint h p_f cos(theta) r`` less the
-        same of the far film.
+    running : ndarray, shape (3, panels, degree + 1)
+        At the nodes: both parts up to there, and ``-oint h p_f cos(theta) r``.
+    finite : tuple of float
+        The finite parts of both, and what the third is of the far film.
     beyond : Beyond or None
         What the film beyond the rim has more than that.
     offset, speed : float
@@ -150,7 +151,8 @@ class FrictionWithin:
     """
 
     mesh: PolarMesh
-    excess: Array
+    running: Array
+    finite: tuple[float, float, float]
     beyond: Beyond | None
     offset: float
     speed: float
@@ -167,14 +169,13 @@ class FrictionWithin:
         along = (mesh.scattered(h * cos) * mesh.radial_derivative(p)).sum(axis=0) * mesh.local_radii
         poiseuille = 0.5 * turn * (along - mesh.scattered((sin * h * (mesh.angular_derivative @ p)).sum(axis=0)))
         up_to = _running(mesh, np.stack([mesh.scattered(couette), poiseuille]))
-        log, far = np.log(mesh.local_radii), equations.far
-        up_to[0] -= values["J_couette"] + far.couette * speed * log
-        up_to[1] -= values["J_poiseuille"] + far.poiseuille * speed * log
-        edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii - far.poiseuille * speed
-        return cls(mesh, np.concatenate([up_to, edge[None]]), equations.beyond, y.offset, speed, far)
+        edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii
+        finite = values["J_couette"], values["J_poiseuille"], equations.far.poiseuille * speed
+        running = np.concatenate([up_to, edge[None]])
+        return cls(mesh, running, finite, equations.beyond, y.offset, speed, equations.far)
 
     def __call__(self, which: int, log_radius: float) -> float:
-        """Return one of the three at a radius."""
+        """Return one of the three at a radius, less its finite part and logarithm."""
         radius = math.exp(log_radius)
         if radius >= self.mesh.rim:
             if self.beyond is None:
@@ -185,7 +186,8 @@ class FrictionWithin:
             edge = -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first(self.offset)
             return edge - self.far.poiseuille * self.speed if more.is_all else edge
         panel, row = self.mesh.radial_interpolation(np.array([radius]))
-        return float(row[0] @ self.excess[which, panel[0]])
+        far = self.finite[which] + (self.far.couette, self.far.poiseuille, 0.0)[which] * self.speed * log_radius
+        return float(row[0] @ self.running[which, panel[0]]) - far
 
 
 def _running(mesh: PolarMesh, local: Array) -> Array:

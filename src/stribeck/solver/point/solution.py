@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import NEAR_EDGE
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.point.observables import OBSERVABLES
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
-NEAR_EDGE = 5.0
-"""Radius of the disc of liquid over the Hertz radius below which a note says that friction is inaccurate."""
+THICK = 0.1
+"""Film over the radius of the ball above which a note says that lubrication theory does not hold."""
 
 WAKE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
@@ -438,10 +439,16 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     if groups.speed > 0:
         film = model.film.at(groups.speed)
         notes += fluid_notes(film, np.array([values.minimum_gap]), np.array([state.lowest_pressure]), math.nan)
+    thickness = 0.0 if contact is None else values.central_gap * contact.slope**2
+    if thickness > THICK:
+        notes.append(
+            f"The film is {thickness:.2g} radii thick: lubrication theory is the limit of thin films, and the friction of "
+            "a ball is known to the first order in that ratio only."
+        )
     wetted = values._wetted_radius
     if wetted is not None and wetted < NEAR_EDGE:
         notes.append(
-            f"The liquid ends at {wetted:.2g} Hertz radii: the friction up to that edge is coarse, as it is by the far field, "
-            f"which holds from about {NEAR_EDGE:g} on; films and load shares are those of a ball in liquid."
+            f"The liquid ends at {wetted:.2g} Hertz radii: friction is counted up to that edge, and films, pressures and load "
+            f"shares are those of a ball in liquid, which one that ends below about {NEAR_EDGE:g} Hertz radii changes."
         )
     return tuple(notes)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
+from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far, log_cut_offs
 from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.point import PointContact
@@ -151,33 +151,37 @@ class PointObservables:
     def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
         """Return those of a state, and of the contact's motion and liquid."""
         values = {name: float(state.values[name]) for name in OBSERVABLES}
+        wetted, slide_to_roll = None, 2.0 * state.groups.model.film.slide
+        if isinstance(contact, PointContact):
+            slide_to_roll = contact.slide_to_roll
+            wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
         within = None
-        if state.groups.model.film.uses_speed and isinstance(state.work, Pair) and state.groups.speed > 0:
+        if not is_far(state.groups.model, wetted or math.inf) and isinstance(state.work, Pair) and state.groups.speed > 0:
             fine = state.work.fine
             within = FrictionWithin.of(fine.equations, fine.unknowns, values)
-        if not isinstance(contact, PointContact):
-            return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide, _within=within)
-        wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
-        return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted, _within=within)
+        return cls(**values, _groups=state.groups, _slide_to_roll=slide_to_roll, _wetted_radius=wetted, _within=within)
 
     def integral(self, slope: float, definition: Definition = "balanced") -> float:
         r"""Return the friction integral J up to where the liquid ends.
 
         .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
 
-        each with its logarithm, see :func:`stribeck.contacts.cut_off.friction_integral`; of a fluid that thins, which may do
-        so still at that radius, the integrals up to there.
+        of the film up to there; where its fields are not at hand those of :func:`stribeck.contacts.cut_off.friction_integral`.
         """
         parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
         wetted = math.inf if self._wetted_radius is None else self._wetted_radius
         speed, far = float(self._groups.speed), far_film(self._groups.model)
-        found = float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
-        if self._within is not None:
-            by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
-            found += 0.5 * self._slide_to_roll * self._within(0, by_shear) + self._within(1, by_pressure)
-            if definition == "published" and math.isfinite(wetted):
-                found += self._within(2, by_pressure)
-        return found
+        if self._within is None:
+            return float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
+        by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
+        couette = parts["J_couette"] + far.couette * speed * by_shear + self._within(0, by_shear)
+        poiseuille = parts["J_poiseuille"] + far.poiseuille * speed * by_pressure + self._within(1, by_pressure)
+        found = 0.5 * self._slide_to_roll * couette + poiseuille
+        if definition == "published":
+            found -= parts["J_pcx"]
+            if math.isfinite(wetted):
+                found += far.poiseuille * speed + self._within(2, by_pressure)
+        return float(found)
 
     @property
     def sliding(self) -> float:
@@ -199,4 +203,7 @@ class PointObservables:
             error += errors["J_balanced"]
         else:
             error += 0.5 * abs(self._slide_to_roll) * errors["J_couette"] + errors["J_poiseuille"]
+        if self._wetted_radius is not None and self._within is None:
+            speed, far = float(self._groups.speed), far_film(self._groups.model)
+            error += float(far_error({"J_couette": self.J_couette}, speed, self._slide_to_roll, self._wetted_radius, far))
         return 1.5 / math.pi * float(self._groups.slope(beta)) * error
