@@ -198,7 +198,12 @@ REFUSED = {
     "too few cells": (PLAIN + "\n2", "row 6", "1 cell where the header has 2"),
     "decimal commas between commas": ("speed [m/s],friction\n0,001,0,5", "row 2", "commas cannot both"),
     "another separator below": ("speed [m/s],friction\n1;0.5\n2;0.4", "row 2", "semicolon"),
-    "both decimal signs": (PLAIN + "\n2;0,125", "row 6, column 'friction'", "row 2, column 'speed [m/s]'"),
+    "both decimal signs": (PLAIN + "\n2;0,125", "row 6, column 'friction'", "row 2, column 'friction'"),
+    "a decimal sign for each column": (
+        "speed [m/s];mu\n0.5;0,2\n1.5;0,1",
+        "row 2, column 'mu'",
+        "row 2, column 'speed [m/s]'",
+    ),
     "thousands": ("speed [m/s];friction\n1.234,5;0,5", "row 2, column 'speed [m/s]'", "not a number"),
     "no unit": ("speed;friction\n1;0.5\n2;0.4", "column 'speed'", "no unit"),
     "a unit of something else": ("speed [mm];friction\n1;0.5\n2;0.4", "column 'speed [mm]'", "a length"),

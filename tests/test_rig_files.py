@@ -253,6 +253,13 @@ VARIATIONS = {
     .replace("\n3;", "\n3;")
     .replace("\n", ";stick-slip, 2.5 N\n")
     .replace("Remark;stick-slip, 2.5 N", "Remark"),
+    "a remark with a comma in a number": PLAIN.replace("COF", "COF;Remark")
+    .replace("\n1;", "\n1;", 1)
+    .replace("\n", ";2,5 N\n")
+    .replace("Remark;2,5 N", "Remark"),
+    "a date with a point beside decimal commas": table("T;Geschwindigkeit [mm/s];Reibwert", lambda u, mu: 1, speed, friction)
+    .replace(".", ",")
+    .replace("\n1;", "\n01.02;"),
     "means of samples": table("Speed mean [mm/s];Speed SD [mm/s];COF mean", speed, lambda u, mu: 0.01 * u, friction),
     "a normal load above": "Normal load;2 N\n\n" + table("Speed [mm/s];Friction force [N]", speed, lambda u, mu: 2 * mu),
     "a stroke in millimetres": table("Stroke (mm);Mean Sliding Speed (m/s);COF", speed, lambda u, mu: u / 1e3, friction),
@@ -276,7 +283,7 @@ def test_a_layout_of_another_program_is_read_as_it_is(written, name):
     assert found.abscissa == "speed" and found.error is None
     assert set(found.inputs[0]) <= {"load"}
     assert_on_curve(found)
-    assert not any("decimal comma" in note for note in found.notes) or "German" in name
+    assert not any("decimal comma" in note for note in found.notes) or "Reibwert" in VARIATIONS[name]
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig", "cp1252"])

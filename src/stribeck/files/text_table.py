@@ -66,8 +66,6 @@ class TextTable:
         Row of the file in which each stands, counted from 1.
     separator : str
         What separates the columns, in words.
-    decimal_comma : bool
-        Whether numbers have decimal commas.
     units_row : tuple of str
         A row of units below the header; empty if there is none.
     written : tuple of str
@@ -83,7 +81,6 @@ class TextTable:
     rows: tuple[tuple[str, ...], ...]
     numbers: tuple[int, ...]
     separator: str
-    decimal_comma: bool
     units_row: tuple[str, ...] = ()
     written: tuple[str, ...] = ()
     above: tuple[tuple[int, str], ...] = ()
@@ -92,6 +89,29 @@ class TextTable:
     def unit(self, name: str) -> str:
         """Return the unit of a column: that in its header, or in the row of units."""
         return split_header(name)[1] or (self.units_row[self.header.index(name)] if self.units_row else "")
+
+    def decimal_comma(self, names: Sequence[str]) -> bool:
+        """Return whether columns have decimal commas; refuse both signs, where 1,234 could mean two things."""
+        comma: tuple[int, str, str] | None = None
+        point: tuple[int, str, str] | None = None
+        for at, name in enumerate(self.header):
+            if not name or name not in names:
+                continue
+            for number, row in zip(self.numbers, self.rows, strict=True):
+                parts = WITH_UNIT.fullmatch(row[at])
+                text = (parts[1] if parts else row[at]).strip()
+                if comma is None and COMMA.fullmatch(text):
+                    comma = number, name, row[at]
+                elif point is None and "." in text and POINT.fullmatch(text):
+                    point = number, name, row[at]
+                if comma and point:
+                    break
+        if comma and point:
+            raise InputError(
+                f"{self.path}: row {comma[0]}, column {show(comma[1])} has {show(comma[2])} with a comma and row {point[0]}, "
+                f"column {show(point[1])} has {show(point[2])} with a point; use one decimal sign and no thousands separator."
+            )
+        return comma is not None
 
     def column(self, name: str) -> tuple[str, ...]:
         """Return the cells of a column."""
@@ -176,14 +196,12 @@ def read_table(
         tuple(rows),
         tuple(numbers),
         SEPARATORS.get(separator, "space"),
-        decimal_comma=False,
         units_row=units,
         written=tuple(dict.fromkeys(filter(None, heading.names))),
         above=above,
         notes=notes,
     )
-    table = _with_errors_apart(_each_once(_one_below_another(table, heading.labels)))
-    return replace(table, decimal_comma=_decimal_comma(table))
+    return _with_errors_apart(_each_once(_one_below_another(table, heading.labels)))
 
 
 def read_two_columns(
@@ -223,7 +241,7 @@ def read_two_columns(
     units = [
         (match[2] if match else None) or table.unit(name) or None for match, name in zip(found, table.header, strict=True)
     ]
-    values = values_of(path, table.rows, table.numbers, comma=table.decimal_comma, missing=False)
+    values = values_of(path, table.rows, table.numbers, comma=table.decimal_comma(table.header), missing=False)
     if names == plain and units == [None, None]:
         return values, None
     if names != tuple(with_units) or not all(units):
@@ -467,30 +485,6 @@ def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewher
         mark = SEPARATORS.get(separator, "space")
         return f"{said}: the header is separated by {mark}s and this row by {other}s; use one separator{elsewhere}."
     return f"{said}; use one separator, and leave a cell empty if a value is missing{elsewhere}."
-
-
-def _decimal_comma(table: TextTable) -> bool:
-    """Return whether numbers have decimal commas; refuse a file that has both signs, where 1,234 could mean two things."""
-    comma: tuple[int, str, str] | None = None
-    point: tuple[int, str, str] | None = None
-    for at, name in enumerate(table.header):
-        if not name:
-            continue
-        for number, row in zip(table.numbers, table.rows, strict=True):
-            parts = WITH_UNIT.fullmatch(row[at])
-            text = (parts[1] if parts else row[at]).strip()
-            if comma is None and COMMA.fullmatch(text):
-                comma = number, name, row[at]
-            elif point is None and "." in text and POINT.fullmatch(text):
-                point = number, name, row[at]
-            if comma and point:
-                break
-    if comma and point:
-        raise InputError(
-            f"{table.path}: row {comma[0]}, column {show(comma[1])} has {show(comma[2])} with a comma and row {point[0]}, "
-            f"column {show(point[1])} has {show(point[2])} with a point; use one decimal sign and no thousands separator."
-        )
-    return comma is not None
 
 
 def _some(numbers: Sequence[int]) -> str:

@@ -257,13 +257,13 @@ def _notes(
     table: TextTable, columns: dict[str, list[str]], empty: list[int], made: tuple[str, ...] = (), run: str = ""
 ) -> tuple[str, ...]:
     notes = list(table.notes)
-    if table.decimal_comma:
+    used = {name for names in columns.values() for name in names}
+    told = " ".join(made)
+    if table.decimal_comma([name for name in table.written if name in used or show(name) in told]):
         notes.append("Numbers were read with decimal commas.")
     if empty:
         rows = ", ".join(map(str, sorted(set(empty))[:10])) + (", ..." if len(set(empty)) > 10 else "")
         notes.append(f"{len(empty)} row{'s' * (len(empty) != 1)} without a value left out: {rows}.")
-    used = {name for names in columns.values() for name in names}
-    told = " ".join(made)
     unused = [name for name in table.header if name and name not in used and name != run and show(name) not in told]
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")

@@ -242,7 +242,8 @@ def _may_be_friction(table: TextTable, name: str) -> bool:
     """Return whether a column could hold friction coefficients: positive numbers, not all alike, that count nothing."""
     if _NO_COEFFICIENT.search(name):
         return False
-    read = [number_of(cell, "," if table.decimal_comma else ".") for cell in table.column(name)]
+    decimal = "," if table.decimal_comma([name]) else "."
+    read = [number_of(cell, decimal) for cell in table.column(name)]
     values = [each[0] for each in read if each is not None]
     return 2 * len(values) > len(read) and (len(set(values)) > 1 or len(read) == 1) and any(value > 0 for value in values)
 

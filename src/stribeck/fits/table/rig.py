@@ -433,16 +433,14 @@ def _cells(table: TextTable, name: str) -> list[float | None]:
 
 
 def _cells_or_none(table: TextTable, name: str) -> list[float | None]:
-    decimal = "," if table.decimal_comma else "."
+    decimal = "," if table.decimal_comma([name]) else "."
     read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
     return [None if each is None else each[0] for each in read]
 
 
 def _with_column(table: TextTable, name: str, values: Sequence[float | None]) -> TextTable:
-    """Return the table with one more column, with the decimal sign of the others."""
+    """Return the table with one more column."""
     texts = ["" if value is None or not math.isfinite(value) else repr(value) for value in values]
-    if table.decimal_comma:
-        texts = [text.replace(".", ",") for text in texts]
     return _with_texts(table, name, texts)
 
 

@@ -134,6 +134,6 @@ def _listed(table: TextTable, rows: Flags) -> str:
 
 def _numbers(table: TextTable, name: str) -> Array:
     """Return the numbers of a column as written, NaN where there is none."""
-    decimal = "," if table.decimal_comma else "."
+    decimal = "," if table.decimal_comma([name]) else "."
     read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
     return np.array([np.nan if each is None else each[0] for each in read])

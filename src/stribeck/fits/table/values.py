@@ -25,7 +25,7 @@ class Values:
 
     def __init__(self, table: TextTable, settings: FitSettings) -> None:
         self.table, self.settings = table, settings
-        self.decimal = "," if table.decimal_comma else "."
+        self.decimals: dict[str, str] = {}
         self.factors: dict[tuple[str, str], float] = {}
 
     def value(self, i: int, column: str, meaning: str) -> float | None:
@@ -35,7 +35,9 @@ class Values:
         where = f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
         if cell.lower() in MISSING:
             return None
-        found = number_of(cell, self.decimal)
+        if column not in self.decimals:
+            self.decimals[column] = "," if self.table.decimal_comma([column]) else "."
+        found = number_of(cell, self.decimals[column])
         if found is None:
             thousands = "write it without marks between thousands"
             advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
