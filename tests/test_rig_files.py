@@ -186,6 +186,9 @@ def test_pairs_of_columns_of_a_digitizer_are_curves_once_their_meaning_is_said(w
     assert read(written(text)).curves == found.curves
     shorter = "\n".join(text.splitlines()[:-1]) + "\n,,330,0.064547\n"
     assert len(read(written(shorter))) == 15
+    names_alone = (DATA / name).read_text().replace("X,Y,X,Y\n", "")
+    assert "as in speed = 'X' and friction = 'Y'" in refusal(written(names_alone))
+    assert read(written(names_alone), **said).curves == found.curves
     unnamed = "\n".join(text.splitlines()[1:])
     assert read(written(unnamed)).curves == ("1", "2")
 

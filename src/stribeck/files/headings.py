@@ -100,7 +100,7 @@ class Heading:
     def at_line(cls, lines: Sequence[Line], i: int) -> Self:
         """Return the heading whose names stand in a line, whatever is below."""
         separator = _separator(lines[i].text)
-        names = tuple(_trimmed(cells_of(lines[i].text, separator, Path(), lines[i].number)))
+        names = tuple(cells_of(lines[i].text, separator, Path(), lines[i].number))
         below = i + 1
         while below < min(len(lines), i + MOST_LINES) and not lines[below].comment and not lines[below].numbers:
             below += 1
@@ -224,7 +224,7 @@ def _separators(line: Line) -> tuple[str, ...]:
 
 
 def _names(text: str, mark: str) -> list[str]:
-    return _trimmed(re.split(r"\s{2,}", text.strip()) if mark == GAP else _split(text, mark))
+    return re.split(r"\s{2,}", text.strip()) if mark == GAP else _split(text, mark)
 
 
 def _separator(text: str) -> str:
@@ -236,13 +236,6 @@ def _split(text: str, separator: str) -> list[str]:
         return cells_of(text, separator, Path(), 0)
     except InputError:
         return []
-
-
-def _trimmed(cells: list[str]) -> list[str]:
-    """Return cells without the empty ones at the end."""
-    while cells and not cells[-1]:
-        cells.pop()
-    return cells
 
 
 def _numbers_in(text: str) -> int:

@@ -185,7 +185,10 @@ def read_table(
         )
     if text:
         notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {_some(text)}.",)
-    units = heading.units
+    units, labels = heading.units, heading.labels
+    if not labels and _are_pairs(header, rows):
+        header, labels = ("X", "Y") * (len(header) // 2), header
+    written = tuple(dict.fromkeys(filter(None, header)))
     if len(set(steps)) > 1:
         header = (*header, BLOCK)
         rows = [(*row, str(step)) for row, step in zip(rows, steps, strict=True)]
@@ -197,11 +200,11 @@ def read_table(
         tuple(numbers),
         SEPARATORS.get(separator, "space"),
         units_row=units,
-        written=tuple(dict.fromkeys(filter(None, heading.names))),
+        written=written,
         above=above,
         notes=notes,
     )
-    return _with_errors_apart(_each_once(_one_below_another(table, heading.labels)))
+    return _with_errors_apart(_each_once(_one_below_another(table, labels)))
 
 
 def read_two_columns(
@@ -358,14 +361,14 @@ def _body(
     """Return the rows below a header, number and step of each, and rows of text; the header may come again above each step."""
     again = {each.first: each for each in same} | {each.at: each for each in same}
     apart = {each.first for each in others}
-    width = len(heading.names)
+    width, wide = len(heading.names), sum(map(bool, heading.names)) > 2
     rows, numbers, steps, text = list[tuple[str, ...]](), list[int](), list[int](), list[int]()
     pending: list[tuple[Line, list[str]]] = []
 
     def settle(*, header_follows: bool) -> None:
         """Take rows of another width for text above the next header, or for rows of few numbers; else refuse them."""
         for line, cells in pending:
-            if not header_follows and len(cells) != width and line.numbers > (width > 2):
+            if not header_follows and len(cells) != width and line.numbers > wide:
                 raise InputError(_ragged(path, line, cells, heading, elsewhere))
             text.append(line.number)
         pending.clear()
@@ -414,6 +417,17 @@ def _with_columns(table: TextTable, kept: Sequence[int]) -> TextTable:
     rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
     units = tuple(table.units_row[i] for i in kept) if table.units_row else ()
     return replace(table, header=tuple(table.header[i] for i in kept), rows=rows, units_row=units)
+
+
+def _are_pairs(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> bool:
+    """Return whether each name stands above two columns of numbers, as of curves that were read off a picture."""
+    named, unnamed = header[::2], header[1::2]
+    return (
+        all(named)
+        and len(named) == len(unnamed)
+        and not any(unnamed)
+        and all(any(has_number(row[i]) for row in rows) for i in range(1, len(header), 2))
+    )
 
 
 def _one_below_another(table: TextTable, labels: tuple[str, ...]) -> TextTable:
