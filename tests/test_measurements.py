@@ -274,7 +274,7 @@ TABLES = {
     "bound unit": ({"bounds": {"roughness": ["2 MPa", "1 um"]}}, "roughness", "a pressure"),
     "prior": ({"priors": {"modulus": "2 MPa"}}, "modulus", "factor"),
     "prior width": ({"priors": {"modulus": {"value": "2 MPa", "factor": 0.5}}}, "0.5", "above 1"),
-    "column": ({"columns": {"torque": "M"}}, "torque", "not a known key"),
+    "column": ({"columns": {"wear": "M"}}, "wear", "not a known key"),
     "column text": ({"columns": {"speed": 3}}, "3", "header"),
     "curve": ({"curves": {"a": {"colour": 1}}}, "colour", "not a known key"),
     "header row": ({"header_row": 0}, "header_row = 0", "counted from 1"),

@@ -327,6 +327,35 @@ def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
     assert "track_radius = -1" in str(pytest.raises(sb.InputError, check_fit_table, {"track_radius": -1}).value)
 
 
+def test_declared_columns_come_before_those_that_are_known_by_their_names(written):
+    path = written(
+        table(
+            "speed [mm/s];COF;A [N];Fz [N];B [rpm]",
+            lambda u, mu: 1 + u,
+            lambda u, mu: 0.1 + mu,
+            lambda u, mu: 2 * mu,
+            lambda u, mu: 2,
+            lambda u, mu: u * 60 / 2 / np.pi / 9,
+        )
+    )
+    found = read(path, columns={"friction_force": "A", "rotation": "B"}, track_radius="9 mm")
+    assert_on_curve(found)
+    assert "friction = |'A [N]' / 'Fz [N]'|" in found.taken and "'COF'" not in found.taken
+    moment = written(table("speed [mm/s];Moment du couple [mN m];Fz [N]", speed, lambda u, mu: 12 * mu, lambda u, mu: 2))
+    assert_on_curve(read(moment, columns={"torque": "Moment du couple"}, arm="6 mm"))
+
+
+def test_a_length_that_is_not_used_is_said(written):
+    notes = read(written(PLAIN), track_radius="9 mm", arm="5 mm").notes
+    assert "track_radius of [fit] is not used: no rotation was needed." in notes
+    assert "arm of [fit] is not used: no torque was needed." in notes
+
+
+def test_a_radius_without_a_unit_is_named_and_asked_for(written):
+    path = written("Disc track radius:\t20.7\n\n" + table("Disc speed [rpm];COF", speed, friction))
+    assert "(row 1 gives 'Disc track radius' 20.7 without a unit)" in refusal(path)
+
+
 def test_advice_is_true_or_absent(written):
     force = refusal(written("Fx (N);Fz (N);V2 [mm/s]\n0.5;1;1\n0.4;1;2\n0.3;1;3\n"))
     assert force.endswith("as in speed = 'V2 [mm/s]'.")

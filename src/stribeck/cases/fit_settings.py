@@ -36,7 +36,8 @@ DEFAULT_FREE = ("boundary_friction", "roughness")
 
 COLUMNS = (
     *("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve"),
-    *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run"),
+    *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
+    *("friction_force", "normal_force", "torque", "run"),
 )
 """Kinds of columns of the data, beside the inputs of :data:`OF_CONTACT`, which distinguish curves."""
 

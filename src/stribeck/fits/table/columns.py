@@ -12,7 +12,7 @@ import numpy as np
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
+from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.units import InputError, show
@@ -34,6 +34,9 @@ _FRICTION = (
     r"(?: (?:coefficient|cof|mu|[µμ]|mean|average|avg))?"
 )
 _ERROR = r"(?:err(?:or)?|uncertainty|sd|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
+
+MADE = {"speed": MADE_SPEED, "friction": MADE_FRICTION}
+"""Headers of columns that were made of others."""
 
 WORDS = {
     "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|[uv] (?:s|sl|slide|sliding|rel)|(?:gleit)?geschwindigkeit|"
@@ -103,8 +106,8 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
         if meaning in settings.columns or meaning == "error":
             continue
         names = [name for name in _candidates(table, settings, meaning) if not any(name in each for each in found.values())]
-        if meaning == "speed" and MADE_SPEED in table.header:
-            names = [MADE_SPEED]
+        if MADE.get(meaning) in table.header:
+            names = [MADE[meaning]]
         if not names:
             continue
         _refuse_twice(table, names, meaning)

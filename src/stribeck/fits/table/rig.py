@@ -22,8 +22,15 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_SPEED", "RIG", "prepared", "temperature_note"]
 
-RIG = ("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run")
+RIG = (
+    *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
+    *("friction_force", "normal_force", "torque", "run"),
+)
 """What a column of a rig may be beside those of a friction curve."""
+
+FORCES = frozenset({"friction_force", "torque"})
+SPEEDS = frozenset({"entrainment_speed", "sliding_speed", "surface_speeds", "rotation"})
+"""What friction and speed are made of."""
 
 _FORCE_OF = r"(?:(?:normal|ball|contact|vertical|applied|nominal|set|target|actual|measured|axial|mean|average|test) )"
 _SPEED = r"(?:speed|velocity)"
@@ -66,7 +73,7 @@ DIMENSIONS_OF = {
 MADE_SPEED = "sum of speeds [m/s]"
 """Header of the column of the speed that was made of others."""
 
-MADE_FRICTION = "friction"
+MADE_FRICTION = "friction of forces"
 """Header of the column of friction that was made of forces."""
 
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
@@ -121,14 +128,14 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     """
     found = _rig_columns(table, settings)
     said = []
-    if not known("friction"):
-        made = _friction(table, found, settings)
+    if not known("friction") or (settings.columns.keys() & FORCES and "friction" not in settings.columns):
+        made = _friction(table, _declared_first(found, FORCES, settings), settings)
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_FRICTION, values)
             said.append(sentence)
-    if not known("speed"):
-        made = _speed(table, found, settings)
+    if not known("speed") or (settings.columns.keys() & SPEEDS and "speed" not in settings.columns):
+        made = _speed(table, _declared_first(found, SPEEDS, settings), settings)
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_SPEED, values)
@@ -137,7 +144,19 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
             table, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
             said += sentences
-    return table, tuple(said), found.get("run", [""])[0]
+    told = " ".join(said)
+    idle = [
+        f"{key} of [fit] is not used: no {noun} was needed."
+        for key, noun, value in (("track_radius", "rotation", settings.track_radius), ("arm", "torque", settings.arm))
+        if value is not None and f"{1e3 * value:g} mm of the case" not in told
+    ]
+    return replace(table, notes=(*table.notes, *idle)), tuple(said), found.get("run", [""])[0]
+
+
+def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], settings: FitSettings) -> dict[str, list[str]]:
+    """Return the columns of a rig, of some meanings only those that the settings declare if they declare any."""
+    declared = settings.columns.keys() & meanings
+    return {key: names for key, names in found.items() if not declared or key not in meanings or key in declared}
 
 
 def temperature_note(table: TextTable) -> tuple[str, ...]:
@@ -274,7 +293,8 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
         if arm is None:
             raise InputError(
                 f"{table.path}: {show(torque)} is a torque; its arm makes it a friction force: say arm = '20 mm' in [fit] of "
-                f"the case, or add a column 'arm [mm]'. The columns are {', '.join(map(show, table.written))}."
+                f"the case, or add a column 'arm [mm]'{_without_unit(table, ARM)}. "
+                f"The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
         moments = zip(_numbers(table, torque, "torque", "mN m"), lengths, strict=True)
@@ -325,6 +345,15 @@ def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int,
             ):
                 return read[0] * si_factor(read[1] or unit, dimension, name), number, name
     return None
+
+
+def _without_unit(table: TextTable, pattern: str) -> str:
+    """Return that a line above the header gives a quantity without its unit, if one does."""
+    for number, text, below in zip(*_lines_above(table), strict=True):
+        for name, unit, value in _statements(text, below):
+            if is_named(name, pattern) and number_of(value, ",") and not unit:
+                return f" (row {number} gives {show(name)} {value} without a unit)"
+    return ""
 
 
 def _lines_above(table: TextTable) -> tuple[list[int], list[str], list[str]]:
@@ -400,7 +429,7 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
     if radius is None:
         raise InputError(
             f"{table.path}: {show(name)} is a rotation; the radius of its track makes it a speed: say track_radius = '20 mm' "
-            "in [fit] of the case, or add a column 'track radius [mm]'."
+            f"in [fit] of the case, or add a column 'track radius [mm]'{_without_unit(table, TRACK)}."
         )
     lengths, origin = radius
     pairs = zip(_numbers(table, name, "rotation", "rpm"), lengths, strict=True)
