@@ -448,7 +448,9 @@ def changed(path, change):
 def test_a_workbook_that_unpacks_to_anything_is_read_or_refused_at_once(tmp_path):
     water = [["speed [mm/s]", "COF"], *([u, mu] for u, mu in ROWS)]
     last = '<row r="1048576"><c r="XFD1048576" s="0"/></row></sheetData>'
+    far = "".join(f'<row r="{i}"><c r="XFD{i}"><v>1</v></c></row>' for i in range(20, 200))
     hostile = {
+        "numbers far to the right": lambda text: text.replace("</sheetData>", f"{far}</sheetData>"),
         "a blank in the last cell": lambda text: text.replace("</sheetData>", last).replace("A1:B9", "A1:XFD1048576"),
         "a number in the last cell": lambda text: text.replace("</sheetData>", last.replace('s="0"/>', "><v>1</v></c>")),
         "no such cell": lambda text: text.replace("</sheetData>", '<row r="2"><c r="ZZZZZZ2"><v>1</v></c></row></sheetData>'),
@@ -464,5 +466,7 @@ def test_a_workbook_that_unpacks_to_anything_is_read_or_refused_at_once(tmp_path
         if "blank" in name:
             assert_on_curve(read(path))
         else:
-            assert "rig.xlsx" in refusal(path), name
+            said = refusal(path)
+            assert "rig.xlsx" in said, name
+            assert "far" not in name or "has more than 2000000 cells" in said
         assert time.process_time() - began < 2, name
