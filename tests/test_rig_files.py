@@ -219,6 +219,7 @@ VARIATIONS = {
     "trailing separators above": "Recipe;Radius;;\na;b;1;2;3\n" + PLAIN.replace("\n", ";\n"),
     "a column without a name": table(";speed [mm/s];COF", lambda u, mu: 7, speed, friction),
     "an empty column": table("speed [mm/s];;COF", speed, friction).replace("\n", "\n").replace(";0.", ";;0."),
+    "a column twice with other digits": table("COF;speed [mm/s];COF", friction, speed, friction).replace("\n0.3;", "\n0.30;"),
     "a column twice": table("COF;speed [mm/s];COF", friction, speed, friction),
     "other columns twice": table("T;speed [mm/s];T;COF", speed, speed, friction, friction),
     "a column called like an input": table("Alpha (°);Radius (s);speed [mm/s];COF", speed, speed, speed, friction),
@@ -419,6 +420,22 @@ def test_a_table_that_would_take_minutes_is_refused(written):
     with path.open("r+b") as file:
         file.truncate(10**10)  # sparse: it takes no room on the disk
     assert "more than 20000000 bytes" in refusal(path)
+
+
+def test_the_sheet_with_speed_and_friction_is_read_before_longer_ones(tmp_path):
+    raw = [["time [s]", "voltage [V]", "x", "y"], *([i, 1 + i, 2, 3] for i in range(40))]
+    path = workbook(tmp_path, raw=raw, means=[["speed [mm/s]", "COF"], *([u, mu] for u, mu in ROWS)])
+    found = read(path)
+    assert_on_curve(found)
+    assert "Sheet 'means' read, not 'raw'; sheet = ... in [fit] chooses another." in found.notes
+    assert "rig.xlsx: the columns are 'time [s]'" in refusal(path, sheet="raw")
+
+
+def test_steps_in_other_units_are_not_read_in_those_of_the_first(written):
+    first, second = (f"speed;COF\n{unit};-\n" + PLAIN.partition("\n")[2] for unit in ("mm/s", "m/s"))
+    assert "rows 1 and 12 are headers of two tables of 8 and 8 rows" in refusal(written(f"{first}\n{second}"))
+    assert_on_curve(read(written(f"{first}\n{second}"), header_row=1))
+    assert_on_curve(read(written(f"{first}\n{first}")))
 
 
 def test_a_workbook_with_gaps_texts_and_units_is_read(tmp_path):

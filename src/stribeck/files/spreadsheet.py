@@ -17,7 +17,7 @@ from stribeck.files.cells import has_number
 from stribeck.files.reading import content_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["SPREADSHEETS", "Sheet", "sheet_of"]
+__all__ = ["SPREADSHEETS", "sheets_of"]
 
 SPREADSHEETS = (".xlsx", ".xlsm")
 
@@ -35,39 +35,20 @@ LAST_ROW, LAST_COLUMN = 1_048_576, 16_384
 _CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """A sheet of a workbook.
-
-    Parameters
-    ----------
-    name : str
-        Its name.
-    lines : list of tuple
-        Number and text of each row that holds something, its cells separated by tabs.
-    others : tuple of str
-        Names of other sheets that hold numbers.
-    """
-
-    name: str
-    lines: list[tuple[int, str]]
-    others: tuple[str, ...]
-
-
-def sheet_of(path: Path, wanted: str | None = None) -> Sheet:
-    """Return a sheet of a workbook.
+def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int, str]]]:
+    """Return the sheets of a workbook that hold numbers.
 
     Parameters
     ----------
     path : pathlib.Path
         The workbook.
     wanted : str, optional
-        Name of the sheet; the one with most numbers if omitted.
+        Name of the only sheet to read.
 
     Returns
     -------
-    Sheet
-        Its rows, numbered as in the workbook; numbers with a decimal point.
+    dict of str to list
+        Number and text of each row that holds something, its cells separated by tabs; the sheet with most numbers first.
 
     Raises
     ------
@@ -92,8 +73,8 @@ def sheet_of(path: Path, wanted: str | None = None) -> Sheet:
     if not any(counts.values()):
         which = "any of its sheets" if wanted is None else f"the sheet {show(wanted)}"
         raise InputError(f"{path} holds no numbers in {which}; formulas count only after a program has saved them.")
-    name = max(counts, key=lambda each: counts[each])
-    return Sheet(name, sheets[name], tuple(each for each in counts if each != name and counts[each]))
+    ordered = sorted(filter(counts.get, counts), key=lambda each: -counts[each])
+    return {name: sheets[name] for name in ordered}
 
 
 def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[tuple[str, list[tuple[int, str]]]]:

@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +18,10 @@ from stribeck._types import Array
 from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, number_of, split_header
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
-from stribeck.files.spreadsheet import SPREADSHEETS, sheet_of
+from stribeck.files.spreadsheet import SPREADSHEETS, sheets_of
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["CURVE", "EXPECTED", "TextTable", "read_table", "read_two_columns", "values_of"]
+__all__ = ["TextTable", "comparable", "read_table", "read_two_columns", "values_of"]
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
@@ -157,7 +158,16 @@ def read_table(
     InputError
         If the file cannot be read, has no header, or a row has another number of cells than the header.
     """
-    lines, notes, filled_up = _lines(path, sheet)
+    filled_up = path.suffix.lower() in SPREADSHEETS and path.is_file()
+    notes: tuple[str, ...] = ()
+    if filled_up:
+        name, lines, others_of_book = _sheet(path, sheet, knows)
+        if others_of_book:
+            left_out = ", ".join(map(show, others_of_book))
+            notes = (f"Sheet {show(name)} read, not {left_out}; sheet = ... in [fit] chooses another.",)
+            path = Path(f"{path} (sheet {show(name)})")
+    else:
+        lines = _lines_of_text(path, sheet)
     heading, same, others = _heading(path, lines, header_row, expected, knows)
     separator, number = heading.separator, lines[heading.at].number
     above = tuple((line.number, line.text) for line in lines[: heading.at])
@@ -271,18 +281,22 @@ def values_of(
     return values
 
 
-def _lines(path: Path, sheet: str | None) -> tuple[list[Line], tuple[str, ...], bool]:
-    """Return the lines that are not empty, notes on sheets, and whether short rows end with empty cells."""
-    if path.suffix.lower() in SPREADSHEETS and path.is_file():
-        found = sheet_of(path, sheet)
-        others = ", ".join(map(show, found.others))
-        note = f"Sheet {show(found.name)} read, not {others}; sheet = ... in [fit] chooses another." if others else ""
-        return _within_bounds(path, found.lines), ((note,) if note else ()), True
+def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...]]:
+    """Return name and lines of the sheet whose table has most known names, or else most numbers; and the other sheets."""
+    sheets = {name: _within_bounds(path, filled) for name, filled in sheets_of(path, wanted).items()}
+    known = {
+        name: max((min(each.known, 2) for each in headings_in(lines, knows)), default=0) for name, lines in sheets.items()
+    }
+    best = max(sheets, key=lambda name: known[name])
+    return best, sheets[best], tuple(name for name in sheets if name != best)
+
+
+def _lines_of_text(path: Path, sheet: str | None) -> list[Line]:
+    """Return the lines of a text that are not empty."""
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
     text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
-    filled = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")]
-    return _within_bounds(path, filled), (), False
+    return _within_bounds(path, [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")])
 
 
 def _within_bounds(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
@@ -308,12 +322,12 @@ def _heading(
     if not plain:
         raise InputError(f"{path} holds no data; {expected}.")
     found = headings_in(lines, knows)
-    tables: dict[str, list[Heading]] = {}
+    tables: dict[tuple[str, tuple[str, ...]], list[Heading]] = {}
     for each in found:
-        tables.setdefault(lines[each.at].text.strip(), []).append(each)
+        tables.setdefault((lines[each.at].text.strip(), each.units), []).append(each)
     if header_row is not None or not tables:
-        asked = lines[plain[0]].text.strip()
-        own = [each for each in tables.get(asked, []) if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
+        there = next((each for each in tables.values() for one in each if one.at == plain[0]), [])
+        own = [each for each in there if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
         return own[0], own, [each for each in found if each not in own and each.at > plain[0]]
     told = {id(each): min(_telling(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
     count = {id(each): sum(one.rows for one in each) for each in tables.values()}
@@ -399,12 +413,18 @@ def _body(
     return rows, numbers, steps, [each for each in text if numbers and each < numbers[-1]]
 
 
+def comparable(cell: str) -> Any:
+    """Return what is equal for cells that mean the same, such as ``0.50`` and ``0.5``."""
+    return number_of(cell, ",") or cell
+
+
 def _each_once(table: TextTable) -> TextTable:
     """Return the table without columns that come again with the same name and cells, and without unnamed empty ones."""
-    seen: dict[str, list[tuple[str, ...]]] = {}
+    seen: dict[str, list[tuple[Any, ...]]] = {}
     kept = []
+    repeated = {name for name in table.header if table.header.count(name) > 1}
     for i, name in enumerate(table.header):
-        cells = tuple(row[i] for row in table.rows)
+        cells = tuple(comparable(row[i]) if name in repeated else row[i] for row in table.rows)
         if name and cells not in seen.setdefault(name, []):
             seen[name].append(cells)
             kept.append(i)

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
-from stribeck.files.text_table import TextTable
+from stribeck.files.text_table import TextTable, comparable
 from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
@@ -154,7 +154,7 @@ def _refuse_twice(table: TextTable, names: Sequence[str], meaning: str) -> None:
     """Refuse columns that may mean the same and hold different cells."""
     first = table.header.index(names[0])
     for at, name in enumerate(table.header):
-        if at == first or name not in names or all(row[at] == row[first] for row in table.rows):
+        if at == first or name not in names or all(comparable(row[at]) == comparable(row[first]) for row in table.rows):
             continue
         if name == names[0]:
             raise InputError(
