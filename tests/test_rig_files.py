@@ -306,6 +306,7 @@ ROTATION = {
     "radians": (table("Angular velocity [rad/s];COF", lambda u, mu: u * 2 * np.pi / 60, friction), {"track_radius": "9 mm"}),
     "turns per second": (table("Speed [1/s];COF", lambda u, mu: u / 60, friction), {"track_radius": "9 mm"}),
     "a column": (table("Speed [rpm];Track radius [mm];COF", speed, lambda u, mu: 9, friction), {}),
+    "a column of a plainer name": (table("Speed [rpm];Radius [mm];COF", speed, lambda u, mu: 9, friction), {}),
     "a diameter": (table("Speed [rpm];Wear track diameter [mm];COF", speed, lambda u, mu: 18, friction), {}),
     "a line above": ("Track radius [mm];9\n\n" + table("Speed [rpm];COF", speed, friction), {}),
     "a diameter above": ("Track diameter: 1.8 cm\n\n" + table("Speed [rpm];COF", speed, friction), {}),
@@ -320,6 +321,7 @@ def test_a_rotation_is_a_speed_by_the_radius_of_its_track(written, name):
     found = read(written(text), **settings)
     assert found.values == pytest.approx(SPEEDS * 2 * np.pi / 60 * 9e-3, rel=1e-8)
     assert "x the radius of the track" in found.taken
+    assert found.inputs == ({},)  # it is not the radius of the ball
 
 
 def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
@@ -382,6 +384,9 @@ def test_the_standard_deviation_beside_friction_is_its_error(written):
     text = table("speed [mm/s];SD;COF;SD", speed, lambda u, mu: 0.2 * u, friction, lambda u, mu: 0.03 * mu)
     found = read(written(text))
     assert found.error == pytest.approx(0.03 * found.friction, rel=1e-6)
+    for header in ("COF (mean);COF (SD)", "COF;±", "COF;+/-", "COF [-];COF (SD) [-]", "µ;s.d.", "COF mean;COF std"):
+        path = written(table(f"speed [mm/s];{header}", speed, friction, lambda u, mu: 0.03 * mu))
+        assert read(path).error == pytest.approx(0.03 * found.friction, rel=1e-6), header
     text = table("speed [mm/s];COF (%);Std. Dev. (%)", speed, lambda u, mu: 100 * mu, lambda u, mu: 3 * mu)
     assert read(written(text)).error == pytest.approx(0.03 * found.friction, rel=1e-6)
 

@@ -26,6 +26,12 @@ MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "
 SYMBOLS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
 """What may stand in the brackets of a header in place of a unit: the letter of the quantity."""
 
+_STATISTIC = re.compile(
+    r"\s*[\[(](mean|average|avg|median|sd|s\.d\.|std|st\.? ?dev\.?|se|sem|err(?:or)?|std\.? ?(?:dev|error)\.?)[\])]",
+    re.IGNORECASE,
+)
+"""Brackets that say which statistic of the samples a column holds, and no unit."""
+
 _LETTER = re.compile(r"(?<=[a-zäöüß]{3}) (?:u|v|mu|[µμ]|f ?[nt]|w)$")
 
 POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
@@ -41,6 +47,7 @@ _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 def split_header(header: str) -> tuple[str, str]:
     """Return the words of a header and its unit, as of ``speed [mm/s]`` or ``speed / mm/s``; empty where it has none."""
+    header = _STATISTIC.sub(r" \1", header)
     parts = _HEADER.fullmatch(header) or _WITHOUT_BRACKETS.fullmatch(header)
     if parts is None or not parts[1]:
         return header.strip(), ""

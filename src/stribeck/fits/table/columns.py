@@ -33,7 +33,9 @@ _FRICTION = (
     r"reib(?:ungs)?(?:wert|zahl|beiwert|koeffizient)|reibung)"
     r"(?: (?:coefficient|cof|mu|[µμ]|mean|average|avg))?"
 )
-_ERROR = r"(?:err(?:or)?|uncertainty|sd|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
+_ERROR = (
+    r"(?:err(?:or)?|uncertainty|s ?d|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
+)
 
 MADE = {"speed": MADE_SPEED, "friction": MADE_FRICTION}
 """Headers of columns that were made of others."""
@@ -61,6 +63,8 @@ OTHER_SPEED = (
     r"(?:speed|velocity) (?:mean|average|avg)"
 )
 """Headers of a speed that is taken where there is none by a plainer name."""
+
+PLUS_MINUS = {"±", "+/-", "+-"}
 
 _OF_ERROR = re.compile(rf"{_ERROR}|.* {_ERROR}|{_ERROR} .*")
 _LOGARITHM = re.compile(r"(?<![a-z])(?:log|lg|ln)(?:10|2|e)?(?![a-z])", re.IGNORECASE)
@@ -128,7 +132,7 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
     if meaning != "error":
         free = [name for name in free if not _LOGARITHM.search(name)]
     for pattern in (WORDS[meaning], *([OTHER_SPEED] if meaning == "speed" else [])):
-        names = [name for name in free if is_named(name, pattern)]
+        names = [name for name in free if is_named(name, pattern) or (meaning == "error" and name.strip() in PLUS_MINUS)]
         if meaning == "speed":
             rolling = PATTERNS["entrainment_speed"]
             names = [name for name in names if not is_named(name, rolling) or is_mean_of_time(table, name, settings)]

@@ -139,6 +139,9 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_SPEED, values)
+            for name in filter(None, table.written):
+                if sentence.endswith(f"of column {show(name)}"):
+                    table = _without(table, name)  # the radius of a track is not that of the ball
             said.append(sentence)
     for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
         if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
