@@ -13,6 +13,7 @@ from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of, checks_of_curve
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.quantities.facts import ROWS as FACTS
+from stribeck.quantities.facts import fact_values
 from stribeck.surfaces import SelfAffine, persson_law
 
 STEEL = sb.LineContact(
@@ -53,7 +54,7 @@ def test_a_soft_contact_is_fine_and_steel_is_outside():
     assert set(verdicts(TRUE).values()) == {"fine"}
     found = checks_of(Subject(STEEL), "contact")
     assert found["stiffness"].verdict == "outside" and not found.applies
-    assert found.first_line.startswith("Outside the model: ") and "metal" in found.first_line
+    assert found.first_line.startswith("Outside the range of the model: ") and "metal" in found.first_line
     assert checks_of(Subject(TRUE), "contact").first_line == ""
 
 
@@ -228,11 +229,11 @@ def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
     for tokens in (("check", case), ("solve", case), ("curve", case, *FEW[:-1], "4")):
         answer = call(capsys, *tokens)
         assert (answer.code, answer.err) == (0, "")
-        assert answer.out.startswith("Outside the model"), tokens
+        assert answer.out.startswith("Outside the range of the model"), tokens
         found = json.loads(call(capsys, *tokens, "--json").out)
         assert found["applies"] is False and answer.out.count("is that of metal") == 1
         assert {each["verdict"] for each in found["checks"]} >= {"fine", "outside"}
-        assert set(found["checks"][0]) == {"name", "value", "limit", "verdict", "sentence", "unit", "at_least"}
+        assert set(found["checks"][0]) == {"name", "value", "limit", "verdict", "sentence", "unit", "at_least", "condition"}
     assert json.loads(call(capsys, "solve", PDMS, "--json").out)["applies"] is True
 
 
@@ -282,3 +283,99 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
     assert "Cavitation is modelled (exit)." in checks_of(Subject(breaks), "state")["suction"].sentence
     thins = TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.7))
     assert "Thinning is modelled (carreau)" in checks_of(Subject(thins), "state")["shear rate"].sentence
+
+
+# --- inputs, adhesion, pores, the law apart ---
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"slide_to_roll": 50.0}, "slide-to-roll ratio 50 (50 % is 0.5)"),
+        ({"boundary_friction": 70.0}, "dry friction coefficient 70 (70 % is 0.7)"),
+        ({"viscosity": "50 Pa*s"}, "viscosity 50 Pa*s"),
+        ({"modulus": "2.7 GPa"}, "effective modulus 2.7 GPa"),
+        ({"roughness": "1 mm"}, "roughness 1 mm"),
+    ],
+    ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
+)
+def test_a_slip_of_a_unit_is_said_by_every_command(capsys, tmp_path, changes, said):
+    motion = {"motion": {"slide_to_roll": changes.pop("slide_to_roll")}} if "slide_to_roll" in changes else {}
+    texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(texts, **motion))
+    for command in (["solve"], ["curve", *FEW], ["check"]):
+        answer = call(capsys, *command[:1], path, *command[1:])
+        assert said in " ".join((answer.out + answer.err).split()), command
+
+
+def test_unusual_numbers_beside_groups_are_said_too(capsys):
+    answer = call(capsys, "solve", "--groups", "1e-5", "0.1", "1e-4", "--boundary-friction", "70", "--slide-to-roll", "50")
+    assert answer.code == 0 and "dry friction coefficient 70" in answer.err and "slide-to-roll ratio 50" in answer.err
+    assert call(capsys, "solve", "--groups", "1e-5", "0.1", "1e-4", "--boundary-friction", "0.7").err == ""
+
+
+GEL = sb.PointContact(
+    radius="7.5 mm",
+    modulus="10 kPa",
+    load="5 mN",
+    viscosity="1 mPa*s",
+    speed="1 mm/s",
+    roughness="0.1 um",
+    alpha=2.0,
+    beta=0.01,
+    boundary_friction=0.1,
+)
+
+
+def quick(contact, **facts):
+    return checks_of(Subject(contact, fact_values(facts)), "contact")
+
+
+def test_what_the_model_leaves_out_of_gels_is_named_unless_it_is_given():
+    found = quick(GEL)
+    assert found.headline.startswith("The model applies if adhesion is small and no liquid flows in pores")
+    assert found.applies and {"adhesion", "pores"} <= {each.name for each in found.with_verdict("doubtful")}
+    assert "adhesion" not in {each.name for each in quick(TRUE)}
+    known = quick(GEL, work_of_adhesion="1e-6 J/m^2", diffusivity="1e-3 m^2/s")
+    assert (known["adhesion"].verdict, known["pores"].verdict) == ("fine", "fine")
+
+
+def test_adhesion_is_judged_by_the_pull_off_force_of_jkr():
+    ball = GEL.replace(radius="5 mm", modulus="2.667 MPa", load="1.1781 mN")
+    assert quick(ball, work_of_adhesion="50 mJ/m^2")["adhesion"].value == pytest.approx(1.0, rel=1e-4)
+    # A cylinder: the largest tension of F(a) = pi E* a^2/(4 R) - (2 pi E* w a)^(1/2).
+    E, R, w = TRUE.modulus, TRUE.radius, 0.05
+    a = np.linspace(1e-6, 1e-3, 200_000)
+    pull_off = -(math.pi * E * a**2 / (4 * R) - np.sqrt(2 * math.pi * E * w * a)).min()
+    assert quick(TRUE, work_of_adhesion=w)["adhesion"].value == pytest.approx(pull_off / TRUE.load, rel=1e-6)
+    assert quick(TRUE.replace(load=1e-2), work_of_adhesion=w)["adhesion"].verdict == "outside"
+
+
+def test_cartilage_is_outside_for_its_pores():
+    cartilage = GEL.replace(radius="3.2 mm", modulus="1 MPa", load="50 mN", speed="1 mm/s", roughness="0.5 um")
+    found = quick(cartilage, permeability="1e-18 m^2")
+    assert found["pores"].verdict == "outside" and not found.applies
+    assert "pores" in found.headline and "liquid in the pores" in found.first_line
+    by_diffusivity = quick(cartilage, diffusivity=1e-18 * 1e6 / 1e-3)["pores"]
+    assert by_diffusivity.value == pytest.approx(found["pores"].value)
+
+
+def test_the_model_and_the_contact_law_are_judged_apart():
+    pressed = TRUE.replace(load="3 kN/m", modulus="27 MPa")
+    found = sb.check(pressed)
+    assert {each.name for each in found.with_verdict("outside")} == {"contact law at the centre"}
+    assert found.headline.startswith("The model applies, with another law") and found.applies_with_another_law
+    assert not found.applies and "Persson's law" in found.first_line
+
+
+def test_a_case_of_a_ball_has_the_points_and_the_tolerance_of_balls(tmp_path):
+    path = tmp_path / "ball.toml"
+    path.write_text(case_text({"geometry": '"point"', "load": '"1 N"'}))
+    ball = sb.load_case(path)
+    path.write_text(sb.new_case("point"))
+    template = sb.load_case(path)
+    assert (ball.curve.points, ball.rtol) == (template.curve.points, template.rtol) == (31, 1e-4)
+    assert (template.law, template.contact.law.name) == ("persson", "persson")
+    path.write_text(case_text())
+    assert (sb.load_case(path).curve.points, sb.load_case(path).rtol) == (101, 1e-6)

@@ -150,7 +150,9 @@ def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, caps
     for tokens in commands:
         answer = call(capsys, *tokens)
         assert answer.code == 0
-        assert answer.out.startswith("Outside the model: Hard elastohydrodynamics: the Hertz pressure is 102 MPa"), tokens[0]
+        assert answer.out.startswith(
+            "Outside the range of the model: Hard elastohydrodynamics: the Hertz pressure is 102 MPa"
+        ), tokens[0]
         assert answer.out.count(HARD) == 1
     assert json.loads(call(capsys, "solve", path, "--json").out)["notes"][0].startswith(HARD)
 

@@ -146,7 +146,7 @@ def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
     )
     answer = call(capsys, "report", case, "-o", tmp_path / "steel.pdf")
     assert (answer.code, answer.err) == (0, "")
-    assert answer.out.startswith("Outside the model by") and "Probability of each regime" in answer.out
+    assert answer.out.startswith("Outside the range of the model: ") and "Probability of each regime" in answer.out
     assert (tmp_path / "steel.pdf").read_bytes().startswith(b"%PDF")
     assert call(capsys, "report", case, "-o", tmp_path / "steel.pdf").code == 2  # kept
     assert "must end in .html or .pdf" in call(capsys, "report", case, "-o", tmp_path / "steel.doc").err

@@ -16,6 +16,11 @@ __all__ = ["Case", "CurveSettings", "curve_range"]
 Axis = Literal["speed", "load", "roughness"]
 
 
+USUAL: dict[str, tuple[int, float]] = {"line": (101, 1e-6), "point": (31, 1e-4)}
+"""Points of a curve and relative tolerance of a case that gives none, by geometry: a state of a ball takes a tenth of a second
+or more."""
+
+
 @dataclass(frozen=True)
 class CurveSettings:
     """The ``[curve]`` table of a case.

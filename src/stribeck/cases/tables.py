@@ -4,7 +4,7 @@ import functools
 from types import SimpleNamespace
 from typing import Annotated, Any
 
-from stribeck.cases.case import Axis, Case, CurveSettings, curve_range
+from stribeck.cases.case import USUAL, Axis, Case, CurveSettings, curve_range
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law
 from stribeck.contacts.friction import Definition
 from stribeck.quantities.facts import FACTS
@@ -72,10 +72,11 @@ def file_model(geometry: str) -> Any:
         __base__=shared.Table,
         over=over,
         range=(Annotated[Any, BeforeValidator(check_range)], None),
-        points=(Annotated[int, points], CurveSettings.points),
+        points=(Annotated[int, points], USUAL[geometry][0]),
     )
     definition: Any = (Annotated[Definition, Field(description="'balanced' or 'published'")], Case.definition)
-    solver = create_model("Solver", __base__=shared.Table, rtol=shared.rtol, definition=definition)
+    rtol = shared.rtol[0], USUAL[geometry][1]
+    solver = create_model("Solver", __base__=shared.Table, rtol=rtol, definition=definition)
     return create_model(
         "File",
         __base__=shared.Table,

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from stribeck.checks.check import Check, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.inputs import POINT, InputTable
 from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0
 """Pressure coefficient times Hertz pressure that is fine, and beyond which the film differs: 12 % thicker, its friction
 88 % larger (when_not_to_use.md)."""
 
-SOFT, HARD_MODULUS = 5e9, 1e10
+SOFT, HARD_MODULUS = 1e9, 1e10
 """E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
 
 FINE_WIDTH, TOO_WIDE = 0.1, 0.5
@@ -26,25 +28,102 @@ FINE_LOSS, LOSS = 0.1, 0.3
 """Loss tangents up to which hysteresis is small, and beyond which the contact is no longer symmetric."""
 
 
+VERY_SOFT = 1e6
+"""E* below which adhesion and pores are named as not modelled [Pa]."""
+
+FINE_ADHESION, STICKS = 0.1, 1.0
+"""Pull-off force over load that is fine, and from which adhesion rules."""
+
+FINE_PORES, PRESSURISED = 0.1, 1.0
+"""Peclet number U a/D of the pores that is fine, and from which the liquid in the pores carries load."""
+
+SLIDE_TO_ROLL = POINT.quantities["slide_to_roll"]
+
 FINE_FACTOR = 3.0
 """Factor beyond its usual range that an input may have; a slip of a unit is ten or more."""
 
 
 def usual(subject: Subject) -> Check:
     """Return the check of the inputs against what contacts usually have, which finds slips of a unit."""
-    contact, worst, odd = subject.contact, 1.0, []
-    for name, value in contact.inputs():
-        row = contact.INPUTS.quantities[name]
+    contact = subject.contact
+    motion = {"slide_to_roll": 2 * float(contact.groups.model.film.slide)}
+    return of_usual_size(dict(contact.inputs()) | motion, contact.INPUTS)
+
+
+def of_usual_size(values: Mapping[str, float], table: InputTable) -> Check:
+    """Return the check of inputs by name, in SI units."""
+    worst, odd = 1.0, []
+    rows = {"slide_to_roll": SLIDE_TO_ROLL} | dict(table.quantities)
+    for name, signed in values.items():
+        row, value = rows[name], abs(signed)
         low, high = row.usual
-        if not 0 < value < math.inf:
+        if not 0 < value < math.inf or name == "slide_to_roll" and value <= high:
             continue
         factor = max(low / value, value / high, FINE_FACTOR * value / row.implausible)
         worst = max(worst, factor)
         if factor > FINE_FACTOR:
             ends = (format_si(end, row.dimension) for end in (low, high))
-            odd.append(f"{row.label} {format_si(value, row.dimension)}, usually {' to '.join(ends)}")
+            about = f" ({value:g} % is {value / 100:g})" if row.dimension == "number" and 1 <= value <= 200 else ""
+            odd.append(f"{row.label} {format_si(signed, row.dimension)}{about}, usually {' to '.join(ends)}")
     sentence = f"Unusual: {'; '.join(odd)}. Check the units." if odd else "All inputs are of usual size."
     return Check("inputs", worst, FINE_FACTOR, "doubtful" if odd else "fine", sentence)
+
+
+def adhesion(subject: Subject) -> Check | None:
+    r"""Return the check of the pull-off force of JKR over the load; None for stiffer bodies whose adhesion is not known.
+
+    .. math:: F = \tfrac32 \pi w R \text{ of a ball}, \qquad F = \tfrac34 (4 \pi E^* R w^2)^{1/3} \text{ of a cylinder}
+
+    Source: [JKR]; the second from :math:`F = \pi E^* a^2/(4 R) - (2 \pi E^* w a)^{1/2}` at its minimum.
+    """
+    contact, w = subject.contact, subject.fact("work_of_adhesion")
+    E, R = contact.modulus, contact.radius
+    if w is None:
+        if E >= VERY_SOFT:
+            return None
+        said = f"At E* = {format_si(E, 'pressure')} adhesion may matter, which is not modelled; give work_of_adhesion."
+        return Check("adhesion", E, VERY_SOFT, "doubtful", said, "Pa", at_least=True, condition="adhesion is small")
+    pull_off = 1.5 * math.pi * w * R if contact.groups.geometry == "point" else 0.75 * (4 * math.pi * E * R * w * w) ** (1 / 3)
+    ratio = pull_off / contact.load
+    verdict = verdict_of(ratio, FINE_ADHESION, STICKS)
+    meaning = {
+        "fine": "adhesion hardly widens the contact.",
+        "doubtful": "adhesion widens the contact and adds friction, which is not modelled.",
+        "outside": "adhesion and not the load holds the bodies together, which is not modelled.",
+    }[verdict]
+    return Check("adhesion", ratio, FINE_ADHESION, verdict, f"The pull-off force is {ratio:.2g} of the load: {meaning}")
+
+
+def pores(subject: Subject) -> Check | None:
+    r"""Return the check of the flow through the pores of the soft body; None for stiffer bodies whose pores are not known.
+
+    .. math:: \mathrm{Pe} = U a/D, \qquad D = k E^*/\eta
+
+    Far below one the liquid in the pores leaves as the contact passes, and the solid carries the load; from about one on the
+    liquid in the pores carries load that the model gives to asperities.  Source: docs/checks.md.
+    """
+    contact, D, k = subject.contact, subject.fact("diffusivity"), subject.fact("permeability")
+    if D is None and k is not None:
+        D = k * contact.modulus / contact.viscosity
+    if D is None:
+        if contact.modulus >= VERY_SOFT:
+            return None
+        said = (
+            f"E* = {format_si(contact.modulus, 'pressure')} is that of gels and tissue, whose pores may carry and pass "
+            "liquid, which is not modelled; give diffusivity or permeability."
+        )
+        value = contact.modulus
+        return Check("pores", value, VERY_SOFT, "doubtful", said, "Pa", at_least=True, condition="no liquid flows in pores")
+    peclet = contact.speed * contact.hertz.half_width / D if D > 0 else 0.0
+    verdict = verdict_of(peclet, FINE_PORES, PRESSURISED)
+    meaning = {
+        "fine": "the liquid in the pores leaves as the contact passes, and the solid carries the load.",
+        "doubtful": "the liquid in the pores carries some load, which is not modelled.",
+        "outside": "the liquid in the pores carries load that the model gives to asperities, and friction is lower.",
+    }[verdict]
+    if D == 0:
+        meaning = "the body has no pores."
+    return Check("pores", peclet, FINE_PORES, verdict, f"U a/D is {peclet:.2g}: {meaning}")
 
 
 def pressure(subject: Subject) -> Check:

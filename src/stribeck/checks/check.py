@@ -21,7 +21,7 @@ Verdict = Literal["fine", "doubtful", "outside"]
 
 ORDER: tuple[Verdict, ...] = ("fine", "doubtful", "outside")
 
-OUTSIDE = "Outside the model"
+OUTSIDE = "Outside the range of the model"
 """Beginning of the first line of an output if the model does not apply."""
 
 
@@ -45,6 +45,8 @@ class Check:
         Unit of value and limit; empty for a bare number.
     at_least : bool
         Whether larger values than the limit are the fine ones.
+    condition : str
+        What must hold for the model to apply, where the check cannot judge it; empty otherwise.
     """
 
     name: str
@@ -54,6 +56,12 @@ class Check:
     sentence: str
     unit: str = ""
     at_least: bool = False
+    condition: str = ""
+
+    @property
+    def of_law(self) -> bool:
+        """Whether it is about the contact law, which another one may mend, and not about the model."""
+        return "contact law" in self.name
 
     @property
     def texts(self) -> tuple[str, str]:
@@ -102,8 +110,14 @@ class Checks(Exported):
 
     @property
     def applies(self) -> bool:
-        """Whether the model applies: no check is outside."""
+        """Whether the model applies, with the contact law that it has: no check is outside."""
         return self.verdict != "outside"
+
+    @property
+    def applies_with_another_law(self) -> bool:
+        """Whether the model applies, but with another contact law."""
+        outside = self.with_verdict("outside")
+        return bool(outside) and all(each.of_law for each in outside)
 
     def with_verdict(self, verdict: Verdict) -> tuple[Check, ...]:
         """Return the checks of one verdict.
@@ -130,17 +144,27 @@ class Checks(Exported):
     def headline(self) -> str:
         """One sentence: whether the model applies, and which checks fail."""
         outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
+        conditions = [each.condition for each in doubtful if each.condition]
+        others = [each for each in doubtful if not each.condition]
+        doubts = f" Doubtful: {_names(others)}." if others else ""
+        if self.applies_with_another_law:
+            return f"The model applies, with another law: the present one is outside its range ({_names(outside)}).{doubts}"
         if outside:
-            return f"{OUTSIDE} by {_names(outside)}{f'; doubtful by {_names(doubtful)}' if doubtful else ''}."
+            return f"{OUTSIDE}: {_names(outside)}.{doubts}"
+        if conditions:
+            return f"The model applies if {' and '.join(conditions)}.{doubts}"
         if doubtful:
             return f"The model applies, with doubts about {_names(doubtful)}."
         return f"The model applies: all {len(self.checks)} checks are fine."
 
     @property
     def first_line(self) -> str:
-        """Line that outputs print before any number; empty unless a check is outside."""
+        """Line that outputs print before any number; empty unless a check is outside or an input unusual."""
         outside = self.with_verdict("outside")
-        return f"{OUTSIDE}: {' '.join(each.sentence for each in outside)}" if outside else ""
+        unusual = [each.sentence for each in self.with_verdict("doubtful") if each.name == "inputs"]
+        begin = "The model applies, with another law" if self.applies_with_another_law else OUTSIDE
+        said = [f"{begin}: {' '.join(each.sentence for each in outside)}"] if outside else []
+        return " ".join([*said, *unusual])
 
     def covers(self, note: str) -> bool:
         """Return whether the first line already contains a note, apart from its numbers.

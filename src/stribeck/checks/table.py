@@ -55,6 +55,8 @@ ROWS = (
     Row("Hertz pressure", body.pressure, "contact"),
     Row("stiffness", body.stiffness, "contact"),
     Row("contact width", body.width, "contact"),
+    Row("adhesion", body.adhesion, "contact"),
+    Row("pores", body.pores, "contact"),
     Row("layer", body.layer, "contact", "layer_thickness"),
     Row("loss tangent", body.loss, "contact", "loss_tangent"),
     Row("rms slope", law.roughness_slope, "contact", "rms_slope"),
@@ -83,7 +85,8 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
         Definition of the viscous friction, on which the minimum depends.
     **facts : str or float
         Further facts about the contact: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
-        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``, ``rms_slope``;
+        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``, ``rms_slope``,
+        ``work_of_adhesion``, ``diffusivity``, ``permeability``;
         text with units, or numbers in SI units.
 
     Returns

@@ -76,7 +76,7 @@ def solve_command(
     groups
         Dimensionless groups instead of a case: SPEED LOAD ROUGHNESS.
     rtol
-        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
+        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6 (1e-4 of a ball).
     plot
         Draw gap and pressure to this file (.png, .svg or .pdf).
     no_notes
@@ -94,6 +94,8 @@ def solve_command(
 
         coefficients(None, mu, b)
     pictures = check_pictures(plot, force)
+    if loaded is None:
+        _say_unusual(boundary_friction, slide_to_roll)
     problem = loaded.contact if loaded else sb.Groups(*map(as_group, AXES, groups or ()))
     parts = model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
     solution = sb.solve(problem, rtol=tolerance, law=law, **parts)
@@ -173,9 +175,9 @@ def curve_command(
         Lowest and highest value of what varies, with units for a case; for speed, the sum of the surface speeds, found if not
         given.
     points
-        Number of points, 2 to 100000; defaults to the value in the case, or 101.
+        Number of points, 2 to 100000; defaults to the value in the case, or 101 (31 of a ball).
     rtol
-        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
+        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6 (1e-4 of a ball).
     groups
         Dimensionless groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
     definition
@@ -193,6 +195,8 @@ def curve_command(
     arguments["law"] = law
     arguments |= model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
     arguments |= {} if definition is None else {"definition": definition}
+    if loaded is None:
+        _say_unusual(boundary_friction, slide_to_roll)
     title = loaded.title if loaded else ""
     seconds = None if time_limit is None else read_duration(time_limit, "--time-limit")
     with interruptible(time_limit=seconds) as progress:
@@ -364,6 +368,18 @@ def _write(
 
         actions[path] = lambda path=path: plot_curve(curve, path, force=force, title=title, notes=notes)  # type: ignore[misc]
     return attempted(actions)
+
+
+def _say_unusual(boundary_friction: str | None, slide_to_roll: str | None) -> None:
+    """Say which numbers given beside groups are hardly meant; those of a case are checked with it."""
+    from stribeck.checks.body import of_usual_size
+    from stribeck.quantities.inputs import LINE
+
+    given = {"boundary_friction": boundary_friction, "slide_to_roll": slide_to_roll}
+    numbers = {name: number for name, text in given.items() if (number := as_number(name, text)) is not None}
+    found = of_usual_size(numbers, LINE)
+    if found.verdict != "fine":
+        complain(found.sentence, 0)
 
 
 def _too_small(curve: sb.StribeckCurve) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from stribeck.cases.law import LAWS, NEEDED, Law
+from stribeck.cases.case import USUAL
+from stribeck.cases.law import FROM_TABLES, LAWS, NEEDED, Law
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contacts.geometries import check_geometry
 from stribeck.contacts.groups import Geometry
@@ -38,7 +39,7 @@ OPTIONS = """
 [curve]
 # What varies: "speed", "load" or "roughness"; range = ["1 mm/s", "1 m/s"] if the automatic one does not fit.
 over = "speed"
-points = 101
+points = {points}
 
 [solver]
 # Relative error of each state, {smallest} to 1e-2.
@@ -47,8 +48,26 @@ rtol = {usual}
 definition = "balanced"
 """
 
-TOLERANCES = {"line": {"smallest": "1e-11", "usual": "1e-6"}, "point": {"smallest": "1e-8", "usual": "1e-4"}}
-"""By geometry: a state of a ball takes a tenth of a second or more."""
+SMALLEST = {"line": "1e-11", "point": "1e-8"}
+"""Smallest tolerance of each geometry."""
+
+SURFACES = {
+    "line": """# In the place of alpha, beta and roughness a table [surface] may stand:
+# h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".
+law = "exponential"
+""",
+    "point": """law = "persson"
+
+# The roughness of both surfaces together. Its spectrum gives alpha, beta and the contact law, which holds for any load; a ball
+# presses too hard for the exponential law, with numbers alpha, beta and roughness in [contact] in the place of this table.
+[surface]
+h_rms = "1 um"
+hurst = 0.8
+longest_wavelength = "150 um"
+shortest_wavelength = "1.5 um"
+""",
+}
+"""The end of [contact] by geometry, with the contact law that holds for its load."""
 
 
 @answers_typos
@@ -71,7 +90,7 @@ def new_case(geometry: Geometry = "line") -> str:
         If it is no geometry.
     """
     table = INPUT_TABLES[check_geometry(geometry)]
-    body = "ball" if geometry == "point" else "cylinder"
+    body, (points, rtol) = "ball" if geometry == "point" else "cylinder", USUAL[geometry]
     lines = [
         f"# A lubricated rough {body}. Replace the values by yours; a bare number is in SI units. A value may carry its",
         '# standard error, as in "1.0 +- 0.2 um" or "46 cSt +- 5 %". Then: stribeck check, solve, curve, regimes, report.',
@@ -84,7 +103,8 @@ def new_case(geometry: Geometry = "line") -> str:
     for row in table.rows:
         if row.derived:
             continue
-        lines += [*_about(row), f"{'# ' if row.optional else ''}{row.name} = {_value(row)}"]
+        left_out = row.optional or (geometry == "point" and row.name in FROM_TABLES)
+        lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {_value(row)}"]
         for other in table.alternatives:
             if other.of == row.name:
                 given = [table.quantities[name] for name in other.inputs]
@@ -108,11 +128,9 @@ def new_case(geometry: Geometry = "line") -> str:
         ]
     lines += [
         f"# Contact law: {', '.join(map(_law, LAWS))}.",
-        "# In the place of alpha, beta and roughness a table [surface] may stand:",
-        '# h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
-        f'law = "{LAWS[0]}"',
+        SURFACES[geometry].rstrip(),
         _parts().rstrip(),
-        OPTIONS.format(**TOLERANCES[geometry]),
+        OPTIONS.format(points=points, smallest=SMALLEST[geometry], usual=f"{rtol:g}".replace("e-0", "e-")),
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]

@@ -59,6 +59,15 @@ ROWS = (
     Fact("thermal_conductivity", "thermal conductivity of the fluid", "conductivity", "0.15 W/m/K", "oil; water 0.6"),
     Fact("thermal_thinning", "relative change of viscosity per kelvin", "per kelvin", "0.04 1/K", "oil; water 0.02"),
     Fact("density", "density of the fluid", "density", "870 kg/m^3", "oil; water 1000"),
+    Fact(
+        "work_of_adhesion",
+        "work of adhesion in the liquid",
+        "surface energy",
+        "5 mJ/m^2",
+        "gels 0.1 to 10; dry rubber 50",
+    ),
+    Fact("diffusivity", "poroelastic diffusivity of the soft body", "diffusivity", "1e-9 m^2/s", "gels 1e-10 to 1e-8"),
+    Fact("permeability", "permeability of the soft body", "permeability", "1e-18 m^2", "cartilage; gels 1e-18 to 1e-15"),
     Fact("rms_slope", "rms slope of the roughness", "number", "0.1", "polished 0.01 to 0.1, ground or blasted 0.1 to 0.5"),
 )
 """The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`."""

@@ -71,6 +71,9 @@ DIMENSIONS = {
     "torque": Dimension("a torque", "N*m", "2 mN*m", _prefixed("N*m", (-9, -6, -3, 0, 3))),
     "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
+    "surface energy": Dimension("a surface energy", "J/m^2", "50 mJ/m^2", _prefixed("J/m^2", (-6, -3, 0))),
+    "diffusivity": Dimension("a diffusivity", "m^2/s", "1e-9 m^2/s", {0: "m^2/s"}),
+    "permeability": Dimension("a permeability", "m^2", "1e-18 m^2", {0: "m^2"}),
     "time": Dimension("a time", "s", "1 ms", _prefixed("s", (-9, -6, -3, 0))),
     "pressure coefficient": Dimension(
         "an inverse pressure", "1/Pa", "15 1/GPa", {-9: "1/GPa", -6: "1/MPa", -3: "1/kPa", 0: "1/Pa"}

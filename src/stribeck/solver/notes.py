@@ -185,7 +185,8 @@ def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[
     elif ratio < LAW_RANGE[0]:
         notes.append(
             f"The central gap is {ratio:.2g} {measured}: the exponential contact law is outside its range, "
-            f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there."
+            f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there. "
+            "Persson's law, from a table [surface], covers that range."
         )
     return (*notes, *far)
 
