@@ -106,6 +106,9 @@ SEES_CONTACT = 16.0
 SAME_FRAME = 1.5
 """Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
 
+PLACES = 201
+"""Places between the neighbours of the node with the lowest pressure at which a lower one is sought."""
+
 BETWEEN = 3
 """Places over nodes at which the lowest pressure is sought."""
 
@@ -270,7 +273,11 @@ class State:
     @property
     def lowest_pressure(self) -> float:
         """Lowest fluid pressure, also between the nodes [p_Hz]."""
-        return float(self.mesh.to_order(self.fluid_pressure, BETWEEN * self.mesh.order).min())
+        nodes, pressure = self.mesh.nodes, self.fluid_pressure
+        lowest = int(np.argmin(pressure))
+        low, high = float(nodes[max(lowest - 1, 0)]), float(nodes[min(lowest + 1, nodes.size - 1)])
+        between = float(self.mesh.interpolate(pressure, np.linspace(low, high, PLACES)).min())
+        return min(between, float(self.mesh.to_order(pressure, BETWEEN * self.mesh.order).min()))
 
     @cached_property
     def _nodal(self) -> Array:

@@ -18,6 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.with_parts import with_parts
+from stribeck.equations.error_estimate import SAFETY
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import THINNEST, State
 from stribeck.fluids.cavitation import Cavitation
@@ -50,6 +51,9 @@ PROFILE_TAIL = 10.0
 
 COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
 """Tolerances on the way to one that cannot be reached at once."""
+
+CLOSING = (0.25, 0.1, 0.03, 0.01)
+"""Parts of what longer cavities take from the largest suction that the asked one takes, from which its change is told."""
 
 NEWTON_FAILED = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
 """How Newton's iteration may end but by a solution."""
@@ -285,12 +289,46 @@ def _reforming(groups: Groups, rtol: float) -> RefinedState:
         return replace(point, groups=groups)
     if point.state.lowest_pressure >= model.cavity_pressure:
         return replace(point, groups=groups)
-    guess = ruptured(groups, point.state)
-    if guess is not None:
-        found = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-        if found.outcome.ok:
-            return found
-    return _refined(groups, groups, rtol, far)
+    found = _ruptured(groups, point.state, rtol)
+    if found is None or not found.outcome.ok:
+        found = _closing(groups, point, rtol)
+    return _refined(groups, groups, rtol, far) if found is None else found
+
+
+def _ruptured(groups: Groups, full: State, rtol: float) -> RefinedState | None:
+    """Return the state of a film with a cavity, from that of its full film; None if there is no first one."""
+    guess = ruptured(groups, full)
+    return None if guess is None else _converged(guess, groups, rtol)
+
+
+def _closing(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
+    """Return the full film with the observables of one whose cavity is too short for a mesh; None if these are not known.
+
+    What a short cavity changes is in proportion to what it takes from the largest suction: two longer ones tell it, and how
+    well.
+    """
+    if full.state is None or full.values is None or full.estimate is None:
+        return None
+    deepest = full.state.lowest_pressure
+    taken = 1.0 - groups.model.cavity_pressure / deepest
+    here, told, errors = full.values.array(), list[Array](), full.estimate.discretisation
+    for part in CLOSING:
+        if taken >= part:
+            break
+        longer = replace(groups, model=replace(groups.model, cavity_pressure=deepest * (1.0 - taken / part)))
+        known = _ruptured(longer, full.state, rtol)
+        if known is None or known.values is None or known.estimate is None or not known.outcome.ok:
+            continue
+        told.append(part * (known.values.array() - here))
+        if len(told) == 2:
+            changed = here + told[0]
+            missed = SAFETY * np.abs(told[1] - told[0])
+            estimate = replace(full.estimate, discretisation=errors + missed)
+            if not estimate.total <= rtol:
+                return None
+            values = replace(full.values, **dict(zip(NAMES, changed.tolist(), strict=True)))
+            return replace(full, groups=groups, values=values, estimate=estimate)
+    return None
 
 
 def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups | Contact:

@@ -39,8 +39,9 @@ __all__ = ["paths_to_cavity", "ruptured"]
 LOOKED_AT = 4001
 """Lengths of cavities behind an exit that are looked at."""
 
-PLACES, HALVINGS = 8, 50
-"""Places for each node, and halvings of the range of the flux, with which a cavity in the gap of the full film is sought."""
+PLACES, HALVINGS = (8, 64), 50
+"""Places for each node, the second for short ones, and halvings of the range of the flux, with which a cavity in the gap of
+the full film is sought."""
 
 FIRST_SUCTION = 0.3
 """Largest first suction of the cavity behind an exit, over the largest with which a film could begin anew."""
@@ -77,11 +78,11 @@ def paths_to_cavity(groups: Groups, article: Callable[[Groups], Path[State]]) ->
 
 def ruptured(groups: Groups, full: State) -> State | None:
     """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None."""
-    found = _in_gap(groups, full)
-    return None if found is None else _of_pressure(groups, *found)
+    found = next(filter(None, (_in_gap(groups, full, places) for places in PLACES)), None)
+    return None if found is None else _of_pressure(groups, *found, full.lowest_pressure)
 
 
-def _in_gap(groups: Groups, full: State) -> tuple[SeenFrom, float] | None:
+def _in_gap(groups: Groups, full: State, places: int) -> tuple[SeenFrom, float] | None:
     """Return the cavity in the gap of the full film, or None if the pressure does not fall to that of the cavity there.
 
     The film ruptures where the pressure no longer falls, at the flux with which it is that of the cavity there; it begins anew
@@ -89,7 +90,7 @@ def _in_gap(groups: Groups, full: State) -> tuple[SeenFrom, float] | None:
     logarithm of the suction by that of the length.
     """
     nodes, film, wanted = full.mesh.nodes[: -full.mesh.order], full.equations.film, groups.model.cavity_pressure
-    x = np.interp(np.arange(0, nodes.size - 1, 1 / PLACES), np.arange(nodes.size), nodes)
+    x = np.interp(np.arange(0, nodes.size - 1, 1 / places), np.arange(nodes.size), nodes)
     log_gap, pressure = full.fields(x)
     gap, inlet = np.exp(log_gap), int(np.argmax(pressure))
 
@@ -133,22 +134,28 @@ def _behind_exit(groups: Groups, state: State) -> State | None:
     return _of_pressure(groups, SeenFrom(state, state.exit, length, -first), FIRST_SLOPE)
 
 
-def _of_pressure(groups: Groups, guess: SeenFrom, slope: float) -> State | None:
+def _of_pressure(groups: Groups, guess: SeenFrom, slope: float, deepest: float = -math.inf) -> State | None:
     """Return a coarse state whose cavity has the pressure of the groups, from a guess with a cavity of some length.
 
-    ``slope`` is about that of the logarithm of the suction by that of the length.
+    ``slope`` is about that of the logarithm of the suction by that of the length; ``deepest`` is the lowest pressure of the
+    full film, from which that of a short cavity differs as the square of its length.
     """
-    wanted = math.log(-groups.model.cavity_pressure)
+
+    def place(pressure: float) -> float:
+        return math.log(-pressure) - math.log1p(-pressure / deepest)
+
+    wanted = place(groups.model.cavity_pressure)
+    slope /= 1.0 - groups.model.cavity_pressure / deepest
     lengths, pressures, exits = [], [], []
     last, step, drift = None, 0.0, 0.0
     for _ in range(MOST_LENGTHS):
         state = _of_length(groups, guess)
         if state is not None and state.root.steps > FEW_STEPS:
             state = _of_length(groups, SeenFrom(state, state.exit, guess.restart, state.groups.model.cavity_pressure))
-        if state is not None and state.groups.model.cavity_pressure < 0:
+        if state is not None and deepest < state.groups.model.cavity_pressure < 0:
             last = state
             lengths.append(math.log(guess.restart))
-            pressures.append(math.log(-state.groups.model.cavity_pressure))
+            pressures.append(place(state.groups.model.cavity_pressure))
             exits.append(state.exit)
             missing = wanted - pressures[-1]
             found = settled(groups, state) if abs(missing) < NEAR else None
