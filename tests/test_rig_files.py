@@ -5,6 +5,8 @@ Their numbers follow one curve, so that what is read is compared with it.
 
 import dataclasses
 import io
+import itertools
+import re
 import time
 import zipfile
 from pathlib import Path
@@ -454,17 +456,44 @@ def test_a_workbook_with_gaps_texts_and_units_is_read(tmp_path):
 SHEET = "xl/worksheets/sheet1.xml"
 
 
-def changed(path, change):
-    """Change the text of the first sheet of a workbook."""
+def changed(path, change, **more):
+    """Change the text of the first sheet of a workbook, and add parts to it."""
     with zipfile.ZipFile(path) as book:
         parts = {name: book.read(name) for name in book.namelist()}
     parts[SHEET] = change(parts[SHEET].decode()).encode()
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as book:
-        for name, part in parts.items():
+        for name, part in (parts | {f"xl/{name}.xml": part for name, part in more.items()}).items():
             book.writestr(name, part)
     path.write_bytes(content.getvalue())
     return path
+
+
+def with_shared_strings(path, strings):
+    """Change the texts of a workbook to references, as Excel writes them."""
+    items = "".join(f"<si>{text}</si>" for text in strings)
+    table = f'<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">{items}</sst>'
+
+    def refer(text):
+        count = itertools.count()
+        found = re.sub(r't="inlineStr"><is><t>[^<]*</t></is>', lambda _: f't="s"><v>{next(count) % len(strings)}</v>', text)
+        return re.sub(r'(<c) r="[A-Z]+[0-9]+"', r"\1", found)  # nor need cells say where they are
+
+    return changed(path, refer, sharedStrings=table)
+
+
+def test_a_workbook_of_excel_refers_to_its_texts(tmp_path):
+    water = [["a", "b"], *([u, mu] for u, mu in ROWS)]
+    rich = ["<r><t>speed</t></r><r><t> [mm/s]</t></r><rPh><t>x</t></rPh>", "<t>COF</t>"]
+    found = read(with_shared_strings(workbook(tmp_path, data=water), rich))
+    assert_on_curve(found)
+    assert "'speed [mm/s]' as speed; 'COF' as friction" in found.taken
+
+
+def test_many_cells_that_refer_to_one_long_text_do_not_fill_the_memory(tmp_path):
+    path = with_shared_strings(workbook(tmp_path, data=1000 * [["a", 1]]), [f"<t>{1_000_000 * 'x'}</t>"])
+    assert path.stat().st_size < 100_000
+    assert "holds more than 20000000 letters" in refusal(path)
 
 
 def test_a_workbook_that_unpacks_to_anything_is_read_or_refused_at_once(tmp_path):

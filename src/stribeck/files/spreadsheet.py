@@ -22,6 +22,7 @@ __all__ = ["SPREADSHEETS", "sheets_of"]
 SPREADSHEETS = (".xlsx", ".xlsm")
 
 LARGEST_WORKBOOK = 20_000_000  # [byte]
+"""Size of a workbook, and letters in a sheet: many cells may refer to one long text."""
 
 LARGEST_XML = 100_000_000  # [byte]
 """Size of the parts of a workbook once they are unpacked; a small file may unpack to any size."""
@@ -181,6 +182,7 @@ class _Rows(_Handler):
     listening: bool = False
     widths: dict[int, int] = field(default_factory=dict)
     count: int = 0
+    length: int = 0
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         row, column = self.place
@@ -204,6 +206,9 @@ class _Rows(_Handler):
             return
         row, column = self.place
         text = _TEXTS.get(self.kind, str)("".join(self.parts)) if self.kind != "s" else self.strings[int("".join(self.parts))]
+        self.length += len(text)
+        if self.length > LARGEST_WORKBOOK:
+            raise InputError(f"{self.path} holds more than {LARGEST_WORKBOOK} letters; keep the sheet with the measured rows.")
         self.count += max(0, column - self.widths.get(row, 0))
         if self.count > LARGEST_CELLS:
             raise InputError(f"{self.path} has more than {LARGEST_CELLS} cells; keep the sheet with the measured rows.")
