@@ -82,7 +82,7 @@ def ruptured(groups: Groups, full: State) -> State | None:
     return None if found is None else _of_pressure(groups, *found, full.lowest_pressure)
 
 
-def _in_gap(groups: Groups, full: State, places: int) -> tuple[SeenFrom, float] | None:
+def _in_gap(groups: Groups, full: State, places: int = PLACES[0]) -> tuple[SeenFrom, float] | None:
     """Return the cavity in the gap of the full film, or None if the pressure does not fall to that of the cavity there.
 
     The film ruptures where the pressure no longer falls, at the flux with which it is that of the cavity there; it begins anew
