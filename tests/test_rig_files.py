@@ -386,6 +386,7 @@ def test_the_standard_deviation_beside_friction_is_its_error(written):
     text = table("speed [mm/s];SD;COF;SD", speed, lambda u, mu: 0.2 * u, friction, lambda u, mu: 0.03 * mu)
     found = read(written(text))
     assert found.error == pytest.approx(0.03 * found.friction, rel=1e-6)
+    assert read(written(text), columns={"error": "SD"}).error == pytest.approx(found.error)
     for header in ("COF (mean);COF (SD)", "COF;±", "COF;+/-", "COF [-];COF (SD) [-]", "µ;s.d.", "COF mean;COF std"):
         path = written(table(f"speed [mm/s];{header}", speed, friction, lambda u, mu: 0.03 * mu))
         assert read(path).error == pytest.approx(0.03 * found.friction, rel=1e-6), header

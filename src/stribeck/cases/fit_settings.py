@@ -83,7 +83,7 @@ class FitSettings:
     robust : bool
         Whether outliers are kept from steering the fit.
     magnitudes : bool
-        Whether signs of speed and friction are dropped, as of strokes to and fro.
+        Whether signs of speed and friction are directions of strokes: they are dropped, with rows at rest and reversals.
     repeats : bool, optional
         Whether rows at the same speed of a curve are put together, their scatter becoming the error of the mean; by default
         where the file numbers its runs.
@@ -92,7 +92,7 @@ class FitSettings:
     header_row : int, optional
         Row of the data file that holds the names of the columns; the first that is no comment by default.
     sheet : str, optional
-        Sheet of a workbook that holds the data; the one with most numbers by default.
+        Sheet of a workbook that holds the data; by default the one with known columns, of several that with most numbers.
     track_radius : float, optional
         Radius [m] of the track on which a speed of rotation is that of sliding.
     arm : float, optional

@@ -1,4 +1,4 @@
-"""Workbooks as lines of text: one sheet, its cells separated by tabs, read within bounds."""
+"""Workbooks as lines of text: the cells of each sheet separated by tabs, read within bounds."""
 
 from __future__ import annotations
 

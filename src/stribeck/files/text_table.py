@@ -146,7 +146,7 @@ def read_table(
     knows : callable
         Whether the caller knows a name of a column: a table with two names that are known comes before others.
     sheet : str, optional
-        Sheet of a workbook; by default the one with most numbers.
+        Sheet of a workbook; by default the one with known names, of several that with most numbers.
 
     Returns
     -------

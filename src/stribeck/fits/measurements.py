@@ -129,7 +129,7 @@ class Measurements(Exported, Shown, ByValue):
 
 @answers_typos
 def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None = None) -> Measurements:
-    """Read measured friction curves from a text file.
+    """Read measured friction curves from a text file or a workbook.
 
     Parameters
     ----------

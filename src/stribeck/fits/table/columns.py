@@ -98,6 +98,8 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
             continue
         for text in texts:
             same = [name for name in table.header if is_called(name, text)]
+            if meaning == "error" and not same:  # one of several of a name: that of friction
+                same = [name for name in table.header if name.endswith(f" {text}") and is_named(name, WORDS["error"])]
             if not same:
                 raise InputError(
                     f"{table.path}: {_listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}."
