@@ -303,7 +303,8 @@ def _entry(table: str, name: str, value: Any, inputs: InputTable = LINE) -> tupl
     if table in ("bounds", "priors"):
         [meant] = free_names([name], f"[fit.{table}]")
         return meant, _bounds(meant, value, inputs) if table == "bounds" else _prior(meant, value, inputs)
-    known = (*COLUMNS, *(each for each in OF_CONTACT if each != "boundary_friction"))
+    columns = (each for each in COLUMNS if table == "columns" or each not in ("curve", "run"))
+    known = (*columns, *(each for each in OF_CONTACT if each != "boundary_friction"))
     meant = LETTERS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))

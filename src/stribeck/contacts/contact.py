@@ -114,7 +114,7 @@ class Contact(ABC):
     @property
     @abstractmethod
     def hersey_number(self) -> float:
-        """The Hersey number [-]."""
+        """The Hersey number [-]: eta U/F_N of a line, eta U R/F_N of a ball."""
 
     @property
     def slope(self) -> float:

@@ -62,6 +62,8 @@ class FrictionRule(NamedTuple):
         Exponents of the inputs in it.
     hersey_symbol : str
         The Hersey number in symbols.
+    hersey_name : str
+        The same in words, for files.
     """
 
     inputs: Mapping[str, Callable[[Contact | None], float]]
@@ -75,6 +77,23 @@ class FrictionRule(NamedTuple):
     hersey: Callable[[Contact], float]
     hersey_exponents: Mapping[str, float]
     hersey_symbol: str
+    hersey_name: str
+
+    def speed_per(self, abscissa: str, contact: Contact) -> float:
+        """Return the speed [m/s] at the value one [SI] of what friction may be measured against."""
+        of = {
+            "speed": 1.0,
+            "speed_viscosity": 1 / contact.viscosity,
+            "hersey_number": self.hersey(contact),
+            "hersey_per_length": contact.load / contact.viscosity,
+        }
+        return of[abscissa]
+
+    def exponents_at(self, abscissa: str) -> Mapping[str, float]:
+        """Return the exponents of inputs in that speed, where it is of a Hersey number."""
+        if abscissa == "hersey_per_length":
+            return {name: power for name, power in self.hersey_exponents.items() if name != "radius"}
+        return self.hersey_exponents if abscissa == "hersey_number" else {}
 
     def of_contact(self, contact: Contact | None) -> dict[str, float]:
         """Return the inputs of a contact; of none, those of groups alone."""
@@ -191,6 +210,7 @@ RULES: dict[Geometry, FrictionRule] = {
         hersey=lambda each: each.load / each.viscosity,
         hersey_exponents={"load": 1.0, "viscosity": -1.0},
         hersey_symbol="ηU/F_N",
+        hersey_name="Hersey number eta U/F_N: viscosity times sum of the surface speeds over load per length",
     ),
     "point": FrictionRule(
         inputs={
@@ -210,6 +230,7 @@ RULES: dict[Geometry, FrictionRule] = {
         hersey=lambda each: each.load / each.viscosity / each.radius,
         hersey_exponents={"load": 1.0, "viscosity": -1.0, "radius": -1.0},
         hersey_symbol="ηUR/F_N",
+        hersey_name="Hersey number eta U R/F_N: viscosity times sum of the surface speeds times radius over load",
     ),
 }
 """The rules by geometry."""

@@ -300,7 +300,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def hersey_number(self) -> Array:
-        """Hersey number eta U/F_N of the points [-]."""
+        """Hersey number of the points [-], eta U/F_N of a line and eta U R/F_N of a ball."""
         return np.asarray(self.groups.hersey_number(self.beta))
 
     @property

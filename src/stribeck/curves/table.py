@@ -9,6 +9,7 @@ import numpy as np
 
 from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
@@ -60,7 +61,7 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
         "friction_viscous": (curve.friction_viscous, "1", "contribution of the fluid to the friction coefficient"),
         "friction_error": (curve.friction_error, "1", "estimated absolute error of the friction coefficient"),
         "regime": (np.array(curve.regimes, dtype=object), "1", "lubrication regime"),
-        "hersey_number": (curve.hersey_number, "1", "Hersey number, viscosity times speed over load"),
+        "hersey_number": (curve.hersey_number, "1", RULES[curve.groups.geometry].hersey_name),
         "hydrodynamic_friction": (
             curve.hydrodynamic_friction,
             "1",

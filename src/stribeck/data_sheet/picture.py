@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction_rules import RULES
 from stribeck.data_sheet.content import Content
 from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS, add_legend, make_logarithmic, new_figure
 from stribeck.fits.measurements import Measurements
@@ -61,7 +63,7 @@ def draw_report(content: Content) -> Figure:
         )
         shown.append(np.array([low, high]))
     if content.data is not None:
-        at, found, error = _points(content.data, contact.viscosity, contact.load)
+        at, found, error = _points(content.data, contact)
         left.errorbar(at, found, error, fmt=".", color=GREY, ms=5, lw=0.8, label="measured", zorder=1)
         shown.append(found)
     values = np.concatenate(shown)
@@ -79,7 +81,7 @@ def draw_report(content: Content) -> Figure:
     return figure
 
 
-def _points(data: Measurements, viscosity: float, load: float) -> tuple[Array, Array, Array | None]:
+def _points(data: Measurements, contact: Contact) -> tuple[Array, Array, Array | None]:
     """Return measured speed, friction and error; points measured against another quantity are converted to speed."""
-    divisor = {"speed": 1.0, "speed_viscosity": viscosity, "hersey_number": viscosity / load}[data.abscissa]
-    return data.values / divisor, data.friction, data.error
+    speed = data.values * RULES[contact.groups.geometry].speed_per(data.abscissa, contact)
+    return speed, data.friction, data.error

@@ -308,15 +308,8 @@ def _places(
 
 
 def _speed_range(fit: Fit) -> tuple[float, float]:
-    divisors = np.array(
-        [
-            {"speed": 1.0, "speed_viscosity": each.viscosity, "hersey_number": 1 / RULES[each.groups.geometry].hersey(each)}[
-                fit.data.abscissa
-            ]
-            for each in fit.contacts
-        ]
-    )
-    speeds = fit.data.values / divisors[fit.data.curve]
+    factors = np.array([RULES[each.groups.geometry].speed_per(fit.data.abscissa, each) for each in fit.contacts])
+    speeds = fit.data.values * factors[fit.data.curve]
     return float(speeds.min()), float(speeds.max())
 
 

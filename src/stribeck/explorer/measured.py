@@ -153,7 +153,7 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
     for k, (curve, inputs) in enumerate(zip(data.curves, data.inputs, strict=True)):
         given = {each: value for each, value in inputs.items() if each in rule.hersey_exponents}
         made = contact.replace(**given)
-        factor = {"speed": 1.0, "speed_viscosity": 1 / made.viscosity, "hersey_number": rule.hersey(made)}[data.abscissa]
+        factor = rule.speed_per(data.abscissa, made)
         own = tuple(given if data.abscissa == "speed" else rule.hersey_exponents)
         mine = data.curve == k
         label = name if len(data.curves) == 1 else f"{name}: {curve}"

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Measurements", "read_measurements"]
 
-UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1"}
+UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "hersey_per_length": "m-1"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,10 +45,11 @@ class Measurements(Exported, Shown, ByValue):
     ----------
     path : str
         The file; empty where there is none.
-    abscissa : {"speed", "speed_viscosity", "hersey_number"}
-        What friction was measured against; the speed in it is the sum of the surface speeds, twice their mean.
+    abscissa : {"speed", "speed_viscosity", "hersey_number", "hersey_per_length"}
+        What friction was measured against: U, eta U, the Hersey number eta U/F_N of a line or eta U R/F_N of a ball, or
+        eta U/F_N of a ball; U is the sum of the surface speeds, twice their mean.
     values : ndarray, shape (n,)
-        Its values [m/s, Pa m or 1].
+        Its values [m/s, Pa m, 1 or 1/m].
     friction : ndarray, shape (n,)
         Friction coefficient [-].
     error : ndarray, shape (n,), or None
@@ -153,9 +154,12 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     settings = settings or FitSettings()
     table = with_errors_named(read_table(Path(path), settings.header_row, knows=known_name, sheet=settings.sheet))
     written = table.header
-    table, made, run = prepared(table, settings, lambda meaning: has_column(table, settings, meaning))
+    asked = settings
+    table, made, run, settings, of_rig = prepared(table, asked, lambda meaning: has_column(table, asked, meaning))
     columns = columns_of(table, settings)
-    abscissa = abscissa_of(table, columns, settings)
+    idle = [name for name in asked.units if name not in (*columns, *of_rig)]
+    against = abscissa_of(table, columns, settings)
+    abscissa: Abscissa = "hersey_number" if against == "hersey_per_length" else against
     table = without_stops(table, columns[abscissa][0], columns["friction"], settings)
     reader = Values(table, settings)
     rows: list[Row] = []
@@ -187,7 +191,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     order = sorted(range(len(rows)), key=lambda i: (of_row[i], rows[i][2], rows[i][1]))
     found = Measurements(
         path=str(path),
-        abscissa=abscissa,
+        abscissa=against,
         values=np.array([rows[i][2] for i in order]),
         friction=np.array([rows[i][3] for i in order]),
         error=np.array([rows[i][4] for i in order]) if "error" in columns or averaged is not None else None,
@@ -197,6 +201,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         rows=np.array([rows[i][1] for i in order]),
         notes=(
             *_notes(table, columns, empty, made, run),
+            *map(_idle, idle),
             *temperature_note(table),
             *(() if averaged is None else averaged.notes),
         ),
@@ -268,6 +273,11 @@ def _notes(
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")
     return tuple(notes)
+
+
+def _idle(meaning: str) -> str:
+    """Return the sentence on a unit of something that the file does not have."""
+    return f"No column was taken for {meaning.replace('_', ' ')}, of which [fit.units] has the unit."
 
 
 def _check_spread(data: Measurements, frictions: list[str]) -> None:

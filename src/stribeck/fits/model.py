@@ -171,8 +171,8 @@ class FrictionModel:
     def _exponents_of(self, free: str) -> list[float]:
         """Return the exponents with which one input enters them."""
         speed, load, roughness = self.contact.INPUTS.exponents.get(free, (0.0, 0.0, 0.0))
-        if self.data.abscissa == "hersey_number" and free != "viscosity":
-            speed += self.rule.hersey_exponents.get(free, 0.0)
+        if free != "viscosity":
+            speed += self.rule.exponents_at(self.data.abscissa).get(free, 0.0)
         row = [speed, load, roughness, free == "boundary_friction"]
         return [*row, *((free == name) + self.rule.exponents.get(name, {}).get(free, 0.0) for name in self.rule.inputs)]
 
@@ -195,8 +195,7 @@ class FrictionModel:
         rows = np.empty((len(self.contacts), 4 + len(self.rule.inputs)))
         for i, contact in enumerate(self.contacts):
             g, others = contact.groups, self.rule.of_contact(contact)
-            per_value = {"speed": 1.0, "speed_viscosity": 1 / contact.viscosity, "hersey_number": self.rule.hersey(contact)}
-            speed = float(g.speed) * per_value[self.data.abscissa]
+            speed = float(g.speed) * self.rule.speed_per(self.data.abscissa, contact)
             rubbing = abs(self._rubbing(contact)) * contact.boundary_friction
             rows[i] = (speed, float(g.load), float(g.roughness), rubbing, *others.values())
         with np.errstate(divide="ignore"):

@@ -44,6 +44,7 @@ LABELS = {
     "speed": "speed $U$, sum of both surfaces (m/s)",
     "speed_viscosity": r"viscosity times speed $\eta U$ (Pa m)",
     "hersey_number": "Hersey number",
+    "hersey_per_length": r"Hersey number over length $\eta U/F_N$ (1/m)",
 }
 
 

@@ -219,7 +219,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
     @property
     def hersey_number(self) -> float:
-        """Hersey number eta U/F_N [-], U the sum of the surface speeds; for beta = 1 where only groups are known."""
+        """Hersey number [-], eta U/F_N of a line and eta U R/F_N of a ball with the sum U; of groups that at beta = 1."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
 
     @property

@@ -10,6 +10,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Physics
 from stribeck.quantities.inputs import InputTable, unit_of
 from stribeck.quantities.outcome import Outcome
@@ -54,7 +55,7 @@ def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
         found[f"friction_{definition}"] = ("1", label)
         found[f"friction_{definition}_viscous"] = ("1", f"{label}: contribution of the fluid")
         found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
-    found["hersey_number"] = ("1", "Hersey number, viscosity times speed (sum of the surface speeds) over load")
+    found["hersey_number"] = ("1", RULES[physics["geometry"]].hersey_name)
     if si:
         found |= table.films
     if isinstance(physics["law"], WithArea):

@@ -22,6 +22,7 @@ from stribeck.cli.reports.words import (
     table_of,
 )
 from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_si
 from stribeck.solver.base_solution import BaseSolution, hysteresis_coefficient
@@ -120,7 +121,7 @@ def _solution_rows(
         area, error = solution.central_area_fraction, solution.central_area_fraction_error
         yield "real contact area at x = 0", part(area, error), "", error_text(error / area) if area > 0 else ""
     regime = regime_of(solution.fluid_load_share, solution.friction(boundary_friction, beta).contact_share)
-    yield "Hersey number", f"{hersey_of(solution, beta):.4g}", "", ""
+    yield f"Hersey number {RULES[solution.groups.geometry].hersey_symbol}", f"{hersey_of(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
 
 

@@ -19,7 +19,7 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
 
-Abscissa = Literal["speed", "speed_viscosity", "hersey_number"]
+Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
 
@@ -40,11 +40,14 @@ _ERROR = (
 MADE = {"speed": MADE_SPEED, "friction": MADE_FRICTION}
 """Headers of columns that were made of others."""
 
+_HERSEY = r"hersey(?: (?:number|no|parameter))?"
+_ETA_U_F = r"eta u(?: r)? (?:f|w|load)(?: n)?"
+
 WORDS = {
     "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|[uv] (?:s|sl|slide|sliding|rel)|(?:gleit)?geschwindigkeit|"
     + "|".join(SUMS),
     "speed_viscosity": "eta u|etau|speed viscosity|viscosity speed|viscosity times speed",
-    "hersey_number": "hersey|hersey number",
+    "hersey_number": rf"{_HERSEY}|{_HERSEY} {_ETA_U_F}|{_ETA_U_F}",
     "friction": _FRICTION,
     "error": rf"{_ERROR}|{_FRICTION} {_ERROR}|{_ERROR} (?:of )?{_FRICTION}",
     "curve": "curve|series|sample",
@@ -153,6 +156,8 @@ def _fits(table: TextTable, name: str, meaning: str, settings: FitSettings) -> b
     if not unit or meaning == "curve":
         return True
     dimension = DIMENSION.get(meaning) or settings.inputs.quantities[meaning].dimension
+    if meaning == "hersey_number" and has_dimension(unit, "wavenumber"):
+        return True
     return unit in BARE if dimension == "number" else has_dimension(unit, dimension)
 
 
@@ -270,7 +275,27 @@ def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSe
     found = there[0]
     if found not in settings.columns:
         _ask_for_the_sum(table, found, columns[found][0], settings)
-    return found
+    return _hersey(table, columns[found][0], settings) if found == "hersey_number" else found
+
+
+def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
+    """Return which Hersey number a column holds: that of a ball without the radius is per length."""
+    unit = settings.units.get("hersey_number") or table.unit(name)
+    ball = settings.geometry == "point"
+    if has_dimension(unit or "-", "wavenumber"):
+        if ball:
+            return "hersey_per_length"
+        raise InputError(
+            f"{table.path}: {show(name)} is in {unit}; the load of a cylinder is per length, so that its Hersey number "
+            "eta U/F_N is a bare number: divide the force by the length of the cylinder."
+        )
+    if ball and not unit and not re.search(r"\bu r\b", header_words(name)):
+        raise InputError(
+            f"{table.path}: {show(name)} of a ball may be eta U R/F_N, a number, or eta U/F_N, in 1/m; write the unit in the "
+            "header, as in 'Hersey number [-]' or 'Hersey number [1/m]', or hersey_number = \"1\" or \"1/m\" in "
+            "[fit.units] of the case."
+        )
+    return "hersey_number"
 
 
 def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING, header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.repeats import FEWEST
-from stribeck.fits.table.units import has_dimension, si_factor
+from stribeck.fits.table.units import BARE, has_dimension, si_factor
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_SPEED", "RIG", "prepared", "temperature_note"]
@@ -70,6 +71,9 @@ DIMENSIONS_OF = {
 }
 """Dimension of what a rig writes; a column of another one is something else."""
 
+UNITS = {"speed": "mm/s", "force": "N", "rotation": "rpm", "torque": "mN m"}
+"""Units of examples."""
+
 MADE_SPEED = "sum of speeds [m/s]"
 """Header of the column of the speed that was made of others."""
 
@@ -90,11 +94,38 @@ TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K
 SAME_TEMPERATURE = 0.1
 """Difference of temperatures that a sentence does not tell apart."""
 
+ROLLING = 0.005
+"""Slide-to-roll ratio up to which it is that of pure rolling: what drives hold a ratio within."""
+
 NEXT_LEVEL = 1.1
 """Ratio of neighbouring values from which they belong to two settings, and not to the noise of one."""
 
 
-def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> tuple[TextTable, tuple[str, ...], str]:
+class Prepared(NamedTuple):
+    """A table with friction and speed.
+
+    Attributes
+    ----------
+    table : TextTable
+        With columns ``friction`` and ``sum of speeds [m/s]`` added where they had to be made.
+    said : tuple of str
+        What was made of what, one sentence each.
+    run : str
+        Header of the column that numbers the runs; empty if there is none.
+    settings : FitSettings
+        Without the units of what was made.
+    found : tuple of str
+        What columns of a rig there are.
+    """
+
+    table: TextTable
+    said: tuple[str, ...]
+    run: str
+    settings: FitSettings
+    found: tuple[str, ...]
+
+
+def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> Prepared:
     """Return a table with friction and speed computed from what a rig measured.
 
     Parameters
@@ -108,12 +139,8 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
 
     Returns
     -------
-    TextTable
-        The table, with columns ``friction`` and ``sum of speeds [m/s]`` added where they had to be made.
-    tuple of str
-        What was made of what, one sentence each.
-    str
-        Header of the column that numbers the runs; empty if there is none.
+    Prepared
+        The table, and what was made of what.
 
     Raises
     ------
@@ -128,11 +155,13 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     """
     found = _rig_columns(table, settings)
     said = []
+    ours = set()
     if not known("friction") or (settings.columns.keys() & FORCES and "friction" not in settings.columns):
         made = _friction(table, _declared_first(found, FORCES, settings), settings)
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_FRICTION, values)
+            ours.add("friction")
             said.append(sentence)
     if not known("speed") or (settings.columns.keys() & SPEEDS and "speed" not in settings.columns):
         made = _speed(table, _declared_first(found, SPEEDS, settings), settings)
@@ -142,10 +171,13 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
             for name in filter(None, table.written):
                 if sentence.endswith(f"of column {show(name)}"):
                     table = _without(table, name)  # the radius of a track is not that of the ball
+            ours.add("speed")
             said.append(sentence)
     for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
         if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
-            table, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
+            levelled, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
+            ours |= set() if levelled is table else {made_column}
+            table = levelled
             said += sentences
     told = " ".join(said)
     idle = [
@@ -153,7 +185,9 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         for key, noun, value in (("track_radius", "rotation", settings.track_radius), ("arm", "torque", settings.arm))
         if value is not None and f"{1e3 * value:g} mm of the case" not in told
     ]
-    return replace(table, notes=(*table.notes, *idle)), tuple(said), found.get("run", [""])[0]
+    table = replace(table, notes=(*table.notes, *idle))
+    units = {name: unit for name, unit in settings.units.items() if name not in ours}
+    return Prepared(table, tuple(said), found.get("run", [""])[0], replace(settings, units=units), tuple(found))
 
 
 def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], settings: FitSettings) -> dict[str, list[str]]:
@@ -179,11 +213,16 @@ def _levelled(
     table: TextTable, name: str, meaning: str, made: str, settings: FitSettings
 ) -> tuple[TextTable, tuple[str, ...]]:
     """Return the table with a column of the values to which a measured column was set, and a sentence if there are several."""
-    values = _ratios(table, name) if meaning == "slide_to_roll" else _numbers(table, name, "force", "N")
+    values = _ratios(table, name, settings) if meaning == "slide_to_roll" else _numbers(table, name, meaning, settings)
     if name == MADE_RATIO or not all(value is None or math.isfinite(value) for value in values):
         return table, ()
-    of_value = _levels([abs(value) for value in values if value])
-    column = [of_value[abs(value)] if value else None for value in values]
+    # Pure rolling is a setting; a load of zero is no contact.
+    still = ROLLING if meaning == "slide_to_roll" else 0.0
+    sizes = [None if value is None else abs(value) if abs(value) > still else 0.0 for value in values]
+    of_value = _levels([size for size in sizes if size])
+    if meaning == "slide_to_roll":
+        of_value[0.0] = 0.0
+    column = [None if size is None else of_value.get(size) for size in sizes]
     several = sorted({value for value in column if value is not None})
     unit = "" if meaning == "slide_to_roll" else " N"
     listed = " and ".join(f"{value:g}{unit}" for value in several)
@@ -228,7 +267,7 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
         for meaning, pattern in PATTERNS.items():
             if name in declared or meaning in settings.columns or not is_named(name, pattern):
                 continue
-            unit = unit_in(table, name, meaning)
+            unit = unit_in(table, name, meaning, settings)
             if meaning in DIMENSIONS_OF and unit and not has_dimension(unit, DIMENSIONS_OF[meaning]):
                 continue
             if meaning == "run" and table.unit(name):
@@ -259,9 +298,14 @@ def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
     )
 
 
-def unit_in(table: TextTable, name: str, meaning: str) -> str:
-    """Return the unit of a column; one that is called RPM needs none."""
-    unit = table.unit(name)
+def unit_in(table: TextTable, name: str, meaning: str, settings: FitSettings) -> str:
+    """Return the unit of a column: that of [fit.units], or as the file has it; one that is called RPM needs none."""
+    unit = settings.units.get(meaning)
+    if meaning == "normal_force" and header_words(name) == MADE_LOAD:
+        unit = unit or settings.units.get(MADE_LOAD)
+    unit = unit or table.unit(name)
+    if not unit and DIMENSIONS_OF.get(meaning) == "speed":
+        unit = settings.units.get("speed", "")
     return "rpm" if meaning == "rotation" and not unit and header_words(name) == "rpm" else unit
 
 
@@ -280,15 +324,18 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
             if stated is None:
                 return None
             value, number, name = stated
-            values = _numbers(table, force, "force", "N")
+            values = _numbers(table, force, "friction_force", settings)
             return [
                 None if each is None else abs(each / value) for each in values
             ], f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
         normal = found["normal_force"][0]
-        if table.unit(force) and table.unit(force) == table.unit(normal):
+        units = {unit_in(table, force, "friction_force", settings), unit_in(table, normal, "normal_force", settings)}
+        if len(units) == 1 and units != {""}:
             return _quotients(zip(_cells(table, force), _cells(table, normal), strict=True)), _ratio_of(force, normal)
-        tangential, vertical = (_numbers(table, name, "force", "N") for name in (force, normal))
-        return _quotients(zip(tangential, vertical, strict=True)), _ratio_of(force, normal)
+        tangential = _numbers(table, force, "friction_force", settings)
+        return _quotients(zip(tangential, _numbers(table, normal, "normal_force", settings), strict=True)), _ratio_of(
+            force, normal
+        )
     if "torque" in found and "normal_force" in found:
         normal = found["normal_force"][0]
         torque = found["torque"][0]
@@ -300,9 +347,9 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
                 f"The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
-        moments = zip(_numbers(table, torque, "torque", "mN m"), lengths, strict=True)
+        moments = zip(_numbers(table, torque, "torque", settings), lengths, strict=True)
         values = [None if moment is None or not length else moment / length for moment, length in moments]
-        pairs = zip(values, _numbers(table, normal, "force", "N"), strict=True)
+        pairs = zip(values, _numbers(table, normal, "normal_force", settings), strict=True)
         return _quotients(pairs), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
     return None
 
@@ -325,7 +372,10 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[f
     for name in filter(None, table.header):
         if is_named(name, pattern) and has_dimension(table.unit(name) or "-", "length"):
             factor = 0.5 if _is_diameter(name) else 1.0
-            values = _numbers(table, name, "length", "mm")
+            values = [
+                value if value is None else value * si_factor(table.unit(name), "length", name)
+                for value in _cells(table, name)
+            ]
             return [None if value is None else factor * value for value in values], f"of column {show(name)}"
     stated = _stated(table, pattern, "length")
     if stated is None:
@@ -385,21 +435,27 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
     """Return the sum of the surface speeds and how it was obtained; None if the rig gives no speed."""
     if "entrainment_speed" in found:
         name = found["entrainment_speed"][0]
-        values = [None if value is None else 2 * value for value in _numbers(table, name, "speed", "m/s")]
+        values = [None if value is None else 2 * value for value in _numbers(table, name, "entrainment_speed", settings)]
         return values, f"speed = 2 x {show(name)}, a mean of two surface speeds; the speed of a case is their sum"
     if len(found.get("surface_speeds", [])) == 2:
         first, second = found["surface_speeds"]
-        pairs = zip(_numbers(table, first, "speed", "m/s"), _numbers(table, second, "speed", "m/s"), strict=True)
+        pairs = zip(*(_numbers(table, each, "surface_speeds", settings) for each in (first, second)), strict=True)
         values = [None if a is None or b is None else abs(a + b) for a, b in pairs]
         return values, f"speed = {show(first)} + {show(second)}"
     if len(found.get("surface_speeds", [])) == 1 and not settings.rolls and "slide_to_roll" not in found:
         name = found["surface_speeds"][0]
-        values = [None if value is None else abs(value) for value in _numbers(table, name, "speed", "m/s")]
+        values = [None if value is None else abs(value) for value in _numbers(table, name, "surface_speeds", settings)]
         return values, f"speed = {show(name)}, with the other surface at rest"
     if "sliding_speed" in found and "slide_to_roll" in found:
         name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
-        pairs = zip(_numbers(table, name, "speed", "m/s"), _ratios(table, ratio), strict=True)
-        values = [None if a is None or not b else abs(2 * a / b) for a, b in pairs]
+        ratios = _ratios(table, ratio, settings)
+        if any(each is not None and abs(each) <= ROLLING for each in ratios):
+            raise InputError(
+                f"{table.path}: {show(name)} does not give the sum of the surface speeds where {show(ratio)} is zero; write a "
+                "column 'mean speed' or 'sum of speeds', or take these rows out."
+            )
+        pairs = zip(_numbers(table, name, "sliding_speed", settings), ratios, strict=True)
+        values = [None if a is None or b is None else abs(2 * a / b) for a, b in pairs]
         return values, f"speed = 2 x {show(name)} / {show(ratio)}, the sum of the surface speeds"
     if "sliding_speed" in found:
         name = found["sliding_speed"][0]
@@ -410,7 +466,7 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
                 f"{said}; write a column 'mean speed' or 'sum of speeds'."
             )
         factor = abs(2 / settings.ratios[0])
-        values = [None if value is None else factor * value for value in _numbers(table, name, "speed", "m/s")]
+        values = [None if value is None else factor * value for value in _numbers(table, name, "sliding_speed", settings)]
         return (
             values,
             f"speed = 2 x {show(name)} / {settings.ratios[0]:g}, the slide-to-roll ratio; the sum of the surface speeds",
@@ -435,22 +491,30 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
             f"in [fit] of the case, or add a column 'track radius [mm]'{_without_unit(table, TRACK)}."
         )
     lengths, origin = radius
-    pairs = zip(_numbers(table, name, "rotation", "rpm"), lengths, strict=True)
+    pairs = zip(_numbers(table, name, "rotation", settings), lengths, strict=True)
     values = [None if turns is None or length is None else turns * length for turns, length in pairs]
     return values, f"speed = {show(name)} x the radius of the track, {origin}"
 
 
-def _ratios(table: TextTable, name: str) -> list[float | None]:
+def _ratios(table: TextTable, name: str, settings: FitSettings) -> list[float | None]:
     """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
-    factor = 0.01 if table.unit(name) == "%" else 1.0
-    return [None if value is None else factor * value for value in _cells(table, name)]
+    unit = unit_in(table, name, "slide_to_roll", settings)
+    if unit not in BARE:
+        raise InputError(
+            f"{table.path}: column {show(name)} has the unit {show(unit)}; a slide-to-roll ratio is a bare number or in %."
+        )
+    return [None if value is None else BARE[unit] * value for value in _cells(table, name)]
 
 
-def _numbers(table: TextTable, name: str, dimension: str, unit: str) -> list[float | None]:
+def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> list[float | None]:
     """Return the numbers of a column in SI units."""
-    written = unit_in(table, name, dimension)
+    dimension = DIMENSIONS_OF[meaning]
+    written = unit_in(table, name, meaning, settings)
     if not written:
-        raise InputError(f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{unit}]'.")
+        key = f", or {meaning} = {show(UNITS[dimension])} in [fit.units]" if meaning in RIG else ""
+        raise InputError(
+            f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{UNITS[dimension]}]'{key}."
+        )
     factor = si_factor(written, dimension, f"the unit of column {show(name)}")
     return [None if value is None else factor * value for value in _cells(table, name)]
 

@@ -8,7 +8,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.columns import ABSCISSAS
-from stribeck.fits.table.units import BARE, DIMENSION
+from stribeck.fits.table.units import BARE, DIMENSION, has_dimension, si_factor
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -57,6 +57,8 @@ class Values:
         return self.factors[key]
 
     def _factor(self, unit: str, meaning: str, where: str) -> float:
+        if meaning == "hersey_number" and has_dimension(unit or "-", "wavenumber"):
+            return si_factor(unit, "wavenumber", meaning)
         dimension = DIMENSION.get(meaning) or self.settings.inputs.quantities[meaning].dimension
         if dimension == "number":
             if unit not in BARE:

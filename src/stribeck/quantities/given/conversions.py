@@ -204,9 +204,8 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
         except InputError as problem:
             problems.append(str(problem))
             if values.get(row.of) is None:
-                values |= {row.of: _typical(row.of, table)} | {
-                    name: values.get(name) or each for name, each in row.besides.items()
-                }
+                values[row.of] = _typical(row.of, table)
+                values |= {name: each for name, each in row.besides.items() if values.get(name) is None}
     for name in [name for name in values if name in GIVEN and values[name] is not None and not problems]:
         problems.append(f"{name} = {show(given[name])} is not an input of a {table.contact}; remove it.")
     values = {name: value for name, value in values.items() if name not in GIVEN}
