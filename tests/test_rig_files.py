@@ -222,6 +222,7 @@ VARIATIONS = {
     "a column without a name": table(";speed [mm/s];COF", lambda u, mu: 7, speed, friction),
     "an empty column": table("speed [mm/s];;COF", speed, friction).replace("\n", "\n").replace(";0.", ";;0."),
     "a column twice with other digits": table("COF;speed [mm/s];COF", friction, speed, friction).replace("\n0.3;", "\n0.30;"),
+    "a number for each row": table("Sample;speed [mm/s];COF", lambda u, mu: round(2 * np.log10(u) + 3), speed, friction),
     "a column twice": table("COF;speed [mm/s];COF", friction, speed, friction),
     "other columns twice": table("T;speed [mm/s];T;COF", speed, speed, friction, friction),
     "a column called like an input": table("Alpha (°);Radius (s);speed [mm/s];COF", speed, speed, speed, friction),
@@ -371,6 +372,9 @@ def test_advice_is_true_or_absent(written):
     columns = refusal(written("speed [mm/s];COF water;COF oil\n1;0.3;0.2\n2;0.2;0.1\n"))
     assert columns.endswith("as in friction = ['COF water', 'COF oil'].")
     assert "without marks between thousands" in refusal(written("speed [mm/s];mu\n1,000.5;0.3\n2,000.5;0.2\n"))
+    for magnitudes in (False, True):
+        code = refusal(written(PLAIN + "400;-9999\n500;-9999.0\n"), magnitudes=magnitudes)
+        assert "column 'COF' has '-9999' in row 10, 11, which programs write where a value is missing" in code
     several = refusal(written("A [mm/s];B [mm/s];COF\n1;2;0.3\n4;5;0.7\n"))
     assert "speed =" not in several and "'A [mm/s]', 'B [mm/s]', 'COF'" in several
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -138,6 +139,8 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
         free = [name for name in free if not _LOGARITHM.search(name)]
     for pattern in (WORDS[meaning], *([OTHER_SPEED] if meaning == "speed" else [])):
         names = [name for name in free if is_named(name, pattern) or (meaning == "error" and name.strip() in PLUS_MINUS)]
+        if meaning == "curve":
+            names = [name for name in names if not _counts_rows(table, name)]
         if meaning == "speed":
             rolling = PATTERNS["entrainment_speed"]
             names = [name for name in names if not is_named(name, rolling) or is_mean_of_time(table, name, settings)]
@@ -148,6 +151,14 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
         if names and (fitting or meaning in ("friction", *ABSCISSAS)):
             return fitting or names
     return []
+
+
+def _counts_rows(table: TextTable, name: str) -> bool:
+    """Return whether a column numbers the rows, as one called 'Sample' may."""
+    read = [number_of(cell, ",") for cell in table.column(name)]
+    values = [each[0] for each in read if each is not None]
+    steps = [after - before for before, after in pairwise(values)]
+    return len(values) == len(read) and 2 * sum(step == 1 for step in steps) > len(steps)
 
 
 def _fits(table: TextTable, name: str, meaning: str, settings: FitSettings) -> bool:

@@ -18,6 +18,9 @@ __all__ = ["without_stops"]
 AT_REST = 1e-9
 """Speed over the largest of the file below which it is zero but for rounding."""
 
+CODES = (-999.0, -9999.0, -99999.0)
+"""Numbers that programs write where there is none."""
+
 MANY = 10
 """Rows that a sentence lists."""
 
@@ -59,6 +62,14 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
     """
     speeds = _numbers(table, abscissa)
     frictions = {name: _numbers(table, name) for name in friction}
+    for name, values in ((abscissa, speeds), *frictions.items()):
+        coded = np.isin(values, CODES)
+        if coded.any():
+            code = table.column(name)[int(np.flatnonzero(coded)[0])]
+            raise InputError(
+                f"{table.path}: column {show(name)} has {show(code)} in row {_listed(table, coded)}, which programs write where a "
+                "value is missing; leave such cells empty."
+            )
     largest = np.nanmax(np.abs(speeds), initial=0.0)
     rest = np.abs(speeds) <= AT_REST * largest
     if settings.magnitudes:
