@@ -67,8 +67,8 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
         if coded.any():
             code = table.column(name)[int(np.flatnonzero(coded)[0])]
             raise InputError(
-                f"{table.path}: column {show(name)} has {show(code)} in row {_listed(table, coded)}, which programs write where a "
-                "value is missing; leave such cells empty."
+                f"{table.path}: column {show(name)} has {show(code)} in row {_listed(table, coded)}, which programs write "
+                "where a value is missing; leave such cells empty."
             )
     largest = np.nanmax(np.abs(speeds), initial=0.0)
     rest = np.abs(speeds) <= AT_REST * largest
