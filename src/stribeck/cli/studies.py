@@ -234,7 +234,7 @@ def surface_command(
     height_unit
         Unit of height, if different.
     spacing
-        Distance between points, such as '0.5 um', if the file has no positions.
+        Distance between points, such as '0.5 um' or '1 um x 0.5 um' along x and y, if the file does not hold it.
     channel
         Name of the channel, if the file has several.
     trend

@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.text import LARGEST_FILE, TEXT, read_text
+from stribeck.surfaces.text import LARGEST_FILE, TEXT, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
@@ -35,7 +36,7 @@ def read_topography(
     *,
     unit: str | None = None,
     height_unit: str | None = None,
-    spacing: str | float | None = None,
+    spacing: str | float | Sequence[str | float] | None = None,
     channel: str | None = None,
 ) -> Topography:
     """Read the heights of a measured surface.
@@ -49,8 +50,9 @@ def read_topography(
         Unit of lengths, such as ``"um"``, where the file does not declare it.
     height_unit : str, optional
         Unit of height, if different.
-    spacing : str or float, optional
-        Distance between points with its unit, or in m, where the file does not hold it.
+    spacing : str, float or sequence of two, optional
+        Distance between points with its unit, or in m, where the file does not hold it; one for both axes, or one each, as
+        ``"1 um x 0.5 um"``.
     channel : str, optional
         Name of the channel, where the file has several; the default is the first with heights.
 
@@ -94,9 +96,9 @@ def read_topography(
     except InputError:
         raise
     except ReadFileError as problem:
-        detail = "" if "tried " in str(problem) else f" ({_first(problem)})"
+        reason = _reason_of_its_reader(path) if "tried " in str(problem) else f" ({_first(problem)})"
         raise InputError(
-            f"{path} is damaged or in a format that SurfaceTopography does not know{detail}; export it "
+            f"{path} is damaged or in a format that SurfaceTopography does not know{reason}; export it "
             f"as X3P or as text with units."
         ) from None
     except Exception as problem:  # its forty readers leak errors of many kinds, and each means the same to the user
@@ -154,9 +156,28 @@ def _check_format(path: Path, reader: Any) -> None:
     ending = path.suffix.lower().lstrip(".")
     if reader.format() in UNSIGNED and any(ending in _endings(known) and known.format() not in UNSIGNED for known in readers):
         raise InputError(
-            f"{path} does not start like a .{ending} file: it is damaged, or has the wrong ending; "
-            "copy it from the instrument again, or name it .txt if it is text."
+            f"{path} does not start like a .{ending} file{_reason_of_its_reader(path)}: it is damaged, or has the wrong "
+            "ending; copy it from the instrument again, or name it .txt if it is text."
         )
+
+
+def _reason_of_its_reader(path: Path) -> str:
+    """Return in brackets what the readers of a file's ending say of it, or nothing."""
+    from SurfaceTopography.IO import open_topography, readers
+
+    ending = path.suffix.lower().lstrip(".")
+    reasons = []
+    for known in readers:
+        if ending not in _endings(known) or known.format() in UNSIGNED:
+            continue
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with path.open("rb") as stream, open_topography(stream, format=known.format()):
+                    pass
+        except Exception as problem:  # of any kind, as above
+            reasons.append(f"{known.__name__}: {_first(problem) or type(problem).__name__}".rstrip("."))
+    return f" ({'; '.join(reasons)})" if reasons else ""
 
 
 def _endings(reader: Any) -> list[str]:
@@ -180,7 +201,12 @@ def _channel(path: Path, reader: Any, name: str | None) -> Any:
 
 
 def _from_channel(
-    path: Path, reader: Any, channel: Any, unit: str | None, height_unit: str | None, spacing: str | float | None
+    path: Path,
+    reader: Any,
+    channel: Any,
+    unit: str | None,
+    height_unit: str | None,
+    spacing: str | float | Sequence[str | float] | None,
 ) -> Topography:
     format_name = reader.format()
     shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes
@@ -200,12 +226,12 @@ def _from_channel(
         sizes = None
     arguments: dict[str, Any] = {}
     if sizes is None:
-        if spacing is None:
+        apart = spacing_of(spacing, len(shape))
+        if apart is None:
             raise InputError(
                 f"{path} does not declare the distance between points; add --spacing '0.5 um' (in Python spacing='0.5 um')."
             )
-        step = to_si(spacing, "length", "spacing", "0.5 um")
-        arguments["physical_sizes"] = tuple(n * step / length for n in shape)
+        arguments["physical_sizes"] = tuple(n * step / length for n, step in zip(shape, apart, strict=True))
     elif spacing is not None:
         raise InputError(f"{path} declares the distance between its points; leave out spacing = {show(spacing)}.")
     if declared is None:

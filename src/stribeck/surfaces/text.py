@@ -1,13 +1,16 @@
 """Heights from plain text: CSV, TSV and XYZ files of any separator, decimal comma or point, with declared units.
 
 What the columns are follows from their number: 1 heights along a line; 2 position and height; 3 x, y and height of the
-points of a grid, in any order; more a matrix of heights, a line of the scan in each row.
+points of a grid, in any order; many a matrix of heights, a line of the scan in each row.  Columns that number the rows, and
+empty ones, count for nothing.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,31 +21,47 @@ from stribeck.files.cells import MISSING, cells_of
 from stribeck.files.reading import text_of
 from stribeck.files.text_table import values_of
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.topography import Topography
+from stribeck.surfaces.text_header import Header, header_of, unit_of
+from stribeck.surfaces.topography import FEWEST, Topography
 
-__all__ = ["TEXT", "read_text"]
+__all__ = ["TEXT", "read_text", "spacing_of"]
 
 TEXT = (".csv", ".tsv", ".txt", ".dat", ".xyz")
 """Endings of plain text files."""
 
-INFINITE = {"inf", "-inf"}
-"""Text that some instruments write for a missing point."""
+NO_HEIGHT = MISSING | {"inf", "-inf", "+inf", "infinity", "-infinity", "void", "invalid", "nodata", "overflow", "ovr", "ovf"}
+"""Cells that instruments write for a missing point, in lower case."""
+
+CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
+"""Sizes of numbers that instruments write for a missing point."""
+
+BEYOND = 1e30
+"""Size of a number that is no height in any unit: 1e37, or the largest number of a float."""
 
 UNEVEN = 0.02
 """Largest deviation of a position from the even grid, over the spacing, that passes for even."""
 
+AGREES = 0.005
+"""Relative difference of spacings, one given and one in the file, up to which they agree: files round."""
+
 LARGEST_FILE = 1_000_000_000  # [byte]
 
-_UNIT_IN_HEADER = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]|[,/_ ]\s*(nm|µm|μm|um|mm|cm|m|Å)\s*$")
+_NO_DATA = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
 class _Table:
-    """Numbers of a file with the line of each row, and the units that its header declares."""
+    """Numbers of a file with the line of each row, names and units of the columns, and what stands above them."""
 
     values: Array
+    cells: list[list[str]]
     lines: list[int]
+    names: list[str]
     units: list[str | None]
+    header: Header
+    notes: tuple[str, ...]
 
 
 def read_text(
@@ -50,7 +69,7 @@ def read_text(
     *,
     unit: str | None = None,
     height_unit: str | None = None,
-    spacing: str | float | None = None,
+    spacing: str | float | Sequence[str | float] | None = None,
 ) -> Topography:
     """Read heights from a text file.
 
@@ -62,8 +81,8 @@ def read_text(
         Unit of positions, and of heights where ``height_unit`` is not given, such as ``"um"``.
     height_unit : str, optional
         Unit of heights.
-    spacing : str or float, optional
-        Distance between points, with its unit or in m, where the file has no positions.
+    spacing : str, float or sequence of two, optional
+        Distance between points, with its unit or in m, where the file has no positions; one for both axes, or one each.
 
     Returns
     -------
@@ -77,33 +96,149 @@ def read_text(
     """
     table = _table(path)
     columns = table.values.shape[1]
+    if 3 < columns < FEWEST[2] and any(table.names):
+        raise InputError(
+            f"{path} has {columns} columns ({', '.join(map(show, table.names))}); keep two for a line, position and height, "
+            "or three for a map, x, y and height."
+        )
     positions = {1: 0, 2: 1, 3: 2}.get(columns, 0)
-    heights = table.units[positions : positions + 1][0] if columns <= 3 else table.units[0]
-    z_factor = _factor(path, "height_unit" if height_unit else "unit", height_unit or unit, heights, "heights")
+    declared = table.units[positions] if columns <= 3 else table.units[0]
+    z_name = "height_unit" if height_unit else "unit"
+    z_factor = _factor(path, z_name, height_unit or unit, declared or table.header.vertical, "heights")
     if positions == 0:
-        if spacing is None:
-            what = "one column" if columns == 1 else f"{columns} columns, a matrix of heights"
-            raise InputError(
-                f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
-                "(in Python spacing='0.5 um')."
-            )
-        step = to_si(spacing, "length", "spacing", "0.5 um")
-        z = table.values * z_factor
-        # A row of the file is a line of the scan, and the first axis is along it.
-        return Topography(z[:, 0] if columns == 1 else z.T, (step,) * (1 if columns == 1 else 2), source=path.name)
+        return _without_positions(path, table, spacing, z_factor, unit)
     if spacing is not None:
         raise InputError(f"{path} has positions, so spacing = {show(spacing)} is redundant; leave it out.")
-    x_factors = [_factor(path, "unit", unit, table.units[i], "positions") for i in range(positions)]
+    lateral = table.header.lateral
+    x_factors = [_factor(path, "unit", unit, table.units[i] or lateral, "positions") for i in range(positions)]
     places = table.values[:, :positions] * np.array(x_factors)
     bad = np.isnan(places).any(axis=1)
     if bad.any():
         raise InputError(f"{path}: line {table.lines[int(np.argmax(bad))]} has no position; remove or correct the line.")
     z = table.values[:, positions] * z_factor
-    return _line(path, places[:, 0], z, table.lines) if positions == 1 else _map(path, places, z, table.lines)
+    rounding = [_rounding([row[i] for row in table.cells]) * x_factors[i] for i in range(positions)]
+    if positions == 1:
+        return _line(path, places[:, 0], z, table, rounding[0])
+    steps = np.diff(places[:, 0])
+    if len(steps) > 1 and (np.all(steps > 0) or np.all(steps < 0)) and np.unique(places[:, 1]).size > 1:
+        names = f" ({', '.join(map(show, table.names))})" if any(table.names) else ""
+        raise InputError(
+            f"{path} has three columns{names} and another first number in each row: are they x and two heights of a line, or "
+            "x, y and height of a map? Keep position and one height of a line in two columns; a map has each x with several y."
+        )
+    return _map(path, places, z, table, rounding)
 
 
-def _line(path: Path, x: Array, z: Array, lines: list[int]) -> Topography:
-    order, notes = np.argsort(x, kind="stable"), []
+def _without_positions(
+    path: Path, table: _Table, spacing: str | float | Sequence[str | float] | None, z_factor: float, unit: str | None
+) -> Topography:
+    """Return heights whose distance is given, declared above them, or along their edges."""
+    values, notes = table.values, list(table.notes)
+    found: tuple[tuple[float, str] | None, ...] = (None, None)
+    if values.shape[1] > 1:
+        values, found = _without_edges(path, table, unit, notes)
+    # A row of the file is a line of the scan, and the first axis is along it.
+    z = values[:, 0] if values.shape[1] == 1 else values.T
+    found = found[: z.ndim]
+    if not any(found):
+        found = table.header.spacing(path, z.shape)
+    given = spacing_of(spacing, z.ndim)
+    steps = []
+    for axis, declared in enumerate(found):
+        if declared is None and given is None:
+            what = "one column" if z.ndim == 1 else f"{values.shape[1]} columns, a matrix of heights"
+            raise InputError(
+                f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
+                "(in Python spacing='0.5 um')."
+            )
+        if declared is not None and given is not None and not math.isclose(given[axis], declared[0], rel_tol=AGREES):
+            raise InputError(
+                f"{path} declares {declared[0] * 1e6:.4g} um between points along {'xy'[axis]} ({show(declared[1])}), but "
+                f"spacing = {show(spacing)}; leave out the wrong one."
+            )
+        steps.append(given[axis] if declared is None and given is not None else declared[0] if declared is not None else 0.0)
+    lines = list(dict.fromkeys(declared[1] for declared in found if declared is not None))
+    if lines:
+        apart = " x ".join(f"{step * 1e6:.4g}" for step in steps)
+        notes.append(f"Points are {apart} um apart, as declared by {' and '.join(map(show, lines))}.")
+    return Topography(z * z_factor, tuple(steps), source=path.name, notes=tuple(notes))
+
+
+def spacing_of(spacing: str | float | Sequence[str | float] | None, axes: int) -> list[float] | None:
+    """Return the distance between points that was given for each axis [m]."""
+    if spacing is None:
+        return None
+    parts = re.split(r"\s*(?:[x×;]|,\s)\s*", spacing.strip()) if isinstance(spacing, str) else spacing
+    if not isinstance(parts, list | tuple):
+        parts = [spacing]
+    if len(parts) not in (1, axes):
+        raise InputError(f"spacing = {show(spacing)}: give one distance, or one for each axis, as in '1 um x 0.5 um'.")
+    if len(parts) == 1:
+        parts = [*parts] * axes
+    return [to_si(part, "length", "spacing", "0.5 um") for part in parts]
+
+
+def _without_edges(
+    path: Path, table: _Table, unit: str | None, notes: list[str]
+) -> tuple[Array, tuple[tuple[float, str] | None, ...]]:
+    """Return a matrix without a first row and column that hold positions or numbers of lines, and the steps they declare."""
+    values = table.values
+    column, row = values[:, 0], values[0]
+    on_left = _is_even(column[1:]) and (_is_even(column) or _is_even(row[1:]))
+    on_top = _is_even(row[1:]) and (_is_even(row) or _is_even(column[1:]))
+    if not (on_left or on_top):
+        return values, (None, None)
+    axes = [row[1:] if on_left else row] if on_top else []
+    axes += [column[1:] if on_top else column] if on_left else []
+    kept = values[int(on_top) :, int(on_left) :]
+    if all(abs(axis[1] - axis[0]) == 1 and axis[0] in (0, 1) for axis in axes):
+        what = " and ".join(["row"] * on_top + ["column"] * on_left)
+        notes.append(f"The first {what} numbers the points and was left out.")
+        return kept, (None, None)
+    if not (on_left and on_top):
+        edge = "row" if on_top else "column"
+        raise InputError(
+            f"{path}: the first {edge} of the matrix rises in even steps, as positions do; remove it and give the distance "
+            "between points with --spacing, or write x, y and height in three columns."
+        )
+    factor = _factor(path, "unit", unit, table.header.lateral or table.units[0], "positions")
+    return kept, (
+        (float(abs(row[-1] - row[1])) / (row.size - 2) * factor, "positions in the first row"),
+        (float(abs(column[-1] - column[1])) / (column.size - 2) * factor, "positions in the first column"),
+    )
+
+
+def _is_even(values: Array) -> bool:
+    """Return whether numbers rise or fall in steps as even as no rough line's heights."""
+    steps = np.diff(values)
+    mean = float(steps.mean()) if len(steps) > 3 else 0.0
+    return bool(mean != 0 and np.isfinite(mean) and np.all(np.abs(steps - mean) < 0.05 * abs(mean)))
+
+
+def _rounding(cells: list[str]) -> float:
+    """Return the smallest step in which positions are written, in their unit."""
+    decimals, digits, largest = 0, 1, 0.0
+    for cell in cells:
+        mantissa, _, exponent = cell.lower().replace(",", ".").lstrip("+-").partition("e")
+        decimals = max(decimals, len(mantissa.partition(".")[2]) - int(exponent or 0))
+        digits = max(digits, len(mantissa.replace(".", "").lstrip("0")))
+        largest = max(largest, float(f"{mantissa}e{exponent or 0}"))
+    by_digits = 10.0 ** (math.floor(math.log10(largest)) + 1 - digits) if largest > 0 else 0.0
+    return float(max(10.0**-decimals, by_digits))
+
+
+def _even_grid(x: Array, rounding: float) -> tuple[float, float]:
+    """Return the step of the even grid nearest to rising positions, and how far they are off it beyond their rounding."""
+    count = np.arange(x.size)
+    step, start = np.polyfit(count - count.mean(), x, 1)
+    off = np.abs(x - start - step * (count - count.mean())).max()
+    # A line through rounded positions may itself be off by a little of the rounding.
+    return float(step), float(off - 0.6 * rounding)
+
+
+def _line(path: Path, x: Array, z: Array, table: _Table, rounding: float) -> Topography:
+    lines, notes = table.lines, list(table.notes)
+    order = np.argsort(x, kind="stable")
     if np.any(np.diff(order) != 1) and np.any(np.diff(order) != -1):
         notes.append("Positions were not in order; they were sorted.")
     x, z = x[order], z[order]
@@ -111,9 +246,8 @@ def _line(path: Path, x: Array, z: Array, lines: list[int]) -> Topography:
     if x.size < 2 or not np.all(steps > 0):
         where = lines[int(order[int(np.argmin(steps)) + 1])] if x.size > 1 else lines[0]
         raise InputError(f"{path}: line {where} has the same position as another one; a profile has one height at each.")
-    step = float((x[-1] - x[0]) / (x.size - 1))
-    even = x[0] + step * np.arange(x.size)
-    if np.abs(x - even).max() <= UNEVEN * step:
+    step, off = _even_grid(x, rounding)
+    if off <= UNEVEN * step:
         return Topography(z, (step,), source=path.name, notes=tuple(notes))
     widest, good = float(steps.max()), np.isfinite(z)
     if good.sum() < 2:
@@ -127,28 +261,35 @@ def _line(path: Path, x: Array, z: Array, lines: list[int]) -> Topography:
     )
 
 
-def _map(path: Path, places: Array, z: Array, lines: list[int]) -> Topography:
+def _map(path: Path, places: Array, z: Array, table: _Table, rounding: list[float]) -> Topography:
+    lines = table.lines
     index, steps, shape = [], [], []
     for axis, name in enumerate("xy"):
         values = np.unique(places[:, axis])
         # Values that differ by rounding only are the same line of the grid.
         span = values[-1] - values[0]
         gaps = np.diff(values)
+        values = values[np.concatenate([[True], gaps > 1e-6 * span])]
         gaps = gaps[gaps > 1e-6 * span]
         if span <= 0 or gaps.size == 0:
             raise InputError(f"{path}: all points have the same {name}; a profile has two columns, position and height.")
-        step = float(np.median(gaps))
-        place = (places[:, axis] - values[0]) / step
-        nearest = np.rint(place)
-        off = np.abs(place - nearest)
-        if off.max() > 0.1:
-            line = lines[int(np.argmax(off))]
-            raise InputError(
-                f"{path}: line {line} does not lie on an even grid in {name} with the step {step:.4g} m; "
-                "interpolate the points to a grid first."
-            )
+        step, off = _even_grid(values, rounding[axis])
+        if off <= UNEVEN * step:  # each value is a line of the grid, rounded or not
+            nearest = np.rint((places[:, axis] - values[0]) / step)
+        else:
+            step = float(np.median(gaps))
+            place = (places[:, axis] - values[0]) / step
+            nearest = np.rint(place)
+            apart = np.abs(place - nearest)
+            if apart.max() > 0.1:
+                line = lines[int(np.argmax(apart))]
+                raise InputError(
+                    f"{path}: line {line} does not lie on an even grid in {name} with the step {step:.4g} m; "
+                    "interpolate the points to a grid first."
+                )
+            step = float(span / nearest.max())
         index.append(nearest.astype(int))
-        steps.append(float(span / nearest.max()))
+        steps.append(step)
         shape.append(int(nearest.max()) + 1)
     if shape[0] * shape[1] > 4 * z.size:
         raise InputError(
@@ -161,7 +302,7 @@ def _map(path: Path, places: Array, z: Array, lines: list[int]) -> Topography:
         raise InputError(f"{path}: line {lines[place_of]} repeats the position of an earlier line; keep one height for each.")
     heights = np.full(shape, np.nan)
     heights[index[0], index[1]] = z
-    return Topography(heights, tuple(steps), source=path.name)
+    return Topography(heights, tuple(steps), source=path.name, notes=table.notes)
 
 
 def _factor(path: Path, name: str, given: str | None, declared: str | None, what: str) -> float:
@@ -184,33 +325,123 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 
 def _table(path: Path) -> _Table:
     text = text_of(path, LARGEST_FILE, "crop the scan", "a text file of heights")
-    rows = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
-    rows = [(i, line) for i, line in rows if line]
-    start = next((k for k, (_, line) in enumerate(rows) if _is_data(line)), None)
-    if start is None:
+    rows = [(i, _NO_DATA.sub("nodata", line).strip(" \r\n\f\ufeff")) for i, line in enumerate(text.splitlines(), 1)]
+    rows = [(i, line) for i, line in rows if line.strip()]
+    data = [_is_data(line) for _, line in rows]
+    if not any(data):
         raise InputError(f"{path} has no line of numbers.")
-    body = [(i, line) for i, line in rows[start:] if not line.startswith(("#", "%"))]
-    separator, comma = _dialect(path, [line for _, line in body[:200]])
-    numbers, cells = [i for i, _ in body], [cells_of(line, separator, path, i) for i, line in body]
-    if separator and len(cells[0]) > 1 and all(not row[-1] for row in cells):
-        cells = [row[:-1] for row in cells]  # a separator at the end of each line makes no column
-    width = len(cells[0])
+    first, length = _longest_run(data)
+    separator, comma = _dialect(path, [line.strip() for _, line in rows[first : first + min(length, 200)]])
+
+    def split(k: int) -> list[str]:
+        return cells_of(rows[k][1].strip() if not separator.strip() else rows[k][1], separator, path, rows[k][0])
+
+    width = len(split(first))
+    # Rows of the table above its longest part count, if no header stands between, as they may be above a wrong cell.
+    start = next((k for k in range(first) if data[k] and len(split(k)) == width), first)
+    if any(width == 1 or unit_of(line) for _, line in rows[start:first]) and start < first:
+        between = [k for k in range(start, first) if not data[k] and not re.search(r"\d", rows[k][1])]
+        start = between[-1] + 1 if between else start
+    while width > 1 and start and all(map(_is_missing, split(start - 1))) and len(split(start - 1)) >= width:
+        start -= 1
+    body = [k for k in range(start, len(rows)) if not rows[k][1].startswith(("#", "%"))]
+    numbers, cells = [rows[k][0] for k in body], [split(k) for k in body]
+    width = max(_filled(row) for row in cells if len(row) <= len(cells[0]))
     for number, row in zip(numbers, cells, strict=True):
-        if len(row) != width:
+        if len(row) < width or _filled(row) > len(cells[0]):
             raise InputError(
-                f"{path}: line {number} has {len(row)} columns where the lines above have {width}; "
+                f"{path}: line {number} has {len(row)} columns where the lines above have {len(cells[0])}; "
                 "correct the line, or check separator and decimal comma."
             )
-    header = [line.lstrip("#%; ") for _, line in rows[:start]]
-    values = values_of(path, cells, numbers, comma=comma)
-    values[np.isinf(values)] = np.nan
-    return _Table(values, numbers, _units(header, separator or None, width))
+    cells = [row[:width] for row in cells]  # separators at the end of lines make no columns
+    above = [line.lstrip("#%;!*/ ") for _, line in rows[:start]]
+    names, notes = _names(above, separator or None, width), list[str]()
+    kept = [j for j in range(width) if width >= FEWEST[2] or any(row[j] for row in cells)]
+    if any(row[0] for row in cells) is False and 0 in kept:
+        kept = kept[1:]
+    if names and len(kept) > 1 and _is_counter(names, [row[kept[0]] for row in cells], kept):
+        notes.append("The first column numbers the points and was left out.")
+        kept = kept[1:]
+    cells = [[row[j] for j in kept] for row in cells]
+    header = header_of(path, above)
+    values, said = _values(path, cells, numbers, comma=comma, codes=header.codes)
+    if not names and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
+        notes.append("The first column numbers the points and was left out.")
+        values, cells = values[:, 1:], [row[1:] for row in cells]
+    names = [names[j] for j in kept] if names else [""] * values.shape[1]
+    units = [unit_of(name) for name in names]
+    if len(units) > 3 and any(units):
+        units = [next(unit for unit in units if unit)] * len(units)
+    return _Table(values, cells, numbers, names, units, header, (*notes, *said))
+
+
+def _longest_run(data: list[bool]) -> tuple[int, int]:
+    """Return where the longest run of lines of numbers begins, and its length."""
+    best, begin = (0, 0), 0
+    for k, is_data in enumerate([*data, False]):
+        if not is_data:
+            best = max(best, (begin, k - begin), key=lambda run: run[1])
+            begin = k + 1
+    return best
+
+
+def _filled(row: list[str]) -> int:
+    """Return the number of cells up to the last that is not empty."""
+    filled = [j for j, cell in enumerate(row) if cell]
+    return max(filled, default=0) + 1
+
+
+def _is_missing(cell: str) -> bool:
+    return (
+        cell.strip('"').lower() in NO_HEIGHT
+        or re.fullmatch(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+", cell.lower()) is not None
+    )
+
+
+def _values(
+    path: Path, cells: list[list[str]], numbers: list[int], *, comma: bool, codes: tuple[str, ...]
+) -> tuple[Array, list[str]]:
+    """Return the numbers in cells, NaN where they hold no height, and which codes stand for that."""
+    values = values_of(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
+    # Positions are left as they are: only heights may be missing.
+    z = values if values.shape[1] > 3 else values[:, -1]
+    beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= BEYOND)
+    words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and _is_missing(cell))
+    notes = [
+        f"{_points(count, 'reads', 'read')} {show(word)} and {_counts(count)} as missing." for word, count in words.items()
+    ]
+    for code in np.unique(z[beyond & np.isfinite(z)]):
+        notes.append(_said(float(code), z == code))
+    z[beyond] = np.nan
+    declared = {float(code.replace(",", ".")) for code in codes}
+    for code in sorted(declared | {sign * size for size in CODES for sign in (-1, 1)}):
+        here = z == code
+        rest = z[~here & ~np.isnan(z)]
+        far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
+        if here.any() and (code in declared or far):
+            notes.append(_said(code, here))
+            z[here] = np.nan
+    return values, notes
+
+
+def _said(code: float, here: Array) -> str:
+    count = int(here.sum())
+    return f"{_points(count, 'holds', 'hold')} {code:g}, a code for no height, and {_counts(count)} as missing."
+
+
+def _points(count: int, one: str, many: str) -> str:
+    return f"1 point {one}" if count == 1 else f"{count} points {many}"
+
+
+def _counts(count: int) -> str:
+    return "counts" if count == 1 else "count"
 
 
 def _is_data(line: str) -> bool:
-    cells = [cell.strip().strip('"') for cell in re.split(r"[;\t, ]+", line) if cell.strip()]
-    numbers = [cell for cell in cells if re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", cell)]
-    return bool(numbers) and all(cell in numbers or cell.lower() in MISSING | INFINITE for cell in cells)
+    cells = [cell.strip().strip('"').strip() for cell in re.split(r"[;\t, ]+", line) if cell.strip()]
+    cells = [cell for cell in cells if cell]
+    numbers = [cell for cell in cells if _NUMBER.fullmatch(cell)]
+    return bool(numbers) and all(cell in numbers or _is_missing(cell) for cell in cells)
 
 
 def _dialect(path: Path, sample: list[str]) -> tuple[str, bool]:
@@ -230,17 +461,49 @@ def _dialect(path: Path, sample: list[str]) -> tuple[str, bool]:
     return ",", False
 
 
-def _units(header: list[str], separator: str | None, width: int) -> list[str | None]:
-    """Return the unit that the last header line with as many columns declares for each."""
+def _names(header: list[str], separator: str | None, width: int) -> list[str]:
+    """Return the names of the columns, from the last header lines with as many cells; units may stand in a row below."""
+    found: list[str] = []
     for line in reversed(header):
-        cells = line.rstrip(separator).split(separator)
-        found = [_UNIT_IN_HEADER.search(cell.strip().strip('"')) for cell in cells]
-        units = [match and (match[1] or match[2]) for match in found]
-        if separator is None and any(units):
-            units = [match[1] or match[2] for match in _UNIT_IN_HEADER.finditer(line)]
-        if len(units) == width and any(units):
-            return [unit or None for unit in units]
-        named = re.search(r"unit\w*\s*[:=]\s*(\S+)", line, re.IGNORECASE)
-        if named:
-            return [named[1].strip(",;")] * width
-    return [None] * width
+        for mark in dict.fromkeys((separator, "\t", ";", ",", None)):
+            if mark is None and re.search(r"[\[(]", line):
+                parts = re.findall(r"[^\[\](]+?\s*[\[(][^\])]*[\])]", line)
+            else:
+                parts = line.split(mark)
+            cells = [cell.strip().strip('"').strip() for cell in parts]
+            while len(cells) > width and not cells[-1]:
+                cells.pop()
+            if len(cells) + 1 == width and separator != mark and mark is None:
+                cells = ["", *cells]  # an index without a name
+            if len(cells) == width and any(cells) and not any(re.match(r"[+-]?\d", cell) for cell in cells):
+                break
+        else:
+            if found:
+                return found
+            continue
+        if found:
+            return [f"{name} ({unit_of(unit)})" if unit_of(unit) else name for name, unit in zip(cells, found, strict=True)]
+        only_units = [unit_of(cell) for cell in cells]
+        if all(re.fullmatch(r"[\[(]?\s*[^\W\d_]{0,12}\s*[\])]?", cell) for cell in cells) and all(
+            unit is not None or not cell for unit, cell in zip(only_units, cells, strict=True)
+        ):
+            found = cells  # perhaps the row of units below the names
+            continue
+        return cells
+    return found
+
+
+def _is_counter(names: list[str], cells: list[str], kept: list[int]) -> bool:
+    """Return whether a first column numbers the rows, by its name and its numbers."""
+    name = re.sub(r"[^0-9A-Za-z#]+", " ", names[kept[0]]).strip()
+    others = any(unit_of(names[j]) for j in kept[1:])
+    if not _COUNTER.fullmatch(name) or (name == "" and not others):
+        return False
+    try:
+        return _numbers_rows(np.array([float(cell) for cell in cells]))
+    except ValueError:
+        return False
+
+
+def _numbers_rows(values: Array) -> bool:
+    return bool(values[0] in (0, 1) and np.all(np.diff(values) == 1))

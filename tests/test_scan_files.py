@@ -1,0 +1,195 @@
+"""Heights in the layouts that instruments and programs write: sizes, units, indices, codes and reasons of refusal."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import call
+from topography_files import write_gwy, write_sdf, write_x3p
+
+import stribeck as sb
+
+DATA = Path(__file__).parent / "data"
+RANDOM = np.random.default_rng(83)
+LINE = np.cumsum(RANDOM.standard_normal(400))
+LINE = 0.5 * (LINE - LINE.mean()) / LINE.std()
+X = 0.156 * np.arange(400)
+MAP = np.cumsum(RANDOM.standard_normal((48, 48)), axis=1) / 8  # a line of the scan in each row
+
+
+def read(folder, text, **options):
+    (folder / "scan.csv").write_text(text, encoding="cp1252")
+    return sb.surfaces.read_topography(folder / "scan.csv", **options)
+
+
+def rows(*columns, sep=",", form=("{:.4f}",)):
+    forms = [*form, *["{:.4f}"] * len(columns)]
+    return "\n".join(sep.join(f.format(v) for f, v in zip(forms, row, strict=False)) for row in zip(*columns, strict=True))
+
+
+def matrix(sep="\t"):
+    return "\n".join(sep.join(f"{v:.5f}" for v in row) for row in MAP)
+
+
+def test_text_of_gwyddion_has_its_own_sizes_and_no_others(capsys):
+    path = DATA / "20_gwyddion_ascii_not_square.txt"
+    scan = sb.surfaces.read_topography(path)
+    assert scan.spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
+    assert np.std(scan.heights) == pytest.approx(0.5e-6, rel=1e-3)
+    assert "'Width: 48.00 µm' and 'Height: 24.00 µm'" in scan.notes[-1]
+    with pytest.raises(
+        sb.InputError, match=r"declares 0.5 um between points along y \('Height: 24.00 µm'\), but spacing = '1 um'"
+    ):
+        sb.surfaces.read_topography(path, spacing="1 um")
+    assert sb.surfaces.read_topography(path, spacing="1 um x 0.5 um").spacing == pytest.approx((1e-6, 0.5e-6))
+    assert sb.surfaces.read_topography(path, spacing=("1 um", 5e-7)).spacing == pytest.approx((1e-6, 0.5e-6))
+    command = call(capsys, "surface", path, "--spacing", "1 um")
+    assert command.code == 2 and "leave out the wrong one" in command.err
+
+
+def test_a_stylus_file_with_rounded_positions_and_trailing_commas_is_a_profile():
+    scan = sb.surfaces.read_topography(DATA / "21_stylus_csv_trailing_commas_rounded.csv")
+    assert scan.heights.shape == (400,) and not scan.notes
+    assert scan.spacing == pytest.approx((0.156e-6,), rel=3e-4)
+    assert np.std(scan.heights) == pytest.approx(0.5e-6, rel=1e-3)
+
+
+def test_the_distance_of_pixels_is_read_from_the_block_above_the_heights():
+    scan = sb.surfaces.read_topography(DATA / "22_confocal_csv_meta_block.csv")
+    assert scan.heights.shape == (48, 48) and scan.spacing == pytest.approx((1e-6, 1e-6))
+    assert np.std(scan.heights) == pytest.approx(0.5e-6, rel=1e-3)
+    assert "XY calibration" in scan.notes[-1]
+
+
+def test_two_traces_are_no_map():
+    with pytest.raises(sb.InputError, match=r"'z2 \(um\)'.* x and two heights of a line, or x, y and height of a map\?"):
+        sb.surfaces.read_topography(DATA / "23_two_traces_one_file.csv")
+
+
+def test_a_code_for_no_height_is_missing_and_named():
+    scan = sb.surfaces.read_topography(DATA / "24_missing_code_minus_9999.csv")
+    assert scan.missing == 4 and scan.heights.shape == (400,)
+    assert scan.notes == ("4 points hold -9999, a code for no height, and count as missing.",)
+    assert any("4 of 400 points" in note for note in scan.repaired().notes)
+
+
+SIZES = {
+    "nanometres": "# Width: 48000 nm\n# Height: 24000 nm\n# Value units: µm\n",
+    "without comments": "Width: 48.00 µm\nHeight: 24.00 µm\nValue units: µm\n",
+    "in German": "# Kanal: Z\n# Breite: 0.048 mm\n# Höhe: 0.024 mm\n# Unit: um\n",
+    "of pixels": "X pixel size,1000,nm\nY pixel size,500,nm\nHeight unit,um\nHeight data\n",
+    "of steps, units in the key": "X step [um];1.0\nY step [um];0,5\nUnit;um\n",
+    "of both axes": "Scan size: 48 x 24 um\nZ unit: um\n",
+    "of both axes with units": "Scan Size: 48 µm x 24 µm\nData unit: Micrometer\n",
+    "per pixel": "X scale: 1000 nm per pixel\nY scale: 500 nm/pixel\nz unit: um\n",
+}
+
+
+@pytest.mark.parametrize("case", SIZES)
+def test_sizes_above_a_matrix_give_the_spacing_along_each_axis(tmp_path, case):
+    scan = read(tmp_path, SIZES[case] + matrix())
+    assert scan.spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
+    assert scan.heights == pytest.approx(MAP.T * 1e-6, abs=6e-12)
+
+
+def test_lines_that_contradict_each_other_are_refused(tmp_path):
+    with pytest.raises(sb.InputError, match="'Pixel size: 2 um' and 'Width: 48 um' contradict each other for 48 points"):
+        read(tmp_path, "Pixel size: 2 um\nWidth: 48 um\nHeight: 24 um\nUnit: um\n" + matrix())
+
+
+PROFILES = {
+    "index": "Index,x (um),z (um)\n" + rows(range(400), X, LINE, form=("{}",)),
+    "index without a name": ",x (um),z (um)\n" + rows(range(400), X, LINE, form=("{}",)),
+    "index between tabs": "\tx (um)\tz (um)\n" + rows(range(400), X, LINE, form=("{}",), sep="\t"),
+    "index in quotes": '"","x_um","z_um"\n' + rows(range(1, 401), X, LINE, form=('"{}"',)),
+    "units below": "Lateral,Raw\num,Micrometer\n" + rows(X, LINE, form=("{:.1f}",)),
+    "units in brackets below": "Lateral,Total Profile\n(µm),(Å)\n" + rows(X, 1e4 * LINE, form=("{:.1f}",)),
+    "block above": "Length,62.4,um\nStylus radius,12.5 um\nLateral um,Total Profile Å,\n"
+    + rows(X, 1e4 * LINE, ("",) * 400, form=("{:.1f}", "{:.1f}", "{}")),
+    "three digits": "x (um) z (um)\n" + rows(X, LINE, form=("{:.3g}",), sep=" "),
+    "trailing semicolons": "x [µm];z [um];;\n"
+    + rows(X, LINE, ("",) * 400, ("",) * 400, form=("{:.3f}", "{:.4f}", "{}", "{}"), sep=";"),
+    "column": "Points: 400\nSpacing: 0.156 um\nHeight unit: um\n" + rows(LINE),
+}
+
+
+@pytest.mark.parametrize("case", PROFILES)
+def test_a_profile_in_any_layout_is_the_same_profile(tmp_path, case):
+    scan = read(tmp_path, PROFILES[case])
+    assert scan.spacing == pytest.approx((0.156e-6,), rel=1e-3)
+    assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11)
+
+
+def test_a_map_with_an_index_or_rounded_positions_is_that_map(tmp_path):
+    x, y = np.meshgrid(np.arange(48), np.arange(48))
+    columns = (0.156 * x.ravel(), 0.3125 * y.ravel(), MAP.ravel())
+    numbered = read(tmp_path, "No.;X (um);Y (um);Z (um)\n" + rows(range(48 * 48), *columns, sep=";", form=("{}",)))
+    rounded = read(tmp_path, "x (um),y (um),z (um)\n" + rows(*columns, form=("{:.1f}", "{:.1f}")))
+    for scan in (numbered, rounded):
+        assert scan.heights == pytest.approx(MAP.T * 1e-6, abs=1e-10)
+        assert scan.spacing == pytest.approx((0.156e-6, 0.3125e-6), rel=5e-3)
+    counted = read(
+        tmp_path, "\n".join(f"{i}\t{row}" for i, row in enumerate(matrix().splitlines())), unit="um", spacing="1 um"
+    )
+    assert counted.heights.shape == (48, 48) and "numbers the points" in counted.notes[0]
+
+
+@pytest.mark.parametrize(
+    "mark",
+    [
+        "-9999",
+        "-9999.0",
+        "-32768",
+        "1e37",
+        "1.70141e+38",
+        "-3.40282e+38",
+        "No Data",
+        "no data",
+        "nan",
+        "-nan(ind)",
+        "***",
+        "*****",
+    ],
+)
+def test_marks_of_instruments_for_no_height_are_missing_and_named(tmp_path, mark):
+    cells = [f"{v:.4f}" for v in LINE]
+    cells[50] = cells[51] = cells[200] = mark
+    line = read(tmp_path, "x (um),z (um)\n" + rows(X, cells, form=("{:.3f}", "{}")))
+    table = [[f"{v:.4f}" for v in row] for row in MAP]
+    table[0][0] = table[3][4] = table[3][5] = mark
+    whole = read(tmp_path, "# Width: 48 um\n# Height: 24 um\n# Value units: um\n" + "\n".join("\t".join(row) for row in table))
+    for scan in (line, whole):
+        assert scan.missing == 3
+        assert scan.notes[0].startswith("3 points ") and "as missing" in scan.notes[0]
+
+
+def test_heights_that_reach_to_a_code_are_heights(tmp_path):
+    ramp = np.linspace(-12000, 12000, 400)
+    ramp[33] = -9999
+    assert read(tmp_path, "x (um),z (nm)\n" + rows(X, ramp)).missing == 0
+
+
+def test_more_columns_than_a_profile_has_are_named(tmp_path):
+    with pytest.raises(sb.InputError, match=r"4 columns \('X1', 'Z1', 'X2', 'Z2'\); keep two for a line"):
+        read(tmp_path, "X1,Z1,X2,Z2\n" + rows(X, LINE, X, LINE), unit="um")
+
+
+def test_a_wrong_cell_near_the_top_is_named_and_no_row_is_lost(tmp_path):
+    with pytest.raises(sb.InputError, match="line 3, column 2 is 'oops'"):
+        read(tmp_path, "x (um),z (um)\n0,1\n1,oops\n" + rows(X + 2, LINE))
+
+
+def test_the_reason_of_the_reader_is_shown_for_a_file_of_an_instrument(tmp_path):
+    heights = MAP * 1e-6
+    write_x3p(tmp_path / "whole.x3p", heights, 1e-6, 1e-6)
+    with zipfile.ZipFile(tmp_path / "whole.x3p") as whole, zipfile.ZipFile(tmp_path / "a.x3p", "w") as changed:
+        for name in whole.namelist():
+            changed.writestr(name, whole.read(name).replace(b"bindata/data.bin", b"bindata/other.bin"))
+    write_sdf(tmp_path / "a.sdf", heights, 1e-6, 1e-6)
+    (tmp_path / "a.sdf").write_text((tmp_path / "a.sdf").read_text()[:900])
+    write_gwy(tmp_path / "a.gwy", heights, 1e-6, 1e-6)
+    (tmp_path / "a.gwy").write_bytes((tmp_path / "a.gwy").read_bytes()[:900])
+    for name, reason in (("a.x3p", "other.bin"), ("a.sdf", "End of stream"), ("a.gwy", "900 bytes")):
+        with pytest.raises(sb.InputError, match=f"Reader: .*{reason}"):
+            sb.surfaces.read_topography(tmp_path / name)
