@@ -183,7 +183,7 @@ def test_a_solution_of_a_ball_is_ready_for_json():
     assert found["geometry"] == "point"
     assert found["minimum_radius"] == 0.0
     assert found["friction_balanced"]["contact"] == pytest.approx(0.2)
-    assert found["errors"]["J_balanced"] == 1e-8
+    assert found["errors"]["J_pcx"] == 1e-8
 
 
 def test_a_dataset_of_a_ball_has_its_fields_in_si(tmp_path):

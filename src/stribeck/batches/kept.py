@@ -82,7 +82,7 @@ class KeptStates:
         ndarray, shape (4, 3 + changes)
             Derivatives with respect to ln of speed, load and roughness, and along the changes.
         ndarray, shape (4,)
-            Estimated errors, relative to the scales of the state.
+            Estimated errors as a solution states them.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class KeptStates:
         """
         state = self._solved(groups)
         values = np.array([state.values[name] for name in PARTS])
-        errors = np.array([state.errors[name] for name in PARTS])
+        errors = np.array([state.relative_errors[name] for name in PARTS])
         by_groups = state_derivatives(state, by)
         slopes = np.array([by_groups[name] for name in PARTS])
         if changes:
@@ -102,8 +102,9 @@ class KeptStates:
             within = FrictionWithin.of(fine.equations, fine.unknowns, {name: float(v) for name, v in state.values.items()})
             for row, cut in zip((1, 2), log_cut_offs(slope, wetted), strict=True):
                 beyond = within(row - 1, float(cut))
+                wrong = errors[row] * abs(values[row]) + abs(beyond)
                 values[row] += beyond
-                errors[row] += abs(beyond) / state.scales[PARTS[row]]
+                errors[row] = wrong / (abs(values[row]) or state.scales[PARTS[row]])
         return values, slopes, errors
 
     def _solved(self, groups: Groups) -> PointState:

@@ -160,11 +160,12 @@ def _ball_missed(parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
 
 
 def _ball_scale(parts: Values, speed: Any) -> dict[str, Any]:
-    """Return the scale of the friction integrals, as :func:`stribeck.solver.point.refinement.scales_of` has it."""
+    """Return the scales of the stated errors of the friction integrals: themselves, but for J_pcx the whole friction."""
     balanced = parts["J_couette"] + parts["J_poiseuille"]
     published = balanced - parts["J_pcx"] + 0.4 * math.pi * speed
     largest = np.maximum(np.maximum(np.abs(balanced), np.abs(published)), speed)
-    return dict.fromkeys(parts, largest)
+    own = {name: np.abs(parts[name]) for name in ("J_couette", "J_poiseuille")}
+    return dict.fromkeys(parts, largest) | {name: np.where(size > 0, size, largest) for name, size in own.items()}
 
 
 def _wetted(contact: Contact | None) -> float:

@@ -100,7 +100,7 @@ class PointCurve(StribeckCurve):
         return CurveValues(
             value=value,
             values={name: shown([state.values[name] for state in states]) for name in OBSERVABLES},
-            relative_errors=np.array(shown([[state.errors[name] for name in OBSERVABLES] for state in states])),
+            relative_errors=np.array(shown([[state.relative_errors[name] for name in OBSERVABLES] for state in states])),
             minimum_position_error=shown([one.minimum_radius_error for one in solutions]),
             friction_contact=shown([one.contact for one in friction]),
             friction_viscous=shown([one.viscous for one in friction]),

@@ -277,6 +277,8 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
     film = fine.resolution.model.film
     if film.uses_speed:
+        # By the identity of the integrals the moment of the contact pressure is the difference of both drags.
+        errors["J_pcx"] = max(errors["J_pcx"], max(THINNED_FRICTION * least, THINNED_DRAG * unseen) * scales["J_pcx"])
         # Drag is the stress over the slide.
         drag = max(THINNED_FRICTION * least, THINNED_DRAG * unseen)
         drag *= min(MOST_OVER_SLIDE, max(1.0, NEARLY_ROLLING / abs(film.slide))) if film.slide else 1.0

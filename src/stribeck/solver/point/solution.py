@@ -174,8 +174,8 @@ class PointSolution(BaseSolution):
 
     @cached_property
     def errors(self) -> dict[str, float]:
-        """Estimated relative error of each observable; absolute for the load shares."""
-        found = self.state.errors
+        """Estimated relative error of each observable; absolute for load shares, that of J_pcx relative to the friction."""
+        found = self.state.relative_errors
         return {name: float(found[name]) for name in self.outputs.names}
 
     @property

@@ -29,6 +29,11 @@ LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_
 contact whose panels the line of rupture crosses."""
 
 
+OWN = ("J_couette", "J_poiseuille", "J_balanced", "J_published")
+"""Friction integrals whose errors are stated relative to themselves; that of J_pcx, which vanishes in full films, to the
+friction."""
+
+
 class PointFields(NamedTuple):
     """Fields of a state at given positions, each of the broadcast shape of x and y.
 
@@ -100,6 +105,15 @@ class PointState:
     def errors(self) -> dict[str, float]:
         """Estimated errors relative to the scales: relative, but absolute for the shares."""
         return {name: error / self.scales[name] for name, error in self.absolute_errors.items()}
+
+    @property
+    def relative_errors(self) -> dict[str, float]:
+        """The same as a solution states them: those of shear and pressure flow relative to themselves.
+
+        Their scale is the whole friction, which may be many times the part.
+        """
+        own = {name: abs(self.values[name]) for name in OWN if self.values[name] != 0}
+        return {name: error / own.get(name, self.scales[name]) for name, error in self.absolute_errors.items()}
 
     @property
     def error_estimate(self) -> float:
