@@ -313,6 +313,12 @@ ROTATION = {
     "a diameter": (table("Speed [rpm];Wear track diameter [mm];COF", speed, lambda u, mu: 18, friction), {}),
     "a line above": ("Track radius [mm];9\n\n" + table("Speed [rpm];COF", speed, friction), {}),
     "a diameter above": ("Track diameter: 1.8 cm\n\n" + table("Speed [rpm];COF", speed, friction), {}),
+    "one of several lengths above": (
+        "Ball : 6.00 [mm], Radius : 9.00 [mm], Lin. Speed : 10.00 [cm/s]\n\n" + table("Speed [rpm];COF", speed, friction),
+        {},
+    ),
+    "the header": (table("Rotational speed [rpm] (track radius 9 mm);COF", speed, friction), {}),
+    "a diameter in the header": (table("Speed (track diameter = 18 mm) [rpm];COF [-] (dry)", speed, friction), {}),
     "a table above": ("Type;Radius (mm)\nRotary;9\n\n" + table("Rotary.Velocity (rpm);COF", speed, friction), {}),
     "a comment above": ("# track radius = 9 mm\n" + table("Speed [rpm];COF", speed, friction), {}),
 }

@@ -32,6 +32,8 @@ _STATISTIC = re.compile(
 )
 """Brackets that say which statistic of the samples a column holds, and no unit."""
 
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
+
 _LETTER = re.compile(r"(?<=[a-zäöüß]{3}) (?:u|v|mu|[µμ]|f ?[nt]|w)$")
 
 POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
@@ -48,6 +50,12 @@ _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 def split_header(header: str) -> tuple[str, str]:
     """Return the words of a header and its unit, as of ``speed [mm/s]`` or ``speed / mm/s``; empty where it has none."""
     header = _STATISTIC.sub(r" \1", header)
+    brackets = list(_BRACKETS.finditer(header))
+    units = (
+        [each for each in brackets if each[1].strip() in ("", "-") or looks_like_units(each[1])] if len(brackets) > 1 else []
+    )
+    if units:  # of several brackets the one that holds a unit
+        return f"{header[: units[-1].start()].rstrip()} {header[units[-1].end() :].lstrip()}".strip(), units[-1][1].strip()
     parts = _HEADER.fullmatch(header) or _WITHOUT_BRACKETS.fullmatch(header)
     if parts is None or not parts[1]:
         return header.strip(), ""

@@ -53,7 +53,8 @@ PATTERNS = {
 """What the words of a header mean, in lower case."""
 
 TRACK = (
-    r"(?:(?:ball|disc|disk|wear|sliding|test|friction) )*track (?:radius|diameter)|(?:reib)?spur(?:radius|durchmesser)|radius"
+    r"(?:(?:ball|disc|disk|wear|sliding|test|friction) )*track (?:radius|diameter|dia|r|d)|"
+    r"(?:radius|diameter|dia) of (?:the )?(?:\w+ )?track|(?:reib|lauf|kreis)?(?:spur|bahn)(?:radius|durchmesser)|radius|r"
 )
 """Names of the radius or diameter of a track, in a header or in text above it."""
 
@@ -86,6 +87,10 @@ MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
 _STATED = re.compile(
     r"(?P<name>[^\d:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
     r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[A-Za-zµμ]*)[\])]?[\s;,]*"
+)
+
+_IN_BRACKETS = re.compile(
+    r"\s*(?:at )?(?P<name>[A-Za-z ]+?)\s*[=:]?\s*(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*(?P<unit>[A-Za-zµμ]+)\s*"
 )
 
 TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K", "°F": "°F", "ºC": "°C"}
@@ -377,6 +382,13 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[f
                 for value in _cells(table, name)
             ]
             return [None if value is None else factor * value for value in values], f"of column {show(name)}"
+    for name in filter(None, table.header):
+        for inside in re.findall(r"[\[(]([^\[\]()]*)[\])]", name):
+            found = _IN_BRACKETS.fullmatch(inside)
+            if found and is_named(found["name"], pattern) and has_dimension(found["unit"], "length"):
+                length = float(found["value"].replace(",", ".")) * si_factor(found["unit"], "length", name)
+                length *= 0.5 if _is_diameter(found["name"]) else 1.0
+                return [length] * len(table.rows), f"{1e3 * length:g} mm by {show(name)}"
     stated = _stated(table, pattern, "length")
     if stated is None:
         return None
@@ -417,9 +429,10 @@ def _lines_above(table: TextTable) -> tuple[list[int], list[str], list[str]]:
 
 def _statements(text: str, below: str) -> list[tuple[str, str, str]]:
     """Return name, unit and value of what a line gives: one quantity, or several whose values stand below their names."""
-    found = _STATED.fullmatch(text.strip())
+    pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
+    found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]
     if found:
-        return [(found["name"].strip(), (found["before"] or found["after"] or "").strip(), found["value"])]
+        return [(each["name"].strip(), (each["before"] or each["after"] or "").strip(), each["value"]) for each in found]
     mark = next((mark for mark in "\t;," if mark in text), "")
     if not mark:
         return []
@@ -428,7 +441,7 @@ def _statements(text: str, below: str) -> list[tuple[str, str, str]]:
 
 
 def _is_diameter(name: str) -> bool:
-    return re.search("diameter|durchmesser", name, re.IGNORECASE) is not None
+    return re.search(r"dia(?:meter)?\b|durchmesser|\bd$", name, re.IGNORECASE) is not None
 
 
 def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
