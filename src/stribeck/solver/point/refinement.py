@@ -275,6 +275,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         least = max(THINNED_COMPANY * widest, THINNED * unseen)
         widest = max(widest, THINNED * unseen / COMPANY)
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
+    # Differences of the terms of a sum may cancel by chance where their errors do not.
+    errors["J_balanced"] = max(errors["J_balanced"], math.hypot(errors["J_couette"], errors["J_poiseuille"]))
+    errors["J_published"] = max(errors["J_published"], math.hypot(errors["J_balanced"], errors["J_pcx"]))
     film = fine.resolution.model.film
     if film.uses_speed:
         # By the identity of the integrals the moment of the contact pressure is the difference of both drags.
