@@ -1145,7 +1145,7 @@ def test_between_solved_rows_a_map_bends_with_its_lines(monkeypatch):
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
     found = read_scan("../profile.csv", PROFILE)
-    assert found.words.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.74 to 1.84), beta 0.0197 (")
+    assert found.words.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.7 to 1.84), beta 0.0197 (")
     after = with_scan(START, found)
     surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
     law = surface.law

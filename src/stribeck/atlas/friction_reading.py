@@ -15,7 +15,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.inputs import quantity
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 
 __all__ = [
     "friction",
@@ -183,6 +183,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
     -----
     One reading of the table gives all, for fits in which boundary_friction and beta differ from state to state.
     """
+    checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
     reading = read_friction(groups, check_definition(definition), slopes=3)
     names = RULES[groups.geometry].parts(definition)
     values = np.stack([reading.contact, *(reading.parts[name] for name in names)])
@@ -213,7 +214,8 @@ def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Defini
     InputError
         If a state is outside the box of its table.
     """
-    reading = read_friction(groups, definition)
+    checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
+    reading = read_friction(groups, check_definition(definition))
     arrays = inputs_for(groups, inputs)
     return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 

@@ -172,7 +172,7 @@ def info(name: str = TABLES[0].name) -> dict[str, Any]:
     certificate many.
     """
     rows = {row.name: row for row in TABLES}
-    if name not in rows:
+    if not isinstance(name, str) or name not in rows:
         raise InputError(f"name = {show(name)}; the tables of the atlas are {', '.join(rows)}.")
     row = rows[name]
     made = row.table.about

@@ -24,7 +24,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 
 __all__ = ["BOX", "SLACK", "TABLES", "Box", "TableRow", "covers", "for_groups", "holds_for", "table_for"]
 
@@ -202,6 +202,7 @@ def for_groups(groups: Groups) -> TableRow | None:
     -----
     Smooth contacts have no law. :func:`covers` tells which of the states lie in the box.
     """
+    checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
     for row in TABLES:
         if row.is_of_model(groups) and (row.is_of_law(groups.law) or not np.any(groups.roughness)):
             return row

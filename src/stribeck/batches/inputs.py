@@ -11,7 +11,7 @@ import numpy as np
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Contacts", "broadcast_inputs", "varied"]
 
@@ -54,7 +54,7 @@ def varied(
         if unknown:
             raise InputError(f"{unknown[0]} is no group; Groups have {', '.join(GROUPS)}, a contact has more inputs.")
         columns, names = broadcast_inputs(table, dims)
-        return replace(problem, **{name: column.astype(float) for name, column in columns.items()}), None, names
+        return replace(problem, **{name: _numbers(name, column) for name, column in columns.items()}), None, names
     columns, names = broadcast_inputs(inputs, dims)
     shape = next(iter(columns.values())).shape if columns else ()
     contacts: Contacts = np.empty(shape, dtype=object)
@@ -101,12 +101,18 @@ def broadcast_inputs(inputs: Mapping[str, Any], dims: Sequence[str] | None) -> t
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
         raise InputError(f"the shapes of the inputs do not broadcast: {shapes}.") from None
-    if dims is not None and (isinstance(dims, str) or len(dims) != len(shape)):
+    if dims is not None and (not isinstance(dims, list | tuple) or len(dims) != len(shape)):
         raise InputError(f"dims = {show(dims)} must be {len(shape)} names, one for each dimension of {shape}.")
     names = tuple(map(str, dims)) if dims is not None else tuple(_name(arrays, shape, axis) for axis in range(len(shape)))
     if len(set(names)) < len(names):
         raise InputError(f"dims = {show(names)} must be different names.")
     return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}, names
+
+
+def _numbers(name: str, column: Any) -> Any:
+    """Return the numbers of a group, which have no units."""
+    made = np.array([to_si(each, "number", name) for each in column.ravel()])
+    return made.reshape(column.shape)
 
 
 def _array(value: Any) -> Any:

@@ -20,7 +20,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.solve import check_rtol
 
@@ -73,7 +73,8 @@ def solve_batch(
     """
     if not isinstance(problem, Groups | Contact):
         raise InputError(f"problem = {show(problem)}; it must be a contact or Groups(speed, load, roughness) of arrays.")
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
+    checked_callback("on_progress", on_progress)
     groups, contacts, names = varied(problem, inputs, dims)
     if isinstance(problem, Contact):
         kept = {name: other.of for other in problem.INPUTS.alternatives for name in other.inputs}

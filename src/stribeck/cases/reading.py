@@ -17,6 +17,7 @@ from stribeck.cases.tables import error_sentence, example_of, file_model
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
 from stribeck.files.toml import read_toml
+from stribeck.files.writing import path_of
 from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.given.conversions import read_given
@@ -52,7 +53,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
         on each line, for all of its problems.
     """
-    path = Path(path)
+    path = path_of(path)
     return check_case(read_toml(path), path)
 
 

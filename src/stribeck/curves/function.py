@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,9 @@ from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES
+from stribeck.quantities.outputs import ALL_NAMES, OUTPUT_TABLES
 from stribeck.quantities.results import ByValue, Card, Shown, brief
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.along.line_path import POSITION, LineProblem
 from stribeck.solver.along.path import SolvedPath
 from stribeck.solver.at_rest import with_positive_gap
@@ -80,6 +82,15 @@ class Progress:
             self.done += 1
             if self.on_point is not None:
                 self.on_point(self.done, len(self.places))
+
+
+def observed(solutions: Sequence[Any], name: str) -> Array:
+    """Return a number of each of several solutions by its name, or refuse a name of none."""
+    numbers = [getattr(each, name, None) if isinstance(name, str) else None for each in solutions]
+    if not all(isinstance(number, Real) for number in numbers):
+        known = ", ".join(OUTPUT_TABLES[solutions[0].groups.geometry].names)
+        raise InputError(f"name = {show(name)}; it must be the name of a number of every solution, such as {known}.")
+    return np.array(numbers)
 
 
 class CurvePoint(Solution):

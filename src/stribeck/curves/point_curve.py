@@ -16,7 +16,7 @@ from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE, friction_share
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.function import CurveValues, Progress
+from stribeck.curves.function import CurveValues, Progress, observed
 from stribeck.curves.landmarks import Landmark, friction_at, places_of
 from stribeck.curves.regime import Transition, check_transition, excess
 from stribeck.curves.result import StribeckCurve
@@ -78,7 +78,7 @@ class PointCurve(StribeckCurve):
 
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array."""
-        return np.array([getattr(s, name) for s in self.solutions])
+        return observed(self.solutions, name)
 
     @property
     def error_estimate(self) -> float:

@@ -19,7 +19,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.with_parts import model_words
 from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
-from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
+from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, observed, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place, friction_at
 from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
@@ -140,10 +140,15 @@ class StribeckCurve(Exported, Shown, ByValue):
         -------
         ndarray, shape (n,)
             Its values, in the order of :attr:`values`.
+
+        Raises
+        ------
+        InputError
+            If a solution has no number of this name.
         """
         if self._function is not None and name in COLUMNS:
             return np.array(self._rows[0][:, COLUMNS.index(name)])
-        return np.array([getattr(s, name) for s in self.solutions])
+        return observed(self.solutions, name)
 
     def at(self, value: Any) -> CurveValues:
         """Return all observables and the friction anywhere on the curve, with their errors.
@@ -387,7 +392,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         """
         mark = check_transition(name)
         accepted = min(self.rtol, STATES_RTOL) if rtol is None else rtol
-        check_rtol(accepted)
+        accepted = check_rtol(accepted)
         if (mark, accepted) not in self._found:
             rubbing = self._sliding * self.boundary_friction
             place = self._landmarks.place(mark, rubbing, self.beta, self.definition, accepted)

@@ -87,7 +87,7 @@ def friction_sensitivities(
     At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero,
     both exactly.
     """
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     definition = check_definition(definition)
     if check_method(method) == "atlas":
         return None, _from_atlas(contact, definition)

@@ -146,7 +146,7 @@ def stribeck_curve(
     A few states are solved and expanded into Taylor series; the points are read off these, each within ``rtol`` by its
     estimated error.  More points cost next to nothing.
     """
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     definition = check_definition(definition)
     given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
     base, over, ends = read_problem(problem, given)

@@ -14,7 +14,7 @@ from stribeck.cases.case import Case
 from stribeck.cases.reading import load_case
 from stribeck.data_sheet.content import Content, content_of
 from stribeck.data_sheet.picture import draw_report
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, path_of
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
@@ -71,7 +71,7 @@ def write_report(
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file or a Case.")
         case = load_case(case)
-    given = data if isinstance(data, Measurements) or data is None else Path(data)
+    given = data if isinstance(data, Measurements) or data is None else path_of(data, "data")
     content = content_of(case, given, on_step)
     with atomic_write(path, ENDINGS, force=force) as temporary:
         if target.suffix.lower() == ".pdf":

@@ -27,7 +27,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import DIMENSIONS, InputError, show
+from stribeck.quantities.units import DIMENSIONS, InputError, checked_callback, checked_kind, show
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
@@ -223,6 +223,8 @@ def next_runs(
     Derivatives are exact, at the fitted values: what is chosen is right as far as these are.  It shrinks the intervals within
     the model, and does not test the model: a run where the model has never been tested does.
     """
+    checked_kind("fit", fit, Fit, "a Fit, as sb.fit returns it")
+    checked_callback("on_step", on_step)
     if not fit.converged:
         raise InputError(f"the fit did not converge, so that no run can be advised. {fit.outcome.value}")
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:

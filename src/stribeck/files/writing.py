@@ -8,10 +8,11 @@ import secrets
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
-__all__ = ["MissingExtraError", "PathLike", "check_writable", "reason_of", "atomic_write", "sync_folder"]
+__all__ = ["MissingExtraError", "PathLike", "check_writable", "path_of", "reason_of", "atomic_write", "sync_folder"]
 
 PathLike = str | os.PathLike[str]
 
@@ -26,6 +27,39 @@ class MissingExtraError(InputError, ImportError):
 
     def __init__(self, purpose: str, extra: str, library: str) -> None:
         super().__init__(f"{purpose} needs {library}; install it with: pip install 'stribeck[{extra}]'.")
+
+
+def path_of(value: Any, name: str = "path") -> Path:
+    """Return a path that was given as text or path-like; refuse what is none, and a name that no file system takes.
+
+    Parameters
+    ----------
+    value : str or path-like
+        The path.
+    name : str
+        What the argument is called.
+
+    Returns
+    -------
+    pathlib.Path
+        The path, which need not exist.
+
+    Raises
+    ------
+    InputError
+        If it is no path, or one that the system cannot look up, as with a name of 300 letters.
+    """
+    try:
+        path = Path(value)
+    except TypeError:
+        raise InputError(f"{name} = {show(value)}; it must be a path: text, or a pathlib.Path.") from None
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except (OSError, ValueError) as problem:
+        raise InputError(f"{show(str(path))} cannot be looked up ({reason_of(problem)}); give another path.") from None
+    return path
 
 
 def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Path:
@@ -50,7 +84,7 @@ def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = F
     InputError
         If the ending is unknown, the file exists and ``force`` is not given, or its folder cannot be written.
     """
-    given = Path(path)
+    given = path_of(path)
     if given.suffix.lower() not in suffixes:
         *others, last = suffixes
         known = f"{', '.join(others)} or {last}" if others else last

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from stribeck.files.cells import split_header
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.writing import path_of
 from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats
 from stribeck.fits.table.rig import prepared, temperature_note
@@ -27,7 +27,7 @@ from stribeck.fits.table.values import Values
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 
 if TYPE_CHECKING:
     import xarray
@@ -151,8 +151,10 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     InputError
         If the file cannot be read, or a value be used; the sentence names row and column.
     """
-    settings = settings or FitSettings()
-    table = with_errors_named(read_table(Path(path), settings.header_row, knows=known_name, sheet=settings.sheet))
+    settings = (
+        FitSettings() if settings is None else checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
+    )
+    table = with_errors_named(read_table(path_of(path), settings.header_row, knows=known_name, sheet=settings.sheet))
     written = table.header
     asked = settings
     table, made, run, settings, of_rig = prepared(table, asked, lambda meaning: has_column(table, asked, meaning))

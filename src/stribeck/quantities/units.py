@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["DIMENSIONS", "Dimension", "InputError", "read_number", "real_array", "to_si"]
+__all__ = ["checked_callback", "checked_kind", "DIMENSIONS", "Dimension", "InputError", "read_number", "real_array", "to_si"]
 
 
 class InputError(ValueError):
@@ -175,6 +175,20 @@ def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:
     if not math.isfinite(result):
         raise InputError(f"{name} = {show(value)} is not a finite number in double precision; {_advice(kind)}.")
     return result
+
+
+def checked_kind(name: str, value: Any, kinds: type | tuple[type, ...], allowed: str) -> Any:
+    """Return an argument if it is an instance of what may be given, or refuse it in a sentence that says what that is."""
+    if not isinstance(value, kinds):
+        raise InputError(f"{name} = {show(value)}; it must be {allowed}.")
+    return value
+
+
+def checked_callback(name: str, value: Any) -> Any:
+    """Return a function to be called during the work, or None; refuse anything else before the work begins."""
+    if value is not None and not callable(value):
+        raise InputError(f"{name} = {show(value)}; it must be a function, or None.")
+    return value
 
 
 def read_number(name: str, text: str) -> float:

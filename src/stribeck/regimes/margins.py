@@ -109,7 +109,7 @@ def regime_margins(
     speed no further than to where the fluid's share tends to a limit above its bound. More load lowers the speed group as a
     power, and the relative roughness. Speed and viscosity enter as their product: one scan serves both.
     """
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     definition = check_definition(definition)
     if not isinstance(contact, Contact):
         raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")

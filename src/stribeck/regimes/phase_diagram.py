@@ -110,7 +110,7 @@ def phase_diagram(
     Source: [BP] Fig. 11, which shows the printed formulas alone.
     """
     if rtol is not None:
-        check_rtol(rtol)
+        rtol = check_rtol(rtol)
     diagram = empty_diagram(
         problem, {"load": load, "roughness": roughness, "speed": speed}, points, boundary_friction, beta, definition, rtol, law
     )

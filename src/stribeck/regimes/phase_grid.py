@@ -171,13 +171,13 @@ def empty_diagram(
     contact = problem if isinstance(problem, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     definition = check_definition(definition)
+    groups = _unit_groups(law) if problem is None else as_groups(problem)[0]
     if problem is not None:
-        as_groups(problem)
         given = {name: getattr(problem, name) if value is None and name != "speed" else value for name, value in given.items()}
     missing = [name for name in ("load", "roughness") if given[name] is None]
     if missing:
         raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact or PointContact.")
-    physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
+    physics = groups.physics
     kind, table = KINDS[physics["geometry"]], None if contact is None else contact.INPUTS
     counts, rtol = _points(points, kind), kind.rtol if rtol is None else rtol
     axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}

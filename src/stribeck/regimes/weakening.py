@@ -153,7 +153,7 @@ def weakening(
     A curve over speed has at most one branch of weakening in all that we solved.
     """
     as_groups(groups)
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     boundary_friction, beta = coefficients(None, boundary_friction, beta)
     slope = _Slopes(groups, boundary_friction, beta, check_definition(definition), rtol)
     low, high = automatic_speed_range(groups, boundary_friction, beta, definition)
@@ -228,7 +228,7 @@ def roughness_without_minimum(
     """
     if criterion not in CRITERIA:
         raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     boundary_friction, beta = coefficients(None, boundary_friction, beta)
     unit, _ = as_groups(Groups(1.0, load, 1.0) if physics is None else Groups(1.0, load, 1.0, **physics))
     if boundary_friction == 0:

@@ -30,7 +30,7 @@ from numpy.polynomial.legendre import leggauss
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, checked_kind, show, to_si
 from stribeck.solids.half_plane import as_solid
 from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
 
@@ -164,7 +164,7 @@ class Prony(_Viscoelastic):
     base: Solid
 
     def __init__(self, times: Any, moduli: Any, base: Solid | None = None) -> None:
-        if isinstance(times, str) or not hasattr(times, "__len__") or not hasattr(moduli, "__len__"):
+        if isinstance(times, str) or not all(hasattr(each, "__len__") and np.shape(each) for each in (times, moduli)):
             raise InputError(f"times = {show(times)} and moduli = {show(moduli)} must be lists, of the same length.")
         if not 0 < len(times) == len(moduli) <= MOST_TERMS:
             raise InputError(f"times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MOST_TERMS}.")
@@ -301,7 +301,7 @@ def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
     float
         Friction coefficient over a/R [-]; zero for elastic bodies.
     """
-    n = mesh.order
+    n = checked_kind("mesh", mesh, Mesh, "a Mesh of panels").order
     w = (solid.deflection(mesh) @ pressure)[:-n].reshape(-1, n)
     slope = w @ _nodal_derivative(n).T / mesh.half_widths[:-1, None]
     return float(2 / math.pi * (mesh.weights[:-n] * pressure[:-n]) @ slope.ravel())

@@ -42,7 +42,7 @@ class WarmStartSolver:
     """
 
     def __init__(self, rtol: float = 1e-6) -> None:
-        check_rtol(rtol)
+        rtol = check_rtol(rtol)
         self.rtol = rtol
         self._target = Groups(0.0, 1.0, 0.0)
         self._corrector = Corrector(lambda _: self._target, rtol)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -185,7 +186,7 @@ def solve(
     """
     problem = with_law(problem, law)
     groups, contact = as_groups(with_parts(problem, **parts) if parts else problem)
-    check_rtol(rtol)
+    rtol = check_rtol(rtol)
     if not isinstance(on_failure, str) or on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
     return SOLVERS[groups.geometry](groups, contact, rtol, on_failure)
@@ -351,11 +352,12 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
     return problem, None
 
 
-def check_rtol(rtol: float) -> None:
-    """Refuse a tolerance that is not a number or out of range."""
+def check_rtol(rtol: Any) -> float:
+    """Return a tolerance, a number of any type, as a float; refuse what is no number or out of range."""
     low, high = RTOL_RANGE
-    if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
+    if isinstance(rtol, bool) or not isinstance(rtol, Real) or not low <= float(rtol) <= high:
         raise InputError(f"rtol = {show(rtol)}; it must be a number from {low:g}, the limit of double precision, to {high:g}.")
+    return float(rtol)
 
 
 def describe(groups: Groups) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from stribeck.files.writing import atomic_write
+from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.analysis import Surface
 
 __all__ = ["surface_table", "write_surface_table"]
@@ -27,6 +28,8 @@ def write_surface_table(surface: Surface, path: str | os.PathLike[str], *, force
     InputError
         If the file cannot be written, or exists and ``force`` is not given.
     """
+    if not hasattr(surface, "fit"):
+        raise InputError(f"surface = {show(surface)}; it must be a Surface, as of analyse(topography).")
     with atomic_write(path, (".toml",), force=force) as temporary:
         temporary.write_text(surface_table(surface), encoding="utf-8")
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["Form", "Trend", "detrended"]
@@ -116,7 +116,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
         raise InputError(f"detrend = {show(trend)} is not known; choose one of {', '.join(TRENDS)}.")
     if trend == "none":
         return topography, Form("none")
-    z = topography.heights
+    z = checked_kind("topography", topography, Topography, "a Topography, as of read_topography(path)").heights
     good = ~np.isnan(z)
     # Coordinates from -1 to 1 about the middle, so that the normal equations are well conditioned.
     half = [0.5 * (n - 1) * step for n, step in zip(z.shape, topography.spacing, strict=True)]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.writing import MissingExtraError, path_of
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text import LARGEST_FILE, TEXT, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
@@ -68,7 +68,7 @@ def read_topography(
     MissingExtraError
         Where the format needs SurfaceTopography and it is not installed.
     """
-    path = Path(path)
+    path = path_of(path)
     if not path.is_file():
         raise InputError(f"{path} is not a file; check the name.")
     for name, value in (("unit", unit), ("height_unit", height_unit)):

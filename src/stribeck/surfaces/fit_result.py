@@ -1,7 +1,7 @@
 r"""The fit of a self-affine spectrum: the spectrum, its standard errors, and intervals of alpha and beta.
 
-A scan does not show waves longer than itself.  So the longest wave of the surface can only be longer than the scan, and an
-interval of alpha or beta holds the values for all longest waves from the scan to far beyond it.
+A scan does not show waves longer than itself, nor shorter than a few of its points.  So the longest wave of the surface can
+only be longer and the shortest only shorter, and an interval of alpha or beta holds the values for all of them.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ NORMAL = 1.959964
 LONGER = (1.0, 0.3, 0.1, 1e-3)
 """Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all."""
 
+SHORTEST_WAVE = 1e-9
+"""Shortest wave of any surface: a few atoms [m]."""
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -34,7 +37,7 @@ class Estimate:
     Attributes
     ----------
     value : float
-        The number, for a surface without waves longer than those seen.
+        The number, for a surface without waves longer or shorter than those seen.
     low, high : float
         Ends of the interval; ``low`` is 0 for a positive number that is only bounded from above.
     """
@@ -64,8 +67,8 @@ class FitParameters:
         Logarithm of the wave number in the middle of the fit.
     is_line : bool
         Whether the spectrum is that along a line.
-    roll_off, q0_found : bool
-        Whether the spectrum shows a roll-off and its longest wave.
+    roll_off, q0_found, q1_found : bool
+        Whether the spectrum shows a roll-off, its longest and its shortest wave.
     """
 
     theta: Array
@@ -74,6 +77,7 @@ class FitParameters:
     is_line: bool
     roll_off: bool
     q0_found: bool
+    q1_found: bool
 
     def physical(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
         """Return ln h_rms, H, ln q_r, ln q_0 and ln q_1, with roll-off and q_0 moved by factors to longer waves."""
@@ -87,18 +91,23 @@ class FitParameters:
             level = float(shape.spectrum.density[0]) * math.exp(-2 * (1 + H) * max(self.centre - q_r, 0.0))
         return np.array([0.5 * (theta[0] - math.log(level)), H, q_r, q0, q1])
 
-    def surface(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> SelfAffine:
-        """Return the surface of the parameters, optionally with longer waves."""
+    def surface(self, theta: Array, corner: float = 1.0, lowest: float = 1.0, finest: bool = False) -> SelfAffine:
+        """Return the surface of the parameters, optionally with longer waves and all shorter ones."""
+        if finest:
+            theta = np.array([*theta[:-1], max(theta[-1], math.log(2 * math.pi / SHORTEST_WAVE))])
         log_h, H, q_r, q0, q1 = map(float, self.physical(theta, corner, lowest))
         return SelfAffine(math.exp(log_h), math.exp(q0), math.exp(q1), H, math.exp(max(q_r, q0)))
 
     @property
-    def longer(self) -> list[tuple[float, float]]:
-        """Factors on roll-off and q_0 of surfaces with longer waves that the scan cannot distinguish from this one."""
+    def unseen(self) -> list[tuple[float, float, bool]]:
+        """Factors on roll-off and q_0, and whether shorter waves go on, of surfaces that the scan does not exclude."""
+        shorter = (False,) if self.q1_found else (False, True)
         if self.q0_found:
-            return [(1.0, 1.0)]
-        # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
-        return [(1.0, factor) for factor in LONGER] if self.roll_off else list(itertools.product(LONGER, LONGER))
+            longer = [(1.0, 1.0)]
+        else:
+            # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
+            longer = [(1.0, factor) for factor in LONGER] if self.roll_off else list(itertools.product(LONGER, LONGER))
+        return [(*factors, finest) for factors in longer for finest in shorter]
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,25 +153,37 @@ class SelfAffineFit:
 
         Notes
         -----
-        The interval is that of a profile over the longest wave of the surface: from the smallest of ``value - 1.96 standard
-        errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on.  If neither a
-        roll-off nor the longest wave was seen, ``beta`` has no lower bound, and its interval begins at 0.  How often the
-        intervals hold the truth is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.
+        The interval is that of a profile over what both ends of the spectrum hide: from the smallest of ``value - 1.96
+        standard errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on, and with
+        the power law to its end at the shortest wave seen or at 1 nm.  If neither a roll-off nor the longest wave was seen,
+        ``beta`` has no lower bound, and its interval begins at 0.  How often the intervals hold the truth is in
+        docs/surfaces.md, from ``benchmarks/surface_errors.py``.
         """
         known = self._parameters
+        best = np.log(exponential_limit(known.surface(known.theta), gamma))
+        hidden = known.unseen
+        profile = np.array([np.log(exponential_limit(known.surface(known.theta, *each), gamma)) for each in hidden])
+        low, high = np.empty(2), np.empty(2)
+        for i in (0, 1):
+            for ends, at, sign in ((low, profile[:, i].argmin(), -1), (high, profile[:, i].argmax(), 1)):
 
-        def limit(theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
-            return np.log(exponential_limit(known.surface(theta, corner, lowest), gamma))
+                def limit(theta: Array, each: tuple[float, float, bool] = hidden[at]) -> Array:
+                    return np.log(exponential_limit(known.surface(theta, *each), gamma))
 
-        best = limit(known.theta)
-        turn = differences(limit, known.theta)
-        error = NORMAL * np.sqrt(np.diag(turn @ known.covariance @ turn.T))
-        profile = np.array([limit(known.theta, *factors) for factors in known.longer])
-        low, high = np.exp(profile.min(axis=0) - error), np.exp(profile.max(axis=0) + error)
+                turn = differences(limit, known.theta)[i]
+                ends[i] = math.exp(profile[at, i] + sign * NORMAL * math.sqrt(float(turn @ known.covariance @ turn)))
         if not (known.q0_found or known.roll_off):
             low[1] = 0.0
         alpha, beta = (Estimate(*map(float, row)) for row in zip(np.exp(best), low, high, strict=True))
         return alpha, beta
+
+    @property
+    def beta_of_shorter_waves(self) -> float:
+        """Largest beta over the value, if the power law goes on to shorter waves than were seen."""
+        known = self._parameters
+        ends = (exponential_limit(known.surface(known.theta, finest=finest))[1] for finest in (False, not known.q1_found))
+        seen, all_waves = ends
+        return all_waves / seen
 
     def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
         """Return the fitted spectrum, as a map or a line shows it.

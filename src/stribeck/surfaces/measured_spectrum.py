@@ -22,9 +22,9 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.contact_laws.spectrum import SelfAffine, positive
 from stribeck.quantities.results import Shown
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["MeasuredSpectrum", "Window", "line_density", "power_spectrum"]
@@ -123,6 +123,9 @@ def power_spectrum(
     Reliable are wavelengths of at most 1/2.5 of the scan's shorter side, and at least 4 points and the resolution.
     The sum of all modes is the mean square of the windowed heights to rounding (``test_surfaces.py``).
     """
+    checked_kind("topography", topography, Topography, "a Topography, as of read_topography(path)")
+    if resolution is not None:
+        resolution = positive("resolution", resolution)
     if topography.missing:
         raise InputError(f"{topography.source}: {topography.missing} points are missing; fill them first with repaired().")
     z = topography.heights

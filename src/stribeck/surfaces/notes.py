@@ -78,7 +78,8 @@ def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fi
     if "q1" not in fit.found:
         notes.append(
             f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
-            "slope, curvature and contact area would grow with finer sampling; alpha and beta would hardly change."
+            "slope, curvature and contact area would grow with finer sampling, and alpha would fall. beta would rise by up to "
+            f"{100 * (fit.beta_of_shorter_waves - 1):.2g} % if the power law goes on to 1 nm; the intervals allow for that."
         )
     if "noise" in fit.found:
         notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")

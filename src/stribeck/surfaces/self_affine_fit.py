@@ -22,7 +22,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, checked_kind
 from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, differences
 from stribeck.surfaces.measured_spectrum import LONGEST, MeasuredSpectrum, line_density
 
@@ -65,7 +65,9 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
     one; how often they cover is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.  Sharp cut-offs, looked for in
     maps only, are found to the width of a ring.
     """
-    rings = measured.reliable
+    rings = checked_kind(
+        "measured", measured, MeasuredSpectrum, "a MeasuredSpectrum, as of power_spectrum(topography)"
+    ).reliable
     data = _Data(measured.density[rings], measured.modes[rings], measured.inner[rings], measured.is_line)
     q = measured.wavenumber[rings]
     chosen = min(_candidates(data, q), key=lambda trial: trial.score, default=None)
@@ -252,7 +254,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
         if cuts[name]:
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
-    parameters = FitParameters(theta, covariance, centre, measured.is_line, trial.roll_off, cuts["q0"])
+    parameters = FitParameters(theta, covariance, centre, measured.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
     values, turn = parameters.physical(theta), differences(parameters.physical, theta)
     spread = covariance.copy()
     if trial.roll_off and not cuts["q0"]:

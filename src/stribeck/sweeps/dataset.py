@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.contacts.regime import friction_share, regime_of
 from stribeck.files.datasets import new_dataset
 from stribeck.files.results import Exported
-from stribeck.files.writing import PathLike
+from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.sweeps.rows import Rows, read_rows
@@ -184,5 +184,5 @@ def open_sweep(path: PathLike) -> Sweep:
     InputError
         If this is no store of a sweep, or it is damaged.
     """
-    store = Path(path)
+    store = path_of(path)
     return Sweep(store, describe_store(store), read_rows(store))

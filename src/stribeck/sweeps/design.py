@@ -24,6 +24,7 @@ from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.files.toml import read_toml
+from stribeck.files.writing import path_of
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.lazy import cached_property
@@ -142,7 +143,7 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
         on each line, for all of its problems.
     """
-    path = Path(path)
+    path = path_of(path)
     table = read_toml(path, "sweep file", "[vary]")
     problems: list[str] = []
     design = _checked(path, table, problems)

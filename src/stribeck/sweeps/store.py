@@ -22,7 +22,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.reading import read_bounded
-from stribeck.files.writing import MissingExtraError, PathLike, reason_of, sync_folder
+from stribeck.files.writing import MissingExtraError, PathLike, path_of, reason_of, sync_folder
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
@@ -75,7 +75,7 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
     MissingExtraError
         If zarr is not installed.
     """
-    store = Path(path)
+    store = path_of(path)
     zarr = _zarr()
     if store.exists():
         if store.is_dir() and not any(store.iterdir()):
@@ -164,7 +164,7 @@ def describe_store(path: PathLike) -> dict[str, Any]:
     InputError
         If this is no store of a sweep, or it is not what was written.
     """
-    store = Path(path)
+    store = path_of(path)
     try:
         # Whether this is a store at all, before what is in it is compared with its checksums.
         known = json.loads(read_bounded(store / "zarr.json", LARGEST_DESCRIPTION))["attributes"]["stribeck_sweep"]

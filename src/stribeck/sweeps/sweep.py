@@ -15,7 +15,7 @@ import numpy as np
 from stribeck.batches.order import chains_of
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.sweeps.chain import Chain
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
@@ -110,6 +110,7 @@ def sweep(
         raise InputError(
             f"workers = {workers} and scheduler = {show(scheduler)} are both given; a cluster has its own workers."
         )
+    checked_callback("on_progress", on_progress)
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
     store = create_or_open(out, plan)
     began = time.monotonic()

@@ -23,7 +23,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.given.uncertain import relative_error
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import NODE, films_of, states_by_inputs, states_of
 
@@ -94,6 +94,11 @@ def propagate(
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
     definition = check_definition(definition)
+    checked_kind("contact", contact, Contact, "a LineContact or PointContact")
+    checked_kind("transitions", transitions, (bool, np.bool_), "True or False")
+    checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}")
+    if not errors:
+        raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     sigmas = kept_errors(contact, errors)
     names = list(sigmas)
     draws = np.random.default_rng(SEED).standard_normal((SAMPLES, max(1, len(names))))

@@ -181,7 +181,7 @@ def _changed(inputs: Inputs, key: str, text: str) -> Inputs:
         return replace(inputs, rest=check_rest(text))
     if key == "rtol":
         rtol = read_number("rtol", text)
-        check_rtol(rtol)
+        rtol = check_rtol(rtol)
         return replace(inputs, rtol=rtol)
     known = ", ".join([*NAMES, "definition", "abscissa", "rtol", "title", "model", "rest", "pinmodel", "pin"])
     raise InputError(f"{show(key)[1:-1]} = {show(text)} is not a known key; known are {known}.")

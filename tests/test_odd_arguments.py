@@ -1,0 +1,138 @@
+"""Public functions given arguments of a wrong kind: they refuse with a sentence that names the argument, before any solve."""
+
+import inspect
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+
+ODD = (
+    None,
+    True,
+    "1 mm",
+    "typo",
+    float("nan"),
+    float("inf"),
+    0,
+    -1.0,
+    np.float64(0.5),
+    np.array(0.5),
+    [],
+    {},
+    object(),
+    1j,
+    b"x",
+)
+"""What people and programs pass by mistake."""
+
+GROUPS = sb.Groups(1e-4, 0.1, 1e-3)
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    roughness="1 um",
+    alpha=2,
+    beta=0.06,
+    boundary_friction=0.7,
+)
+SPECTRUM = sb.surfaces.SelfAffine(1e-6, 1e4, 1e6, 0.8)
+SCAN = sb.surfaces.synthetic_topography(SPECTRUM, (64, 64), 1e-6, 1)
+
+USUAL = {
+    "problem": GROUPS,
+    "groups": GROUPS,
+    "case": CONTACT,
+    "contact": CONTACT,
+    "topography": SCAN,
+    "roughness": SPECTRUM,
+    "spectrum": SPECTRUM,
+    "errors": {"load": 0.05},
+}
+"""Right values of arguments beside the odd one; others get text, which few take."""
+
+MADE_BY_PEOPLE = {
+    "Groups",
+    "LineContact",
+    "PointContact",
+    "GreenwoodTripp",
+    "GreenwoodWilliamson",
+    "FiniteSurface",
+    "FunctionLaw",
+    "TableLaw",
+    "SelfAffine",
+    "Spectrum",
+    "Topography",
+}
+SOLVES = {"solve", "stribeck_curve", "phase_diagram", "explain", "analyse", "Barus", "sweep", "solve_batch", "check"}
+"""Those that would begin to solve where an odd argument is one of the right ones; a test of their own is below."""
+
+
+def called():
+    """Return the public functions, and the classes that people make, by name."""
+    found = {}
+    for module in (sb, sb.surfaces, sb.atlas, sb.fluids, sb.solids):
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if inspect.isfunction(thing) or (
+                inspect.isclass(thing) and (name in MADE_BY_PEOPLE or module in (sb.fluids, sb.solids))
+            ):
+                found[f"{module.__name__}.{name}"] = thing
+    return {name: thing for name, thing in found.items() if name.rpartition(".")[2] not in SOLVES}
+
+
+def test_an_odd_argument_is_refused_in_a_sentence_or_taken_and_never_ends_in_the_depths(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    faults = []
+    for name, function in called().items():
+        parameters = inspect.signature(function).parameters.values()
+        named = [each for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
+        needed = [each.name for each in named if each.default is each.empty]
+        for parameter in named:
+            for odd in ODD:
+                usual = {each: GROUPS if name.endswith("Groups") else USUAL.get(each, "1e-3") for each in needed}
+                try:
+                    function(**usual | {parameter.name: odd})
+                except (sb.InputError, sb.SolveError) as problem:
+                    if "\n" in str(problem).strip() and len(str(problem)) > 2000 or not str(problem):
+                        faults.append(f"{name}({parameter.name}={odd!r}): {problem}")
+                except Exception as problem:
+                    faults.append(f"{name}({parameter.name}={odd!r}): {problem!r}")
+    assert not faults, "\n".join(faults)
+
+
+REFUSED = {
+    "batch of text": (lambda: sb.solve_batch(GROUPS, speed="1 mm/s"), "speed = '1 mm/s'"),
+    "progress": (lambda: sb.solve_batch(GROUPS, on_progress=True), "on_progress = True; it must be a function"),
+    "problem": (lambda: sb.phase_diagram("typo"), "problem = 'typo'; it must be a LineContact"),
+    "errors": (lambda: sb.propagate(CONTACT, None), "errors = None; it must be a mapping"),
+    "no errors": (lambda: sb.propagate(CONTACT, {}), "errors is empty"),
+    "resolution": (lambda: sb.surfaces.power_spectrum(SCAN, resolution=0), "resolution = 0 is not a positive number"),
+    "path": (lambda: sb.load_case(None), "path = None; it must be a path"),
+    "long name": (lambda: sb.load_case("x" * 300), "cannot be looked up"),
+    "long scan": (lambda: sb.surfaces.read_topography("x" * 300 + ".csv"), "cannot be looked up"),
+    "null byte": (lambda: sb.load_case("a\0b"), "a"),
+    "rtol": (lambda: sb.stribeck_curve(GROUPS, rtol=np.array([1e-3])), "rtol = array"),
+    "rtol of solve": (lambda: sb.solve(GROUPS, rtol="1e-3"), "rtol = '1e-3'; it must be a number"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_wrong_argument_is_named_with_its_value_and_what_is_allowed(case):
+    call, words = REFUSED[case]
+    with pytest.raises(sb.InputError) as caught:
+        call()
+    assert words in str(caught.value)
+
+
+def test_a_tolerance_may_be_a_number_of_numpy_and_a_name_of_an_observable_must_be_known():
+    curve = sb.stribeck_curve(GROUPS, points=3, rtol=np.float64(1e-2))
+    assert curve.rtol == 1e-2 and len(curve.observable("central_gap")) == 3
+    for name in ("typo", None, "groups", "_rtol", 3):
+        with pytest.raises(sb.InputError, match=r"it must be the name of a number of every solution, such as "):
+            curve.observable(name)
+    assert sb.explain(CONTACT, rtol=np.float32(1e-3)) is not None
+    grid = {"speed": [1e-5, 1e-4], "load": 0.1, "roughness": 1e-3}
+    assert sb.phase_diagram(**grid, rtol=np.float64(1e-2)) is not None
