@@ -104,7 +104,8 @@ def solve_batch(
         row = rows[i]
         if ended.fault is not None:
             raise ended.fault
-        outcome[row], done = ended.outcome, done + 1
+        ends = ended.solution if ended.outcome.ok and ended.solution is not None else ended
+        outcome[row], done = ends.outcome, done + 1
         if ended.solution is not None:
             estimate[row] = ended.solution.error_estimate
             for definition, pair in own.items():

@@ -400,8 +400,11 @@ def _point_by_point(
         for done, value in enumerate(values.tolist() if slow < fast else values[::-1].tolist(), 1):
             s = math.log(value)
             state = solver(s)
-            if state.outcome.ok:
-                found[value] = solution_of(solver.states[s], coordinate.contact_at(s))
+            solution = solution_of(solver.states[s], coordinate.contact_at(s)) if state.outcome.ok else None
+            if solution is not None and solution.outcome.ok:
+                found[value] = solution
+            elif solution is not None:
+                outcome = solution.outcome
             else:
                 outcome, failed = state.outcome, state
             if on_point is not None:

@@ -374,10 +374,13 @@ class PointSolution(BaseSolution):
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
     """Return a state of the solver as a solution."""
     groups, values = state.groups, PointObservables.of(state, contact)
+    outcome = state.outcome
+    if outcome.ok and values.drags_along(float(groups.slope())):
+        outcome = Outcome.REFINEMENT_LIMIT
     return PointSolution(
         groups=groups,
         contact=contact,
-        outcome=state.outcome,
+        outcome=outcome,
         notes=_notes(state, contact, values),
         rtol=state.rtol,
         law="dry contact" if groups.is_hertzian else contact_law(groups).name,
@@ -410,8 +413,15 @@ def finish_point(state: PointState, contact: Contact | None, on_failure: str = "
     """
     is_there = all(math.isfinite(state.values.get(name, math.nan)) for name in OBSERVABLES)
     solution = solution_of(state, contact) if is_there else None
-    if solution is not None and (state.outcome.ok or on_failure == "return"):
+    if solution is not None and (solution.outcome.ok or on_failure == "return"):
         return solution
+    if solution is not None and state.outcome.ok:
+        raise SolveError(
+            solution.outcome,
+            solution,
+            f"{describe(state.groups)}, of a ball: the film is too thick for the friction up to wetted_radius to be told; "
+            f"it is known to {solution.friction().error:.1g}. Give a larger wetted_radius, or none, or a smaller rtol.",
+        )
     reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {state.rtol:.1e}."
     raise SolveError(state.outcome, solution, f"{describe(state.groups)}, of a ball: {state.outcome.value}{reached}")
 

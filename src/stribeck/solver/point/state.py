@@ -197,6 +197,14 @@ class PointObservables:
                 found += far.poiseuille * speed + self._within(2, by_pressure)
         return float(found)
 
+    def drags_along(self, slope: float) -> bool:
+        """Return whether the friction up to a wetted radius acts along the motion, one surface being at rest: it is unresolved.
+
+        In a film much thicker than the parabola rises up to there it is a small difference.
+        """
+        is_told = self._wetted_radius is None or self._slide_to_roll != PURE_SLIDING or not self._groups.speed > 0
+        return not is_told and not self.integral(slope) > 0
+
     @property
     def sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
