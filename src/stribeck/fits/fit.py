@@ -31,7 +31,7 @@ from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.notes import notes_of, outcome_of
 from stribeck.fits.objective import Objective, objective
-from stribeck.fits.residuals import judge_residuals
+from stribeck.fits.residuals import excess_of, judge_residuals
 from stribeck.fits.result import Fit, FittedInput, unit_of
 from stribeck.fits.states.between import Between
 from stribeck.fits.states.parts import PartsOf
@@ -277,17 +277,19 @@ def _covariance(at: Minimum) -> tuple[Array, list[float], float]:
     freedom = max(n - effective_parameters(at), 1.0)
     # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
     weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
-    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else 1.0
+    given = at.objective.sigma is not None
+    excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
+    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
     values, vectors = np.linalg.eigh(weight * (J.T @ J) + P.T @ P)
-    known = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
-    inner = (vectors[:, known] / values[known]) @ vectors[:, known].T * inflation
-    lost = (np.abs(vectors[:, ~known]) > 1e-6).any(axis=1)
+    seen = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
+    inner = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T * inflation
+    lost = (np.abs(vectors[:, ~seen]) > 1e-6).any(axis=1)
     inner[lost], inner[:, lost] = np.nan, np.nan
     inner[lost, lost] = np.inf
     covariance = np.full((p, p), np.nan)
     covariance[np.ix_(free, free)] = inner
-    given = at.objective.sigma is not None
-    quantiles = [float((norm.ppf(0.5 + level / 2) if given else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
+    known = given and excess == 1
+    quantiles = [float((norm.ppf(0.5 + level / 2) if known else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
     return covariance, quantiles, inflation
 
 

@@ -196,7 +196,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         abscissa=against,
         values=np.array([rows[i][2] for i in order]),
         friction=np.array([rows[i][3] for i in order]),
-        error=np.array([rows[i][4] for i in order]) if "error" in columns or averaged is not None else None,
+        error=np.array([rows[i][4] for i in order]) if "error" in columns or (averaged and averaged.has_errors) else None,
         curve=np.array([of_row[i] for i in order]),
         curves=names,
         inputs=differing,

@@ -14,7 +14,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.fits.least_squares import MAD, Minimum
 
-__all__ = ["Quality", "judge_residuals"]
+__all__ = ["Quality", "excess_of", "judge_residuals"]
 
 DRAWS = 4000
 SEED = 20_261_121
@@ -56,6 +56,15 @@ class Quality:
     messages: tuple[str, ...]
 
 
+def excess_of(chi_squared: float, degrees_of_freedom: float) -> float:
+    """Return by how much the variance of residuals exceeds that of the errors given; 1 where chance may make it so."""
+    from scipy.stats import chi2
+
+    if chi2.sf(chi_squared, degrees_of_freedom) >= SIGNIFICANT:
+        return 1.0
+    return chi_squared / degrees_of_freedom
+
+
 def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Quality:
     """Return what the residuals of a fit say about it.
 
@@ -86,7 +95,7 @@ def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Q
             messages.append(
                 f"Residuals are larger than the errors given (chi squared {total:.3g} for {degrees_of_freedom:.3g} degrees "
                 f"of freedom, p = {probability:.1g}): the errors are too small by a factor {math.sqrt(ratio):.2g}, there "
-                "are outliers, or the model misses something."
+                "are outliers, or the model misses something. Intervals are wider by this factor."
             )
         elif probability > 1 - SIGNIFICANT / 10:
             messages.append(

@@ -1,21 +1,42 @@
-"""Repeats of a measured curve: averaged with the scatter as error, and run-in told apart."""
+"""Repeats of a measured curve: averaged with the error of their mean, and run-in told apart.
+
+Rows of one step, one after the other at one speed, are samples of one series: what the series remembers makes the error of its
+mean larger.  Passes over the same speeds are repeats: their scatter is an error, whatever a pass remembers.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+
+from stribeck._types import Array
 
 __all__ = ["Averaged", "Row", "average_repeats"]
 
 SAME_SPEED = 0.01
 """Relative difference up to which speeds are the same point."""
 
+LARGEST_NOISE = 0.02
+"""Noise of a speed that a drive may have; what changes by more is set."""
+
+DEVIATIONS = 4.0
+"""Standard deviations of the noise of a speed within which rows belong to one step."""
+
+STEADILY = 0.75
+"""Way from end to end over the way from row to row, from which a speed is ramped: 1 on a ramp, 1/2 for three rows of noise."""
+
 FEWEST = 3
 """Repeats from which their scatter is an error, and rows from which a setting is one."""
+
+FEWEST_BLOCKS = 8
+"""Blocks of a series from which the correlation of neighbours is estimated."""
+
+RARE = 0.01
+"""Probability below which the scatter of one step is its own and not that of all."""
 
 RUN_IN, CLEAR = 0.03, 3.0
 """Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in."""
@@ -30,29 +51,43 @@ class Averaged:
     Attributes
     ----------
     rows : list of tuple
-        The rows: curve, number, speed, friction, its standard error, inputs.
+        The rows: curve, number, speed, friction, its standard error, inputs; all of them where nothing repeats.
     notes : tuple of str
-        What was put together and left out.
+        What was put together and left out, or why not.
     run_in : tuple of int
         Numbers of the rows that look like run-in.
+    has_errors : bool
+        Whether the rows are means with their errors.
     """
 
     rows: list[Row]
     notes: tuple[str, ...]
     run_in: tuple[int, ...]
+    has_errors: bool = True
 
 
-def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged | None:
-    r"""Average repeats at the same speed of a curve: their mean and its standard error.
+@dataclass(frozen=True)
+class _Step:
+    """Rows one after the other at one speed."""
 
-    .. math:: \bar\mu = \frac{1}{n} \sum_i \mu_i, \qquad s = \bar\mu \, \sigma / n^{1/2}
+    rows: list[Row] = field(repr=False)
+    run: str
 
-    with the relative scatter :math:`\sigma` of single rows about their means, pooled over all speeds.
+    @property
+    def mean(self) -> Row:
+        """The means of its rows."""
+        name, number, _, _, error, inputs = self.rows[0]
+        speed = math.exp(float(np.mean([math.log(row[2]) for row in self.rows])))
+        return name, number, speed, float(np.mean([row[3] for row in self.rows])), error, inputs
+
+
+def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged:
+    r"""Average rows at the same speed of a curve: their mean and its standard error.
 
     Parameters
     ----------
     rows : sequence of tuple
-        Curve, number, speed, friction, error and inputs of each row.
+        Curve, number, speed, friction, error and inputs of each row, in the order in which they were measured.
     runs : sequence of str
         The run of each row; all empty if the file has none.
     keep_run_in : bool
@@ -60,39 +95,213 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
 
     Returns
     -------
-    Averaged or None
-        None where fewer than three rows share a speed throughout.
+    Averaged
+        Means, and what was left out; the rows as they are where fewer than three share a speed.
+
+    Notes
+    -----
+    Deviations of rows from the mean of their step, over that mean, are taken for a series with autocorrelations
+    :math:`\rho^k`, alike in all steps: :math:`\rho` is that whose expected correlation of neighbours about the mean of so
+    short a step is the one found, and the variance is freed of the part that the means take. The largest error over series of
+    single rows and of blocks of 2, 4, ... rows counts (H. Flyvbjerg and H. Petersen, J. Chem. Phys. 91 (1989) 461), so that
+    white noise hides no slow change. Memory longer than a step shows only in the scatter of passes: where a speed is passed
+    more than once that gives an error too, and the larger one holds.
     """
-    marked, sentences = _run_in(rows, _counted(rows, runs))
-    kept = [row for row in rows if keep_run_in or row[1] not in marked]
-    sizes = [len(group) for group in _at_same_speed(rows).values()]
-    groups = _at_same_speed(kept)
-    if not groups or np.median(sizes) < FEWEST:
-        return None
-    freedom = sum(len(group) - 1 for group in groups.values())
-    squares = 0.0
-    means = {}
-    for key, group in groups.items():
-        mean = sum(row[3] for row in group) / len(group)
-        means[key] = mean
-        squares += sum((row[3] / mean - 1) ** 2 for row in group)
-    scatter = math.sqrt(squares / freedom) if freedom else 0.0
-    made = [
-        (
-            group[0][0],
-            group[0][1],
-            math.exp(sum(math.log(row[2]) for row in group) / len(group)),
-            means[key],
-            max(scatter, 1e-6) * means[key] / math.sqrt(len(group)),
-            group[0][5],
+    steps, starting, ramped = _steps(rows, runs)
+    means = [step.mean for step in steps]
+    marked, sentences = _run_in(means, _counted(means, [step.run for step in steps]))
+    numbers = {row[1] for step in steps for row in step.rows if step.rows[0][1] in marked}
+    kept = [step for step in steps if keep_run_in or step.rows[0][1] not in marked]
+    groups = _at_same_speed(kept, _tolerance(rows, runs))
+    counts = [sum(len(step.rows) for step in group) for group in groups]
+    at_all = [sum(len(step.rows) for step in group) for group in _at_same_speed(steps, _tolerance(rows, runs))]
+    if not groups or 2 * sum(count for count in at_all if count >= FEWEST) < sum(at_all):
+        why = (
+            "the speed changes steadily, without steps"
+            if ramped
+            else f"fewer than {FEWEST} rows share a speed at most speeds of a curve"
         )
-        for key, group in groups.items()
-    ]
-    sentences.append(
-        f"{len(kept)} rows at {len(made)} speeds put together: the scatter of repeats, {100 * scatter:.2g} % of a single row, "
-        "became the error of each mean; repeats = false in [fit] keeps all rows."
+        return Averaged(list(rows), (f"Rows were not put together: {why}.",), (), False)
+    errors, said = _errors(groups)
+    made = [_together(group, error) for group, error in zip(groups, errors, strict=True)]
+    if starting:
+        listed = ", ".join(map(str, starting[:20])) + (", ..." if len(starting) > 20 else "")
+        many = len(starting) != 1
+        of = "their steps" if many else "its step"
+        sentences.append(f"{len(starting)} row{'s' * many} of other speeds than {of}, as while starting, left out: {listed}.")
+    sentences.append(f"{sum(counts)} rows at {len(made)} speeds put together; {said} repeats = false in [fit] keeps all rows.")
+    return Averaged(made, tuple(sentences), tuple(sorted(numbers)))
+
+
+def _together(group: Sequence[_Step], error: float) -> Row:
+    """Return the mean of steps at one speed, each weighed by its rows."""
+    weights = [len(step.rows) for step in group]
+    name, number, _, _, _, inputs = group[0].mean
+    speed = math.exp(float(np.average([math.log(step.mean[2]) for step in group], weights=weights)))
+    mean = float(np.average([step.mean[3] for step in group], weights=weights))
+    return name, number, speed, mean, max(error, 1e-6) * mean, inputs
+
+
+def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
+    """Return the relative standard errors of the means of steps at one speed, and what they are from."""
+    series = [np.array([row[3] for row in step.rows]) / step.mean[3] - 1 for group in groups for step in group]
+    within = iter(_errors_of_means(series))
+    own, spread, freedom = [], 0.0, 0
+    for group in groups:
+        sizes = np.array([len(step.rows) for step in group], float)
+        weights = sizes / sizes.sum()
+        each = np.array([next(within) for _ in group])
+        own.append(float(np.sqrt(weights**2 @ each**2)))
+        ratios = np.array([step.mean[3] for step in group])
+        ratios = ratios / (weights @ ratios) - 1
+        spread += float((sizes / sizes.mean()) @ ratios**2)
+        freedom += len(group) - 1
+    passes = math.sqrt(spread / freedom) if freedom >= FEWEST - 1 else 0.0
+    found, between = [], 0
+    for group, error in zip(groups, own, strict=True):
+        sizes = np.array([len(step.rows) for step in group], float)
+        scatter = passes / math.sqrt(len(group)) if len(group) > 1 else 0.0
+        between += scatter >= error
+        found.append(max(error, scatter))
+    longest = max(map(len, series))
+    if 2 * between >= len(groups) or longest == 1:
+        scatter_of, single = ("repeats", "row") if longest == 1 else ("passes", "pass")
+        return found, f"the scatter of {scatter_of}, {100 * passes:.2g} % of a single {single}, became the error of each mean;"
+    rows = float(np.mean([len(each) for each in series]))
+    alone = math.sqrt(sum(float(each @ each) for each in series) / max(sum(len(each) - 1 for each in series), 1))
+    typical = float(np.median(found))
+    count = min(rows, max(1.0, (alone / typical) ** 2)) if typical > 0 else rows
+    return found, (
+        f"the error of a mean is that of {count:.2g} independent rows in {rows:.3g}, by the correlation of neighbouring rows;"
     )
-    return Averaged(made, tuple(sentences), tuple(sorted(marked)))
+
+
+def _errors_of_means(series: Sequence[Array]) -> list[float]:
+    """Return the standard errors of the means of series that share variance and correlation, given their deviations."""
+    best = [0.0] * len(series)
+    block = 1
+    while True:
+        blocks = [each[: len(each) // block * block].reshape(-1, block).mean(axis=1) for each in series]
+        blocks = [each - each.mean() if len(each) else each for each in blocks]
+        if block > 1 and np.median([len(each) for each in blocks]) < FEWEST_BLOCKS:
+            return best
+        others = [[*blocks[:i], *blocks[i + 1 :]] for i in range(len(blocks))]
+        own = [
+            len(each) >= FEWEST_BLOCKS and _is_its_own(each, _memory(rest)) for each, rest in zip(blocks, others, strict=True)
+        ]
+        common = _memory([each for each, apart in zip(blocks, own, strict=True) if not apart])
+        for i, (each, apart) in enumerate(zip(blocks, own, strict=True)):
+            error = _error_of_mean(max(1.0, len(series[i]) / block), *common)
+            best[i] = max(best[i], error, _error_of_mean(len(each), *_memory([each])) if apart else 0.0)
+        block *= 2
+
+
+def _memory(series: Sequence[Array]) -> tuple[float, float]:
+    """Return variance and correlation of neighbours of series about their means, without the bias of these means."""
+    long = [each for each in series if len(each) >= FEWEST]
+    squares = sum(float(each @ each) for each in series)
+    freedom = sum(max(len(each) - 1, 0) for each in series)
+    if not squares or not freedom:
+        return 0.0, 0.0
+    if not long:
+        return squares / freedom, 0.0
+    rows = float(np.mean([len(each) for each in long]))
+    products = sum(float(each[1:] @ each[:-1]) for each in long)
+    found = products / sum(float(each @ each) for each in long)
+    # A step that never forgets is a single row.
+    low, high = 0.0, (rows - 1) / (rows + 1)
+    for _ in range(40):
+        rho = 0.5 * (low + high)
+        low, high = (rho, high) if _expected(rows, rho) < found else (low, rho)
+    expected = sum(len(each) * (1 - _share(len(each), rho)) for each in series if len(each) > 1)
+    return float(squares / expected), rho
+
+
+def _expected(rows: float, rho: float) -> float:
+    """Return the expected correlation of neighbours about the mean of a series."""
+    share, first = _share(rows, rho), (1 - rho**rows) / (rows * (1 - rho))
+    return float(((rows - 1) * rho - (rows + 1) * share + 2 * first) / (rows * (1 - share)))
+
+
+def _share(rows: float, rho: float) -> float:
+    """Return the variance of the mean of a series over that of its rows."""
+    if rows <= 1:
+        return 1.0
+    sums = (1 + rho) / (1 - rho) - 2 * rho * (1 - rho**rows) / (rows * (1 - rho) ** 2)
+    return float(min(1.0, sums / rows))
+
+
+def _error_of_mean(rows: float, variance: float, rho: float) -> float:
+    return math.sqrt(variance * _share(rows, rho))
+
+
+def _is_its_own(series: Array, common: tuple[float, float]) -> bool:
+    """Return whether a series scatters or remembers more than chance lets one of the common kind."""
+    from scipy.stats import chi2
+
+    rows, alone = len(series), _memory([series])
+    freedom = max(1.0, 1 / _share(rows, common[1]) - 1)
+    scatters = alone[0] > common[0] * float(chi2.ppf(1 - RARE, freedom)) / freedom
+    return bool(scatters) or alone[1] - common[1] > 2 / math.sqrt(rows)
+
+
+def _steps(rows: Sequence[Row], runs: Sequence[str]) -> tuple[list[_Step], list[int], bool]:
+    """Return the steps, the numbers of rows that are of none, and whether the speed is ramped all along."""
+    tolerance = _tolerance(rows, runs)
+    steps, starting = list[_Step](), list[int]()
+    ramped = False
+    for mine in _blocks(rows, runs).values():
+        found = list[_Step]()
+        for row, run in mine:
+            speeds = [each[2] for each in found[-1].rows] if found and found[-1].run == run else []
+            if speeds and abs(math.log(row[2] / float(np.median(speeds)))) <= tolerance:
+                found[-1].rows.append(row)
+            else:
+                found.append(_Step([row], run))
+        if _is_ramp(found):
+            ramped = True
+            steps += [_Step([row], run) for row, run in mine]
+            continue
+        for run in dict.fromkeys(step.run for step in found):
+            of_run = [step for step in found if step.run == run]
+            long = [step for step in of_run if len(step.rows) >= FEWEST]
+            if 2 * sum(len(step.rows) for step in long) > sum(len(step.rows) for step in of_run):
+                starting += [row[1] for step in of_run if len(step.rows) < FEWEST for row in step.rows]
+                of_run = long
+            steps += of_run
+    return steps, sorted(starting), ramped
+
+
+def _blocks(rows: Sequence[Row], runs: Sequence[str]) -> dict[Any, list[tuple[Row, str]]]:
+    """Return the rows of each curve with their runs, as they were measured."""
+    found: dict[Any, list[tuple[Row, str]]] = {}
+    for row, run in zip(rows, runs, strict=True):
+        found.setdefault(_curve_of(row), []).append((row, run))
+    return found
+
+
+def _tolerance(rows: Sequence[Row], runs: Sequence[str]) -> float:
+    """Return the difference of logarithms up to which speeds are the same: by the noise where that is larger."""
+    changes, turns = list[float](), list[float]()
+    for mine in _blocks(rows, runs).values():
+        steps = np.diff(np.log([row[2] for row, _ in mine]))
+        changes += np.abs(steps).tolist()
+        turns += (steps[1:] * steps[:-1] < 0).tolist()
+    if not turns or np.mean(turns) < 0.5:
+        return SAME_SPEED
+    noise = float(np.median(changes)) / 0.954  # the median size of differences of two normal numbers
+    return max(SAME_SPEED, DEVIATIONS * noise) if noise < LARGEST_NOISE else SAME_SPEED
+
+
+def _is_ramp(steps: Sequence[_Step]) -> bool:
+    """Return whether the speed changes in one direction within what look like steps."""
+    way, path = 0.0, 0.0
+    for step in steps:
+        if len(step.rows) >= FEWEST:
+            speeds = np.log([row[2] for row in step.rows])
+            way += abs(float(speeds[-1] - speeds[0]))
+            path += float(np.abs(np.diff(speeds)).sum())
+    return way > STEADILY * path
 
 
 def _curve_of(row: Row) -> tuple[str, tuple[tuple[str, float], ...]]:
@@ -100,13 +309,16 @@ def _curve_of(row: Row) -> tuple[str, tuple[tuple[str, float], ...]]:
     return row[0], tuple(sorted(row[5].items()))
 
 
-def _at_same_speed(rows: Sequence[Row]) -> dict[Any, list[Row]]:
-    """Return rows of the same curve, inputs and speed together."""
-    groups: dict[Any, list[Row]] = {}
-    for row in sorted(rows, key=lambda row: (row[0], sorted(row[5].items()), row[2])):
-        key = _curve_of(row)
-        at = [k for k in groups if k[0] == key and abs(k[1] / row[2] - 1) <= SAME_SPEED]
-        groups.setdefault(at[-1] if at else (key, row[2]), []).append(row)
+def _at_same_speed(steps: Sequence[_Step], tolerance: float) -> list[list[_Step]]:
+    """Return steps of the same curve and speed together."""
+    groups: list[list[_Step]] = []
+    for step in sorted(steps, key=lambda step: (step.mean[0], sorted(step.mean[5].items()), step.mean[2])):
+        first = groups[-1][0].mean if groups else None
+        same = first is not None and _curve_of(first) == _curve_of(step.mean) and step.mean[2] / first[2] <= 1 + tolerance
+        if same:
+            groups[-1].append(step)
+        else:
+            groups.append([step])
     return groups
 
 

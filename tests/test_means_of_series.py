@@ -1,0 +1,124 @@
+"""Means of time series and repeats: their errors hold for correlated samples, and what is left out is named."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+
+SPEEDS = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0])  # [mm/s]
+FILE = Path(__file__).parent / "data" / "03_time_series_steps_with_startup.csv"
+
+
+def curve(speed):
+    return 0.55 / (1 + (speed / 8) ** 0.9) + 0.02 + 0.0006 * speed**0.6
+
+
+@pytest.fixture
+def read(tmp_path):
+    def reader(rows, header="step,speed [mm/s],COF", **settings):
+        path = tmp_path / "series.csv"
+        path.write_text("\n".join([header, *(",".join(f"{each:.7g}" for each in row) for row in rows)]))
+        return sb.read_measurements(path, sb.FitSettings(**settings))
+
+    return reader
+
+
+def noise(rng, n, memory):
+    found = [rng.normal()]
+    for _ in range(n - 1):
+        found.append(memory * found[-1] + (1 - memory**2) ** 0.5 * rng.normal())
+    return np.array(found)
+
+
+def series(rng, memory, n=40, starting=2, speeds=SPEEDS, in_speed=0.002):
+    """Return rows of steps that begin below their speed."""
+    rows = []
+    for step, speed in enumerate(speeds, 1):
+        for i, each in enumerate(noise(rng, n, memory)):
+            there = speed * (0.55 + 0.2 * i) if i < starting else speed * (1 + in_speed * rng.normal())
+            rows.append((step, there, curve(speed) * (1 + 0.02 * each)))
+    return rows
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("settings", [{}, {"repeats": True}])
+def test_a_series_of_steps_becomes_means_without_its_rows_of_starting(settings):
+    found = sb.read_measurements(FILE, sb.FitSettings(**settings))
+    assert 1e3 * found.values == pytest.approx(np.geomspace(0.1, 300, 8), rel=3e-3)
+    assert any("16 rows" in note and "left out: 2, 3, 42, 43" in note for note in found.notes)
+    assert np.all((0.01 < found.error / found.friction) & (found.error / found.friction < 0.03))
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
+def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(read, memory):
+    rng = np.random.default_rng(7)
+    misses = []
+    for _ in range(25):  # of 8 steps each
+        found = read(series(rng, memory))
+        assert len(found) == 8
+        misses += ((found.friction - curve(1e3 * found.values)) / found.error).tolist()
+    # The rms of 200 normal numbers is within 0.85 and 1.15 by three of its standard deviations; errors that are estimated
+    # from 38 samples of memory 0.9 widen that by a third.
+    assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
+
+
+@pytest.mark.quick
+def test_friction_that_drifts_in_a_step_has_no_narrow_error(read):
+    rows = series(np.random.default_rng(1), 0.0)
+    drifting = np.linspace(0.168, 0.209, 40)
+    rows[160:200] = [(step, speed, mu) for (step, speed, _), mu in zip(rows[160:200], drifting, strict=True)]
+    found = read(rows)
+    assert 0.006 < found.error[4] < 0.03
+    assert np.all(found.error[:4] / found.friction[:4] < 0.01)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("in_speed", [0.0, 0.002, 0.01])
+def test_noise_of_a_speed_splits_no_step(read, in_speed):
+    assert len(read(series(np.random.default_rng(3), 0.5, in_speed=in_speed))) == 8
+
+
+@pytest.mark.quick
+def test_a_ramp_has_no_steps_and_near_speeds_stay_apart(read):
+    ramp = [(1, 0.1 * 1.005**i, curve(0.1 * 1.005**i)) for i in range(800)]
+    found = read(ramp)
+    assert len(found) == 800 and found.error is None
+    assert any("changes steadily" in note for note in found.notes)
+    speeds = np.geomspace(1, 3, 24)  # 5 % apart, four times
+    passes = [(k, u, curve(u) * (1 + 0.01 * np.sin(7 * k + u))) for k in range(4) for u in speeds]
+    assert len(read(passes)) == 24
+
+
+@pytest.mark.quick
+def test_what_differs_between_passes_is_in_the_error(read):
+    rng, rows = np.random.default_rng(5), []
+    for k, speeds in enumerate((SPEEDS, SPEEDS[::-1])):
+        for step, speed, mu in series(rng, 0.0, n=20, starting=0, speeds=speeds):
+            rows.append((step + 8 * k, speed, mu * (1 + 0.1 * k)))
+    found = read(rows)
+    assert len(found) == 8
+    assert found.error / found.friction == pytest.approx(np.full(8, 0.05), rel=0.3)
+
+
+def test_errors_that_are_too_small_do_not_make_intervals_narrow(read):
+    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+    solved = sb.stribeck_curve(contact, speed=contact.speed * np.geomspace(1e-3, 10, 10), rtol=1e-3)
+    scatter = 1 + 0.03 * np.random.default_rng(2).normal(size=10)
+
+    def width(error):
+        data = sb.Measurements(
+            abscissa="speed",
+            values=solved.values,
+            friction=solved.friction * scatter,
+            error=None if error is None else error * solved.friction,
+            curve=np.zeros(10, dtype=int),
+            curves=("data",),
+            inputs=({},),
+            rows=np.arange(10),
+        )
+        low, high = sb.fit(data, contact, free=["boundary_friction"], intervals=False)["boundary_friction"].interval_95
+        return high / low - 1
+
+    assert width(0.001) == pytest.approx(width(None), rel=0.2)
