@@ -4,6 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
+from command_line import PDMS, call
 
 import stribeck as sb
 
@@ -136,3 +137,34 @@ def test_a_tolerance_may_be_a_number_of_numpy_and_a_name_of_an_observable_must_b
     assert sb.explain(CONTACT, rtol=np.float32(1e-3)) is not None
     grid = {"speed": [1e-5, 1e-4], "load": 0.1, "roughness": 1e-3}
     assert sb.phase_diagram(**grid, rtol=np.float64(1e-2)) is not None
+
+
+LONG = "x" * 300
+
+
+@pytest.mark.parametrize(
+    "tokens",
+    [
+        ("check", f"{LONG}.toml"),
+        ("surface", f"{LONG}.csv"),
+        ("fit", f"{LONG}.csv", PDMS),
+        ("fit", PDMS, f"{LONG}.toml"),
+        ("new", f"{LONG}.toml"),
+        ("curve", PDMS, "--points", "3", "-o", f"{LONG}.nc"),
+        ("curve", PDMS, "--points", "3", "--plot", f"{LONG}.png"),
+        ("sweep", f"{LONG}.toml", "--out", "store"),
+    ],
+)
+def test_a_name_of_300_letters_is_refused_by_every_command(capsys, tokens):
+    answer = call(capsys, *tokens)
+    assert answer.code in (1, 2) and "File name too long" in answer.err
+    assert "report it" not in answer.err
+
+
+def test_a_number_of_5000_digits_is_refused_and_not_reported(capsys, tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text(PDMS.read_text().replace("[contact]", f"[contact]\nbeta = 0x{'f' * 5000}", 1))
+    answer = call(capsys, "check", file)
+    assert answer.code == 2 and "report it" not in answer.err
+    with pytest.raises(sb.InputError, match="too long to be written"):
+        sb.solve(CONTACT, rtol=1 << 20_000)

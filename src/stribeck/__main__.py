@@ -30,7 +30,10 @@ def main() -> int:
             "another machine.",
             FAILED,
         )
-    from stribeck.cli import main as run
+    try:
+        from stribeck.cli import main as run
+    except OSError as problem:  # no file handles, or a disk that cannot be read
+        return _told(f"The package could not be loaded ({problem.strerror or problem}).", FAILED)
 
     if heeds:
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -28,8 +28,9 @@ from stribeck.cli.experiments import compare_command, next_command
 from stribeck.cli.sheets import new_command, report_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
+from stribeck.files.writing import reason_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
 HELP = """Friction and film thickness of lubricated rough contacts, from a TOML file with units.
 
@@ -40,6 +41,9 @@ Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 
 
 NARROWEST = 20
 """Smallest plausible width of a terminal."""
+
+MOST_DIGITS = 4
+"""Digits of the largest plausible width."""
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -98,6 +102,9 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         return complain(f"The output could not be printed ({problem}); the requested files were written.", FAILED)
     except MemoryError:
         return complain("Out of memory; ask for fewer points or a larger rtol.", FAILED)
+    except OSError as problem:  # a name of 300 letters, no file handles, a full disk
+        where = f" of {show(os.fsdecode(problem.filename))}" if isinstance(problem.filename, str | bytes) else ""
+        return complain(f"The system refused the use{where}: {reason_of(problem)}.", FAILED)
     except sb.SolveError as problem:
         if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
             return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
@@ -179,8 +186,9 @@ def _command(tokens: Sequence[str]) -> str:
 def _adapt_process() -> None:
     """Set what belongs to a process of our own: letters that any terminal takes, warnings only on demand."""
     prepare_streams()
-    if not os.environ.get("COLUMNS", "80").isdecimal() or int(os.environ.get("COLUMNS", "80")) < NARROWEST:
-        del os.environ["COLUMNS"]  # in no columns nothing is shown, and the help never ends
+    columns = os.environ.get("COLUMNS", "80")
+    if not (columns.isdecimal() and len(columns) <= MOST_DIGITS and int(columns) >= NARROWEST):
+        del os.environ["COLUMNS"]  # in no columns nothing is shown, and the help never ends; in 1e9 it fills the memory
     os.environ["MPLBACKEND"] = (
         "agg"  # pictures need no display; matplotlib refuses to be imported with a name that it does not know
     )

@@ -150,7 +150,7 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
         check_writable(path, suffixes, force=force)  # the file may have come to exist meanwhile
         os.replace(temporary, target)
         sync_folder(target.parent)
-    except OSError as problem:
+    except (OSError, UnicodeEncodeError) as problem:  # libraries take no name that is not UTF-8
         raise InputError(f"{path} could not be written ({reason_of(problem, temporary)}); it is unchanged.") from None
     finally:
         temporary.unlink(missing_ok=True)

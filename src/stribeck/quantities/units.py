@@ -248,7 +248,10 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
 
 def show(value: Any) -> str:
     """Return ``repr(value)`` on one line and short enough for a sentence."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        text = f"a {type(value).__name__} that is too long to be written"
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -355,7 +355,8 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
 def check_rtol(rtol: Any) -> float:
     """Return a tolerance, a number of any type, as a float; refuse what is no number or out of range."""
     low, high = RTOL_RANGE
-    if isinstance(rtol, bool) or not isinstance(rtol, Real) or not low <= float(rtol) <= high:
+    is_real = isinstance(rtol, Real) and not isinstance(rtol, bool)
+    if not is_real or not low <= rtol <= high:
         raise InputError(f"rtol = {show(rtol)}; it must be a number from {low:g}, the limit of double precision, to {high:g}.")
     return float(rtol)
 
