@@ -419,8 +419,8 @@ def finish_point(state: PointState, contact: Contact | None, on_failure: str = "
         raise SolveError(
             solution.outcome,
             solution,
-            f"{describe(state.groups)}, of a ball: the film is too thick for the friction up to wetted_radius to be told; "
-            f"it is known to {solution.friction().error:.1g}. Give a larger wetted_radius, or none, or a smaller rtol.",
+            f"{describe(state.groups)}, of a ball: the film is too thick for the friction up to wetted_radius to be told; it "
+            f"is known to {solution.friction().error:.1g}. Give a larger wetted_radius, or none, or a smaller rtol.",
         )
     reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {state.rtol:.1e}."
     raise SolveError(state.outcome, solution, f"{describe(state.groups)}, of a ball: {state.outcome.value}{reached}")
