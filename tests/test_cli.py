@@ -703,6 +703,22 @@ def test_a_second_ctrl_c_throws_no_point_of_a_ball_away(tmp_path):
     assert "\n# complete: 0\n" in file.read_text()
 
 
+def background():
+    """Begin as a background job of a script, which ignores Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+LONG = "curve", PDMS, "--points", "100000", "--rtol", "1e-10", "--cavitation", "exit"
+
+
+def test_a_limit_of_time_holds_in_a_background_job():
+    command = [SCRIPT, *map(str, LONG), "--time-limit", "0.2 s"]
+    ended = subprocess.run(
+        command, env=environment(), preexec_fn=background, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert ended.returncode in (2, 130) and "--time-limit" in ended.stderr
+
+
 def test_a_limit_of_time_keeps_the_finished_points_and_says_so(capsys, tmp_path):
     file = tmp_path / "curve.csv"
     many = "--points", "100000", "--rtol", "1e-10", "--cavitation", "exit"

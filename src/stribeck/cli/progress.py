@@ -45,9 +45,9 @@ class Progress:
             raise KeyboardInterrupt
 
     def time_out(self) -> None:
-        """Stop as Ctrl-C does."""
+        """Stop as Ctrl-C does, also in a background job of a shell, which ignores Ctrl-C."""
         self.timed_out = True
-        _thread.interrupt_main()
+        _thread.interrupt_main(signal.SIGTERM)
 
 
 @contextmanager

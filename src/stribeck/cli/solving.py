@@ -157,7 +157,7 @@ def curve_command(
 
     Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
 
-    Ctrl-C, or the end of --time-limit, writes the finished points, marked as incomplete, and exits with code 130.
+    Ctrl-C, SIGTERM or the end of --time-limit writes the finished points, marked as incomplete, and exits with code 130.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def curve_command(
         _say_unusual(boundary_friction, slide_to_roll)
     title = loaded.title if loaded else ""
     seconds = None if time_limit is None else read_duration(time_limit, "--time-limit")
-    with interruptible(time_limit=seconds) as progress:
+    with interruptible(sigterm=True, time_limit=seconds) as progress:
         curve = sb.stribeck_curve(on_point=progress, **arguments)
         progress.writes = True
         if curve.outcome is Outcome.ROUNDING:

@@ -374,8 +374,10 @@ def operators_of(found: Resolution, mesh: PolarMesh | None = None) -> Operators:
         if found in _kept:
             _kept.move_to_end(found)
             return _kept[found]
-        operators = Operators(found.mesh if mesh is None else mesh, found.model.solid)
-        _kept[found] = operators
+    # They are made without the lock: a process that is forked meanwhile would find it taken for good.
+    operators = Operators(found.mesh if mesh is None else mesh, found.model.solid)
+    with _lock:
+        operators = _kept.setdefault(found, operators)
         while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > KEPT_BYTES:
             _kept.popitem(last=False)
         return operators
