@@ -198,7 +198,7 @@ class PointObservables:
         return float(found)
 
     def drags_along(self, slope: float) -> bool:
-        """Return whether the friction up to a wetted radius acts along the motion, one surface being at rest: it is unresolved.
+        """Return whether the friction up to a wetted radius acts along the motion beside a wall at rest: it is unresolved.
 
         In a film much thicker than the parabola rises up to there it is a small difference.
         """
