@@ -136,6 +136,8 @@ class Landmarks:
         It is read off the path where the errors of that are at most ``accepted``, else off a state.
         """
         places, values = self._known(function)
+        if not len(values):  # friction beyond double precision along the whole path
+            return None
         i = int(np.argmin(np.abs(values)))
         if not 0 < i < len(places) - 1:
             return None
