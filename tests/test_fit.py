@@ -358,7 +358,7 @@ def test_an_input_that_the_abscissa_holds_is_refused():
 @pytest.fixture(scope="module")
 def of_asperities():
     """Return friction with 2 % of noise of a contact with Greenwood and Tripp's law, and the contact."""
-    contact = TRUE.replace(law=sb.GreenwoodTripp())
+    contact = TRUE.replace(law=sb.GreenwoodTripp(), alpha=1.0)
     return noisy(1, 0.02, contact, low=1e-5, rows=32), contact
 
 

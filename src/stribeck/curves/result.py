@@ -339,7 +339,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         """What to know before using the numbers; each sentence names the points, or the minimum, that it concerns."""
         found: dict[str, list[tuple[float, str]]] = {}
         for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
-            for note in solution.notes:
+            for note in solution.notes_for(self.boundary_friction, self.beta):
                 # A note holds numbers that differ from point to point; those of the first point are kept.
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
                 found.setdefault(kind, []).append((value, note))

@@ -24,6 +24,7 @@ from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.solve import SolveError
 from stribeck.uncertainty.propagate import RTOLS, kept_errors, moving_with
+from stribeck.uncertainty.result import exact_inputs
 
 __all__ = ["with_intervals"]
 
@@ -78,7 +79,7 @@ def with_intervals(
         return replace(mark, interval_95=(mark.factor / reach, mark.factor * reach))
 
     found = (replace(each, less=known(each.name, each.less), more=known(each.name, each.more)) for each in margins.margins)
-    return replace(margins, margins=tuple(found))
+    return replace(margins, margins=tuple(found), counted=exact_inputs(contact, sigmas))
 
 
 def _sigma(

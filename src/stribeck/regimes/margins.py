@@ -45,12 +45,15 @@ class RegimeMargins:
         What to know: why an input leads nowhere, and whether the contact stands at a threshold.
     geometry : {"line", "point"}
         That of the contact.
+    counted : str
+        Which errors the intervals count and which inputs count as exact, a sentence; empty without intervals.
     """
 
     regime: Regime
     margins: tuple[Margin, ...]
     notes: tuple[str, ...]
     geometry: Geometry = "line"
+    counted: str = ""
 
     @property
     def targets(self) -> tuple[Regime, ...]:

@@ -35,7 +35,7 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
             yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
             continue
         rest = f"; not reachable by changing {', '.join(barren)}" if barren else ""
-        yield f"To reach {regime} lubrication: {', or '.join(ways)}{rest}."
+        yield f"To reach {regime} lubrication: {', or '.join(ways)}{rest}.{f' {margins.counted}' if margins.counted else ''}"
     if any(margin.name == "viscosity" and (margin.less or margin.more) for margin in margins.margins):
         yield "Only the product of speed and viscosity matters, so their factors are equal."
 

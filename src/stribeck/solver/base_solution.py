@@ -25,6 +25,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.solver.notes import law_notes
 
 if TYPE_CHECKING:
     import xarray
@@ -124,6 +125,14 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     rtol: float
     law: str
     observables: Any
+
+    def notes_for(self, boundary_friction: float | None, beta: float | None) -> tuple[str, ...]:
+        """Return the notes with the coefficients that are given beside groups, instead of usual ones."""
+        if self.contact is not None or (boundary_friction is None and beta is None):
+            return self.notes
+        usual = law_notes(self.groups, None, self.observables)
+        given = 1.0 if boundary_friction is None else boundary_friction, 1.0 if beta is None else beta
+        return (*law_notes(self.groups, None, self.observables, given), *(note for note in self.notes if note not in usual))
 
     @property
     @abstractmethod

@@ -145,7 +145,9 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
     )
 
 
-def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[str, ...]:
+def law_notes(
+    groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None = None
+) -> tuple[str, ...]:
     """Return the sentences that say where the contact law leaves its range while asperities still matter.
 
     Parameters
@@ -156,6 +158,8 @@ def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[
         The contact; groups alone are weighed with boundary friction 1, alpha = 2 and beta = 0.05.
     values : Values
         Those of the state.
+    given : tuple of float, optional
+        Boundary friction and beta that are given beside groups.
 
     Returns
     -------
@@ -164,11 +168,11 @@ def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[
     """
     if groups.roughness == 0:
         return ()
-    shares = _shares(contact, values)
-    if not matters(contact, values):
+    shares = _shares(contact, values, given)
+    if not max(shares) > NEGLIGIBLE_SHARE:
         return ()
     ratio, measured = _gap_ratio(groups, contact, values)
-    far = _far_note(groups, ratio, measured, shares, contact is not None)
+    far = _far_note(groups, ratio, measured, shares, contact is not None or given is not None)
     if groups.law is not None and not is_exponential(groups.law):
         said = groups.law.notes(values.minimum_gap / float(groups.relative_roughness))
         negative = ("The gap is negative: asperities alone cannot carry this load at a positive gap.",)
@@ -237,9 +241,10 @@ def _gap_ratio(groups: Groups, contact: Contact | None, values: Values) -> tuple
     return values.central_gap / float(groups.relative_roughness) / alpha, measured
 
 
-def _shares(contact: Contact | None, values: Values) -> tuple[float, float]:
+def _shares(contact: Contact | None, values: Values, given: tuple[float, float] | None = None) -> tuple[float, float]:
     """Return the asperities' shares of load and friction."""
-    boundary, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
+    usual = (1.0, USUAL_BETA) if given is None else given
+    boundary, beta = usual if contact is None else (contact.boundary_friction, contact.beta)
     dry, viscous = boundary * values.contact_load_share, values.viscous_friction(beta)
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 

@@ -24,7 +24,7 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.given.uncertain import relative_error
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
 from stribeck.quantities.units import InputError, checked_kind, show
-from stribeck.uncertainty.result import Spread, Uncertainty
+from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
 from stribeck.uncertainty.states import NODE, films_of, states_by_inputs, states_of
 
 __all__ = ["RTOLS", "kept_errors", "moving_with", "propagate"]
@@ -90,7 +90,8 @@ def propagate(
     -----
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
     seven solved states, where the ends of an interval are within 5 % of its width (``test_data_sheet.py``); with another
-    fluid, solid or cavitation than the article's through two states for each input.  Transitions move to first order.
+    fluid, solid or cavitation than the article's through two states for each input.  Transitions move to first
+    order, and are left out where their interval leaves the speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
     definition = check_definition(definition)
@@ -234,8 +235,7 @@ def moving_with(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tup
     tuple of str
         The input itself, and beta with the roughness under Persson's law unless beta has an error of its own.
     """
-    follows = name == "roughness" and "beta" not in sigmas and contact.law is not None and contact.law.name == "persson"
-    return ("roughness", "beta") if follows else (name,)
+    return ("roughness", "beta") if name == "roughness" and follows_surface(contact, {name, *sigmas}) else (name,)
 
 
 def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definition) -> dict[str, float]:
@@ -272,17 +272,17 @@ def _regimes(share: Array, dry: Array) -> dict[str, float]:
 def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:
     """Return the speeds of minimum and transitions, which move with each input to first order."""
 
-    def marks(each: Contact) -> dict[str, float]:
+    def marks(each: Contact) -> tuple[dict[str, float], Array]:
         curve = stribeck_curve(each, points=POINTS, rtol=1e-3, definition=definition)
-        return {mark.name: mark.value for mark in curve.transitions}
+        return {mark.name: mark.value for mark in curve.transitions}, curve.values[[0, -1]]
 
-    start = marks(contact)
+    start, searched = marks(contact)
     variances = dict.fromkeys(start, 0.0)
     for name, sigma in sigmas.items():
         if name == "speed":
             continue
         factor = math.exp(sigma)
-        moved = marks(
+        moved, _ = marks(
             contact.replace(**{each: getattr(contact, each) * factor for each in moving_with(contact, name, sigmas)})
         )
         for mark, value in start.items():
@@ -292,6 +292,8 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
     for mark, value in start.items():
         factors = [math.exp(z * math.sqrt(variances[mark])) for z in (1.0, 1.96)]
         (low, high), (lowest, highest) = ((value / factor, value * factor) for factor in factors)
+        if not searched[0] <= lowest <= highest <= searched[1]:
+            continue  # it may lie anywhere beyond the speeds that were searched
         label = f"speed of the {mark}" if mark == Transition.MINIMUM else f"speed where {mark}"
         found.append(Spread(mark, label, value, value, (low, high), (lowest, highest), "speed"))
     return found

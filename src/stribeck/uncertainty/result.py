@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -186,11 +187,12 @@ class Uncertainty(Exported):
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """The share of each input in the variance of friction, a sentence; none for a model without derivatives."""
+        """What intervals count, and the share of each input in the variance of friction, a sentence each."""
         labels = fitted_rows(self.contact.INPUTS)
+        exact = (exact_inputs(self.contact, self.errors),)
         named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
-        return (f"Sources of the variance of friction: {parts}.",) if parts else ()
+        return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()))
 
     def _repr_html_(self) -> str:
         """Return the table for notebooks."""
@@ -198,3 +200,25 @@ class Uncertainty(Exported):
             f"<tr><td>{html.escape(each.label)}</td><td>{html.escape(each.text)}</td></tr>" for each in self.spreads
         )
         return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table><p>{html.escape(self.probabilities)}</p>"
+
+
+def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
+    """Return the sentence that says which inputs have an error in intervals, and which count as exact."""
+    rows = fitted_rows(contact.INPUTS)
+    known = [row.label for name, row in rows.items() if name in errors]
+    exact = [
+        row.label
+        for name, row in rows.items()
+        if name not in errors and getattr(contact, name, None) and not (name == "beta" and follows_surface(contact, errors))
+    ]
+    counted = f"Intervals count the errors of {_listed(known)}"
+    return f"{counted}; {_listed(exact)} count as exact." if exact else f"{counted}."
+
+
+def follows_surface(contact: Contact, errors: Collection[str]) -> bool:
+    """Return whether beta moves with an uncertain roughness, as under Persson's law."""
+    return "roughness" in errors and "beta" not in errors and contact.law is not None and contact.law.name == "persson"
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -73,7 +73,9 @@ def print_solution(
     # The tolerance holds neither the minimum film of a ball nor the sum of the parts of friction.
     friction = max(solution.friction(boundary_friction, beta, each).relative_error for each in DEFINITIONS)
     others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}
-    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks, others)
+    print_outcome(
+        console, solution.outcome.value, solution.error_estimate, solution.notes_for(boundary_friction, beta), checks, others
+    )
 
 
 def _solution_rows(

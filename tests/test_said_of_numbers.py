@@ -1,0 +1,53 @@
+"""What is said beside numbers: notes with the coefficients that were given, what an interval counts, and what was searched."""
+
+import re
+
+import pytest
+from command_line import EXAMPLES, call
+
+import stribeck as sb
+
+FAR = ("3e-2", "0.1", "1e-3")
+"""Groups of a film beyond the range of the exponential law, while asperities still cause friction."""
+
+
+@pytest.mark.parametrize(("mu", "beta"), [(0.6, 0.1), (0.05, 1.0), (1.0, 0.02)])
+def test_notes_of_groups_take_the_coefficients_that_were_given(capsys, mu, beta):
+    answer = call(capsys, "solve", "--groups", *FAR, "--boundary-friction", str(mu), "--beta", str(beta))
+    text = " ".join(answer.out.split())
+    solution = sb.solve(sb.Groups(*map(float, FAR)))
+    share = 100 * solution.friction(mu, beta).contact_share
+    said = float(re.search(r"cause ([0-9.e-]+) % of the friction", text)[1])
+    assert said == pytest.approx(share, rel=0.02) and "at boundary friction 1" not in text
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(3e-2, 3.1e-2), points=2, boundary_friction=mu, beta=beta)
+    [told] = [float(each) for note in curve.notes for each in re.findall(r"cause ([0-9.e-]+) % of the friction", note)]
+    assert told == pytest.approx(share, rel=0.02)
+
+
+def test_an_interval_says_which_inputs_count_as_exact(capsys):
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
+    found = sb.propagate(contact, {"roughness": 0.1, "modulus": 0.1}, transitions=False)
+    said = str(found)
+    assert "Intervals count the errors of effective modulus and roughness; " in said
+    for label in ("radius", "load", "contact-law beta", "dry friction coefficient", "viscosity"):
+        assert label in said.split("; ")[-1].split("count as exact")[0], label
+    surface = sb.load_case(EXAMPLES / "rod_seal.toml").contact
+    assert "beta" not in str(sb.propagate(surface, {"roughness": 0.1}, transitions=False)).split("count as exact")[0]
+
+
+def test_the_ways_to_other_regimes_say_it_in_their_line(capsys):
+    answer = call(capsys, "regimes", EXAMPLES / "lip_seal.toml")
+    lines = [line for line in answer.out.splitlines() if "95 %:" in line]
+    assert lines and all("Intervals count the errors of" in line and "count as exact" in line for line in lines)
+
+
+def test_transitions_beyond_the_speeds_that_were_searched_are_not_told():
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
+    curve = sb.stribeck_curve(contact, points=41, rtol=1e-3)
+    names = {mark.name for mark in curve.transitions}
+    sure = {each.name for each in sb.propagate(contact, {"roughness": 0.05}).spreads}
+    assert names <= sure
+    spread = sb.propagate(contact, {"roughness": 2.0, "beta": 2.0}).spreads
+    told = [each for each in spread if each.name in names]
+    assert len(told) < len(names)
+    assert all(curve.values[0] <= each.interval_95[0] and each.interval_95[1] <= curve.values[-1] for each in told)
