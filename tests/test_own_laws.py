@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.fluids.laws import ViscosityLaw
+from stribeck.fluids.laws import FlowFactors, ViscosityLaw
 from stribeck.fluids.rheology.tabulated import TabulatedLaw
 
 CONTACT = sb.LineContact(
@@ -72,6 +72,40 @@ class Stiffening(ViscosityLaw):
 
     def log(self, pressure):
         return self.coefficient * pressure, np.full_like(pressure, self.coefficient)
+
+
+@dataclass(frozen=True)
+class StiffeningLate(Stiffening):
+    name = "stiffening late"
+
+    def scaled(self, units):
+        return replace(self, coefficient=self.coefficient * units.pressure**2)
+
+    def log(self, pressure):
+        return self.coefficient * pressure**2, 2 * self.coefficient * pressure
+
+
+@dataclass(frozen=True)
+class Grooves(FlowFactors):
+    depth: float
+    name = "grooves"
+
+    @property
+    def parameters(self):
+        return {"depth": self.depth}
+
+    def scaled(self, units):
+        return replace(self, depth=self.depth / units.gap)
+
+    def milder(self, part):
+        return replace(self, depth=part * self.depth)
+
+    def pressure(self, gap):
+        square = (self.depth / gap) ** 2
+        return 1 + square, -2 * square / gap
+
+    def shear(self, gap):
+        return np.zeros_like(gap), np.zeros_like(gap)
 
 
 def other(law, **members):
@@ -140,6 +174,53 @@ def test_a_law_of_shear_that_contradicts_itself_is_refused(what):
 def test_a_law_of_pressure_that_contradicts_itself_is_refused(said, members):
     with pytest.raises(sb.InputError, match=said):
         film(other(Stiffening, **members)(2e-8))
+
+
+def test_a_law_that_sets_in_as_the_square_of_the_pressure_is_refused_without_units():
+    assert film(StiffeningLate(1e-10)) > 1.03 * film(Stiffening(0.0))
+    with pytest.raises(sb.InputError, match="scaled"):
+        film(other(StiffeningLate, scaled=lambda self, units: self)(1e-10))
+
+
+@pytest.mark.parametrize(
+    ("said", "members"),
+    [
+        ("scaled", {"scaled": lambda self, units: self}),
+        ("slope", {"pressure": lambda self, gap: (1 + (self.depth / gap) ** 2, np.zeros_like(gap))}),
+        ("shear", {"shear": lambda self, gap: (self.depth**2 / gap, np.zeros_like(gap))}),
+        ("two arrays", {"shear": lambda self, gap: np.zeros_like(gap)}),
+    ],
+    ids=["no units", "no slope", "no slope of the shear", "one array"],
+)
+def test_flow_factors_that_contradict_themselves_are_refused(said, members):
+    assert sb.solve(CONTACT, flow_factors=Grooves(1e-6)).central_gap > 0
+    with pytest.raises(sb.InputError, match=said):
+        sb.solve(CONTACT, flow_factors=other(Grooves, **members)(1e-6))
+
+
+@pytest.mark.parametrize("factors", ["PatirCheng", "EffectiveMedium"])
+def test_flow_factors_of_the_package_pass_the_check_of_others(factors):
+    own = other(getattr(sb.fluids, factors))()
+    assert sb.solve(CONTACT, flow_factors=own).central_gap > 0
+
+
+@pytest.mark.parametrize(
+    ("said", "members"),
+    [
+        ("log must return two arrays", {"log": lambda self, pressure: (self.coefficient * pressure, self.coefficient)}),
+        ("log must return two arrays", {"log": lambda self, pressure: self.coefficient * pressure}),
+        ("stiffening.*ZeroDivisionError", {"log": lambda self, pressure: 1 / 0}),
+    ],
+    ids=["a number for slopes", "one array", "an exception"],
+)
+def test_a_law_that_cannot_be_evaluated_is_refused_with_a_sentence(said, members):
+    with pytest.raises(sb.InputError, match=said):
+        film(other(Stiffening, **members)(2e-8))
+
+
+def test_a_shape_that_lacks_a_number_of_the_law_is_refused_with_a_sentence():
+    with pytest.raises(sb.InputError, match="exponent"):
+        film(other(Yasuda, shape=property(lambda self: ()))(1e-4, 0.5))
 
 
 @pytest.mark.parametrize("lacks", ["scaled", "milder", "stress", "time", "shape", "smallest"])

@@ -26,6 +26,14 @@ RATES = np.geomspace(1e-3, 1e4, 36)
 UNITS = (0.1, 10.0)
 """Units of time, pressure and length to which laws are scaled."""
 
+SIZES = np.geomspace(1e-12, 1e12, 241)
+"""Pressures and gaps among which the first is sought at which a law does something, in SI or in Hertz units."""
+
+DECAY_LENGTHS = (1e-12, 1.0)
+"""Those of the roughness: far below a length of the law's own, and the only length there is."""
+
+SEE = "See Add a fluid in for_developers.md."
+
 
 def check_law(law: Any) -> None:
     """Refuse a law of somebody else's whose members contradict each other; those of the package have tests of their own."""
@@ -38,13 +46,19 @@ def check_law(law: Any) -> None:
 
 @lru_cache(maxsize=64)
 def _checked(law: Any) -> None:
-    for kind, check in CHECKS.items():
-        if isinstance(law, kind):
-            check(law)
+    try:
+        with np.errstate(all="ignore"):
+            for kind, check in CHECKS.items():
+                if isinstance(law, kind):
+                    check(law)
+    except InputError:
+        raise
+    except Exception as error:
+        raise InputError(f"{_name(law)} fails where it is checked ({type(error).__name__}: {error}). {SEE}") from error
 
 
 def _rate_law(law: RateLaw) -> None:
-    g, slope = law.stress(RATES)
+    g, slope = _pair(law, "stress", RATES)
     if not (np.diff(g) > 0).all():
         raise InputError(f"{_name(law)}: the stress must rise with the rate; here it does not.")
     _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], RATES))
@@ -63,10 +77,14 @@ def _rate_law(law: RateLaw) -> None:
     _agree(law, "milder", "the law itself at part 1", same.stress(RATES / law.time * same.time)[0] / same.time, g / law.time)
 
 
-def _pressure_law(law: Any, values: Callable[[Any, Array], tuple[Array, Array]], rest: float, member: str) -> None:
+def _pressure_law(law: Any, member: str, rest: float) -> None:
+    def values(each: Any, pressure: Array) -> tuple[Array, Array]:
+        return _pair(each, member, pressure)
+
     at_rest, [first] = values(law, np.zeros(1))
     _agree(law, member, f"{rest:g} at ambient pressure", at_rest + 1.0, np.array([rest + 1.0]))
-    scale = 1.0 / abs(float(first)) if first != 0 and np.isfinite(first) else 1.0
+    flat = first == 0 or not np.isfinite(first)
+    scale = _first_change(lambda p: values(law, p)[0] - rest, SIZES) if flat else 1.0 / abs(float(first))
     pressures = scale * np.linspace(0.05, 0.8, 6)
     found, slope = values(law, pressures)
     _agree(law, member, "its slope", slope * scale, _difference(lambda p: values(law, p)[0], pressures) * scale, 1.0)
@@ -78,22 +96,45 @@ def _pressure_law(law: Any, values: Callable[[Any, Array], tuple[Array, Array]],
 
 
 def _flow_factors(law: FlowFactors) -> None:
-    for unit in UNITS:
-        scaled = law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, 1.0, 1.0))
-        gaps = np.geomspace(1.0, 30.0, 8) / unit
-        for member in ("pressure", "shear"):
-            of = getattr(scaled, member)
-            _agree(law, member, "its slope", of(gaps)[1], _difference(lambda h, of=of: of(h)[0], gaps), unit)  # type: ignore[misc]
-        _agree(law, "factor", "the first of pressure", scaled.factor(gaps), scaled.pressure(gaps)[0])
+    for decay_length in DECAY_LENGTHS:
+        first, *others = (law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, decay_length, 1.0)) for unit in (1.0, *UNITS))
+        gaps = np.geomspace(1.0, 30.0, 8) * _first_change(lambda h, of=first: _pair(of, "pressure", h)[0] - 1, SIZES[::-1])  # type: ignore[misc]
+        of_first = {member: _pair(first, member, gaps) for member in ("pressure", "shear")}
+        for unit, scaled in zip(UNITS, others, strict=True):
+            for member, (value, _) in of_first.items():
+                found, slope = _pair(scaled, member, gaps / unit)
+                change = _difference(lambda h, of=scaled, name=member: _pair(of, name, h)[0], gaps / unit)  # type: ignore[misc]
+                size = 1.0 if member == "pressure" else unit
+                largest = float(np.abs(value).max())
+                _agree(law, member, "its slope", slope * size * gaps / unit, change * size * gaps / unit, largest)
+                _agree(law, "scaled", f"in units of length the same {member}", found * size, value, largest)
+            factor, phi = scaled.factor(gaps / unit), _pair(scaled, "pressure", gaps / unit)[0]
+            _agree(law, "factor", "the first of pressure", factor, phi)
 
 
 CHECKS: dict[type, Callable[[Any], None]] = {
     RateLaw: _rate_law,
-    ViscosityLaw: lambda law: _pressure_law(law, lambda each, p: each.log(p), 0.0, "log"),
-    DensityLaw: lambda law: _pressure_law(law, lambda each, p: each.ratio(p), 1.0, "ratio"),
+    ViscosityLaw: lambda law: _pressure_law(law, "log", 0.0),
+    DensityLaw: lambda law: _pressure_law(law, "ratio", 1.0),
     FlowFactors: _flow_factors,
 }
 """The check of each kind of law."""
+
+
+def _pair(law: Any, member: str, at: Array) -> tuple[Array, Array]:
+    """Return values and slopes of a member; raise InputError unless it returns both at each place."""
+    found = getattr(law, member)(at)
+    shapes = {at.shape, ()} if isinstance(law, FlowFactors) else {at.shape}
+    if not isinstance(found, tuple) or len(found) != 2 or not {np.shape(each) for each in found} <= shapes:
+        raise InputError(f"{_name(law)}: {member} must return two arrays, its values and its slopes. {SEE}")
+    value, slope = (np.broadcast_to(np.asarray(each, dtype=float), at.shape) for each in found)
+    return value, slope
+
+
+def _first_change(change: Callable[[Array], Array], sizes: Array) -> float:
+    """Return the first size at which a law does something; 1 if it never does."""
+    done = np.abs(change(sizes)) > 0.1
+    return float(sizes[np.argmax(done)]) if done.any() else 1.0
 
 
 def _difference(function: Callable[[Array], Array], at: Array) -> Array:
@@ -110,7 +151,7 @@ def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: 
         i = int(np.argmax(wrong))
         raise InputError(
             f"{_name(law)}: {member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}. "
-            "See Add a fluid in for_developers.md."
+            f"{SEE}"
         )
 
 
