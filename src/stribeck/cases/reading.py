@@ -111,6 +111,10 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
                     facts |= fact_values({name: value})
                 except InputError as problem:
                     problems.append(f"[check] {problem}")
+        try:
+            facts = fact_values(facts)
+        except InputError as problem:
+            problems.append(f"[check] {problem}")
     if not problems:
         law = checked["contact"]["law"]
         try:

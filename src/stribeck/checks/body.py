@@ -39,6 +39,9 @@ FINE_PORES, PRESSURISED = 0.1, 1.0
 
 SLIDE_TO_ROLL = POINT.quantities["slide_to_roll"]
 
+PER_CENT = ("slide_to_roll", "boundary_friction")
+"""Inputs that are often given in per cent."""
+
 FINE_FACTOR = 3.0
 """Factor beyond its usual range that an input may have; a slip of a unit is ten or more."""
 
@@ -63,7 +66,7 @@ def of_usual_size(values: Mapping[str, float], table: InputTable) -> Check:
         worst = max(worst, factor)
         if factor > FINE_FACTOR:
             ends = (format_si(end, row.dimension) for end in (low, high))
-            about = f" ({value:g} % is {value / 100:g})" if row.dimension == "number" and 1 <= value <= 200 else ""
+            about = f" ({value:g} % is {value / 100:g})" if name in PER_CENT and value <= 200 else ""
             odd.append(f"{row.label} {format_si(signed, row.dimension)}{about}, usually {' to '.join(ends)}")
     sentence = f"Unusual: {'; '.join(odd)}. Check the units." if odd else "All inputs are of usual size."
     return Check("inputs", worst, FINE_FACTOR, "doubtful" if odd else "fine", sentence)

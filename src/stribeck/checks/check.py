@@ -141,29 +141,42 @@ class Checks(Exported):
         return (*self.unsolved, *([f"facts not given: {', '.join(facts)}."] if facts else []))
 
     @property
+    def _conditions(self) -> list[str]:
+        """What must hold for the model to apply, and is not known."""
+        return [each.condition for each in self.with_verdict("doubtful") if each.condition]
+
+    @property
+    def _applies(self) -> str:
+        """The beginning of a sentence that says how the model applies."""
+        law = ", with another law" if self.applies_with_another_law else ""
+        conditions = f"{' and' if law else ''} if {' and '.join(self._conditions)}" if self._conditions else ""
+        return f"The model applies{law}{conditions}"
+
+    @property
     def headline(self) -> str:
         """One sentence: whether the model applies, and which checks fail."""
         outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
-        conditions = [each.condition for each in doubtful if each.condition]
-        others = [each for each in doubtful if not each.condition]
-        doubts = f" Doubtful: {_names(others)}." if others else ""
+        doubts = [each for each in doubtful if not each.condition or outside and not self.applies_with_another_law]
+        said = f" Doubtful: {_names(doubts)}." if doubts else ""
         if self.applies_with_another_law:
-            return f"The model applies, with another law: the present one is outside its range ({_names(outside)}).{doubts}"
+            return f"{self._applies}: the present one is outside its range ({_names(outside)}).{said}"
         if outside:
-            return f"{OUTSIDE}: {_names(outside)}.{doubts}"
-        if conditions:
-            return f"The model applies if {' and '.join(conditions)}.{doubts}"
+            return f"{OUTSIDE}: {_names(outside)}.{said}"
+        if self._conditions:
+            return f"{self._applies}.{said}"
         if doubtful:
             return f"The model applies, with doubts about {_names(doubtful)}."
         return f"The model applies: all {len(self.checks)} checks are fine."
 
     @property
     def first_line(self) -> str:
-        """Line that outputs print before any number; empty unless a check is outside or an input unusual."""
+        """Line that outputs print before any number: what is outside, on what the model depends, which input is unusual."""
         outside = self.with_verdict("outside")
         unusual = [each.sentence for each in self.with_verdict("doubtful") if each.name == "inputs"]
-        begin = "The model applies, with another law" if self.applies_with_another_law else OUTSIDE
+        begin = self._applies if self.applies_with_another_law else OUTSIDE
         said = [f"{begin}: {' '.join(each.sentence for each in outside)}"] if outside else []
+        if self._conditions and not outside:
+            said = [f"{self._applies}."]
         return " ".join([*said, *unusual])
 
     def covers(self, note: str) -> bool:

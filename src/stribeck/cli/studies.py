@@ -29,6 +29,7 @@ from stribeck.files.writing import check_writable
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
+    from stribeck.sweeps.design import SweepDesign
     from stribeck.sweeps.sweep import SweepProgress
 
 
@@ -84,6 +85,7 @@ def sweep_command(
         check_writable(export, NETCDF, force=force)
         need_extra("a NetCDF file", "data", "netCDF4")
     plan = load_sweep(design)
+    _say_unusual(plan)
     processes = 1 if workers is None else as_whole("workers", workers)
     with interruptible(after_point=True, sigterm=True) as progress:
         lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
@@ -111,6 +113,23 @@ def sweep_command(
     if found.failed:
         return complain(f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", FAILED)
     return 0
+
+
+def _say_unusual(plan: SweepDesign) -> None:
+    """Say which inputs of a sweep are hardly meant, at the ends of what varies."""
+    from stribeck.checks.body import of_usual_size
+    from stribeck.quantities.inputs import INPUT_TABLES
+
+    table = INPUT_TABLES[plan.physics["geometry"]]
+    inputs = {name: values for name, values in plan.inputs.items() if name in table.quantities}
+    fixed = {name: float(values[0]) for name, values in inputs.items() if name not in plan.varied}
+    if "slide_to_roll" not in inputs:
+        fixed["slide_to_roll"] = plan.parts.slide_to_roll
+    ends = ({name: float(end(inputs[name])) for name in plan.varied if name in inputs} for end in (min, max))
+    for given in (fixed, *ends):
+        found = of_usual_size(given, table)
+        if found.verdict != "fine":
+            complain(found.sentence, 0)
 
 
 def fit_command(

@@ -92,7 +92,7 @@ def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
     Raises
     ------
     InputError
-        If one is unknown, or its value is impossible.
+        If one is unknown, its value is impossible, or it follows from another.
     """
     found = {}
     for name, value in given.items():
@@ -106,4 +106,6 @@ def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
         if not 0 <= number < math.inf:
             raise InputError(f"{name} = {show(value)} must be zero or positive.")
         found[name] = number
+    if "diffusivity" in found and "permeability" in found:
+        raise InputError("diffusivity follows from permeability, D = k E*/eta; give one of them.")
     return found
