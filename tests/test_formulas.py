@@ -3,12 +3,14 @@
 import importlib
 import inspect
 import itertools
+import json
 import math
 import operator
 import pkgutil
 import warnings
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -394,3 +396,9 @@ def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their
     grid = formula.function(sb.Groups(speed[:, None], load[0], roughness[0]), *arguments(formula, some[0]))
     first = formula.function(some[0], *arguments(formula, some[0]))
     np.testing.assert_allclose(np.broadcast_to(grid, (3, 1))[0, 0], first, rtol=1e-8)
+
+
+def test_every_formula_says_the_range_for_which_its_error_was_scanned():
+    """A range that is wider than the scan has an error that nobody has seen, and one that is narrower warns without need."""
+    said = json.loads((Path(__file__).parent / "data" / "formula_ranges.json").read_text(encoding="utf-8"))
+    assert {each.name: each.range for each in sb.asymptotics.FORMULAS} == said

@@ -467,6 +467,8 @@ def dead_process():
     return process.pid
 
 
+# Quick, so that it runs with the oldest filelock, whose first attempt clears the lock away and does not take it.
+@pytest.mark.quick
 @pytest.mark.parametrize("how", ["ended", "number used again"])
 def test_the_lock_of_a_dead_process_is_taken_over_with_a_note(copy, how):
     store, file = copy

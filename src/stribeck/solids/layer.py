@@ -117,9 +117,9 @@ class Layer:
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
 
-        On the panel through infinity the layer acts as springs side by side, ``d (1 - 2 nu)/(2 (1 - nu)^2)`` [u_Hz per p_Hz].
+        Pressures on the panel through infinity deflect nothing: beyond 24 thicknesses nothing is felt, and there they vanish.
         """
-        d, nu = self.thickness, self.poisson_ratio
+        d = self.thickness
         x = mesh.nodes.reshape(mesh.panels, mesh.order)
         kernel = nodal_deflection(mesh, beyond=False)
         # Each pair of panels once: the smooth part is symmetric but for the weights, and the kernel is in Fortran order.
@@ -143,7 +143,6 @@ class Layer:
             column[near] = self._within_reach(mesh, k, mesh.nodes[near])
         beyond = np.arange(mesh.size - mesh.order, mesh.size)
         kernel[:, beyond] = 0.0
-        kernel[beyond, beyond] = d * (1 - 2 * nu) / (2 * (1 - nu) ** 2)
         return np.asarray(kernel, order="F")
 
     def _between(self, x: Array, y: Array) -> Array:
