@@ -1,5 +1,7 @@
 """The walk of a reader: the files that a call runs through before the first residual of the equations.
 
+That an attribute is made on its first use, as :mod:`stribeck.quantities.lazy` does, is no step of it.
+
 Each function counts once, when it is first called; a file is entered again if the walk comes back to it for another function.
 """
 
@@ -33,7 +35,13 @@ def walk(call: Callable[[], Any]) -> list[str]:
     def look(frame: FrameType, event: str, _: Any) -> None:
         code = frame.f_code
         path = Path(code.co_filename)
-        if event != "call" or code in known or PACKAGE not in path.parents or code.co_name == "<module>":
+        if (
+            event != "call"
+            or code in known
+            or path.name == "lazy.py"
+            or PACKAGE not in path.parents
+            or code.co_name == "<module>"
+        ):
             return
         known.add(code)
         name = path.relative_to(PACKAGE).as_posix()

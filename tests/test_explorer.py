@@ -993,7 +993,7 @@ def test_over_the_hersey_number_measured_points_stand_at_their_own(contact):
         own = later.replace(speed=float(found.speed[0]), viscosity=viscosity)
         assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(own.hersey_number, rel=1e-12)
         assert found.places(later, "speed") == found.speed
-    [found] = read_measured("h.csv", b"Hersey number,friction\n1e-5,0.5\n", contact)
+    [found] = read_measured("h.csv", b"Hersey number [-],friction\n1e-5,0.5\n", contact)
     assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
     assert contact.replace(speed=float(found.speed[0])).hersey_number == pytest.approx(1e-5, rel=1e-12)
 

@@ -450,7 +450,9 @@ def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with
     margins = crossing_along("speed", CONTACT, "hydrodynamic", 0.03)
     assert with_intervals(CONTACT, margins, {}) == margins
     _, sentence = ways_to(with_intervals(CONTACT, margins, {"speed": 0.1}))
-    assert sentence == "To reach hydrodynamic lubrication: speed x 30 (to 30 mm/s; 95 %: 24.7 to 36.5)."
+    way, _, counted = sentence.partition(" Intervals count ")
+    assert way == "To reach hydrodynamic lubrication: speed x 30 (to 30 mm/s; 95 %: 24.7 to 36.5)."
+    assert counted.startswith("the errors of speed; radius, effective modulus, ") and counted.endswith(" count as exact.")
 
 
 @pytest.mark.parametrize(

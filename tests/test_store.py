@@ -270,10 +270,10 @@ def test_an_existing_file_is_kept_unless_forced(dataset, tmp_path, ending):
         ("missing/curve.nc", "does not exist"),
         ("curve.txt", r"has the ending '\.txt'; the name of this file must end in \.nc or \.csv"),
         ("curve", "has no ending"),
-        ("x" * 300 + ".nc", "cannot be written"),
+        ("x" * 300 + ".nc", "cannot be looked up"),
         ("pipe.nc", "is not an ordinary file"),
         ("file.nc/curve.nc", "does not exist"),
-        ("loop.nc", "cannot be written|is not an ordinary file"),
+        ("loop.nc", "cannot be looked up|is not an ordinary file"),
     ],
 )
 def test_a_place_that_cannot_be_written_is_refused_beforehand(tmp_path, name, words):

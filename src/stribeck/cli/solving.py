@@ -94,7 +94,7 @@ def solve_command(
 
         coefficients(None, mu, b)
     pictures = check_pictures(plot, force)
-    if loaded is None:
+    if loaded is None and (boundary_friction is not None or slide_to_roll is not None):
         _say_unusual(boundary_friction, slide_to_roll)
     problem = loaded.contact if loaded else sb.Groups(*map(as_group, AXES, groups or ()))
     parts = model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
@@ -195,7 +195,7 @@ def curve_command(
     arguments["law"] = law
     arguments |= model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
     arguments |= {} if definition is None else {"definition": definition}
-    if loaded is None:
+    if loaded is None and (boundary_friction is not None or slide_to_roll is not None):
         _say_unusual(boundary_friction, slide_to_roll)
     title = loaded.title if loaded else ""
     seconds = None if time_limit is None else read_duration(time_limit, "--time-limit")

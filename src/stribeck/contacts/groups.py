@@ -93,7 +93,8 @@ class Groups:
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
-        object.__setattr__(self, "law", law_of(self.law))
+        if self.law is not None:
+            object.__setattr__(self, "law", law_of(self.law))
         check_geometry(self.geometry)
         if not isinstance(self.model, Model):
             raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")

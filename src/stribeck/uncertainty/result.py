@@ -189,7 +189,7 @@ class Uncertainty(Exported):
     def sources(self) -> tuple[str, ...]:
         """What intervals count, and the share of each input in the variance of friction, a sentence each."""
         labels = fitted_rows(self.contact.INPUTS)
-        exact = (exact_inputs(self.contact, self.errors),)
+        exact = (exact_inputs(self.contact, self.errors),) if self.errors else ()
         named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
         return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()))
