@@ -51,3 +51,23 @@ def test_transitions_beyond_the_speeds_that_were_searched_are_not_told():
     told = [each for each in spread if each.name in names]
     assert len(told) < len(names)
     assert all(curve.values[0] <= each.interval_95[0] and each.interval_95[1] <= curve.values[-1] for each in told)
+
+
+CURVED = {
+    "layer": ({"solid": sb.solids.Layer("2 mm")}, {"roughness": 0.3, "modulus": 0.2, "beta": 0.3}, (0.030398, 0.104879)),
+    "Carreau that ends": (
+        {"fluid": sb.fluids.Carreau("1 ms", 0.5), "cavitation": "exit"},
+        {"relaxation_time": 0.5, "roughness": 0.2, "viscosity": 0.2, "load": 0.1},
+        (0.035525, 0.356099),
+    ),
+}
+"""Contacts near the minimum of friction, where it is curved, with errors, and the ends of the interval by 3000 solved states."""
+
+
+@pytest.mark.parametrize("name", CURVED)
+def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states_have_it(name):
+    parts, errors, (low, high) = CURVED[name]
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", **parts)
+    found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
+    # The ends of 3000 draws scatter by 2 % of the width themselves.
+    assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)

@@ -89,8 +89,8 @@ def propagate(
     Notes
     -----
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
-    seven solved states, where the ends of an interval are within 5 % of its width (``test_data_sheet.py``); with another
-    fluid, solid or cavitation than the article's through two states for each input.  Transitions move to first
+    two solved states for each input, corrected by up to 120 more at both ends of the interval of friction until solved states
+    lie within 5 % of its width of where they are predicted (``test_data_sheet.py``).  Transitions move to first
     order, and are left out where their interval leaves the speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
@@ -113,24 +113,29 @@ def propagate(
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
     rtol = RTOLS[groups.geometry]
-    if groups.model == ARTICLE:
-        states, method = states_of(groups, offsets @ of_groups, definition, rtol, contact)
-    else:
-        widths = np.array([sigmas[name] for name in names])
-        states, method = states_by_inputs(contact, moves, widths, draws[:, : len(names)], definition, rtol), "solver"
+    solution, sensitivities, _ = sensitivities_if_known(contact, rtol=rtol, definition=definition)
+    rule = RULES[groups.geometry]
+    inputs = rule.of_contact(contact)
 
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
-    share = states["contact_load_share"]
-    solution, sensitivities, _ = sensitivities_if_known(contact, rtol=RTOLS[groups.geometry], definition=definition)
-    rule = RULES[groups.geometry]
-    inputs = rule.of_contact(contact)
-    dry = rule.rubbing(groups, inputs) * scale(lambda each: each.boundary_friction) * share
-    viscous = contact.beta * states["viscous"]
+    rubbing = rule.rubbing(groups, inputs) * scale(lambda each: each.boundary_friction)
+    shearing = np.full(SAMPLES, contact.beta)
     for name, exponent in _exponents(solution, inputs, definition).items():
-        viscous = viscous * (scale(rule.inputs[name]) / inputs[name]) ** exponent
-    friction = dry + viscous
+        shearing = shearing * (scale(rule.inputs[name]) / inputs[name]) ** exponent
+
+    def friction_of(states: dict[str, Array]) -> Array:
+        return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
+
+    if groups.model == ARTICLE:
+        states, method = states_of(groups, offsets @ of_groups, definition, rtol, contact, friction_of)
+    else:
+        widths = np.array([sigmas[name] for name in names])
+        sampled = draws[:, : len(names)]
+        states, method = states_by_inputs(contact, moves, widths, sampled, definition, rtol, friction_of), "solver"
+    share = states["contact_load_share"]
+    dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
     spreads = [
         _spread("friction", "friction coefficient", given.total, friction),

@@ -11,9 +11,10 @@ Hertz units change with the inputs, so that the three groups do not describe suc
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
 from stribeck.quantities.outputs import OUTPUT_TABLES
-from stribeck.solver.solve import solve
+from stribeck.solver.solve import SolveError, solve
 
 __all__ = ["NAMES", "films_of", "states_by_inputs", "states_of"]
 
@@ -44,6 +45,14 @@ NARROW = 1e-9
 
 VISCOUS = 1
 """Place of the viscous friction in the values of a state."""
+
+EACH_END, MOST_ROUNDS = 4, 10
+"""Samples solved at each end of the interval of friction, and as many anywhere, in a round; and the most rounds."""
+
+PART_OF_WIDTH = 0.05
+"""Part of the width of the interval within which solved samples must lie where they are predicted: what the pages promise."""
+
+CHECKED_SEED = 20_261_126
 
 TINY = 1e-290
 """Value in place of a share that underflows."""
@@ -66,7 +75,12 @@ def films_of(geometry: Geometry) -> tuple[str, ...]:
 
 
 def states_of(
-    groups: Groups, offsets: Array, definition: Definition, rtol: float, contact: Contact | None = None
+    groups: Groups,
+    offsets: Array,
+    definition: Definition,
+    rtol: float,
+    contact: Contact | None = None,
+    friction: Callable[[dict[str, Array]], Array] | None = None,
 ) -> tuple[dict[str, Array], str]:
     """Return load share, viscous friction and films of samples.
 
@@ -82,6 +96,8 @@ def states_of(
         Relative tolerance of solved states.
     contact : Contact, optional
         Whose beta, motion and liquid the viscous friction of a ball takes.
+    friction : callable, optional
+        Friction of the samples from what this returns of them, whose interval is bounded by solved states.
 
     Returns
     -------
@@ -101,13 +117,19 @@ def states_of(
             found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
             if all(np.isfinite(values).all() for values in found.values()):
                 return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas"
-    return _by_quadratics(groups, offsets, definition, rtol, contact), "solver"
+    return _by_quadratics(groups, offsets, definition, rtol, contact, friction), "solver"
 
 
 def states_by_inputs(
-    contact: Contact, moves: Sequence[tuple[str, ...]], sigmas: Array, draws: Array, definition: Definition, rtol: float
+    contact: Contact,
+    moves: Sequence[tuple[str, ...]],
+    sigmas: Array,
+    draws: Array,
+    definition: Definition,
+    rtol: float,
+    friction: Callable[[dict[str, Array]], Array],
 ) -> dict[str, Array]:
-    """Return load share, viscous friction and films of samples of the inputs, from two solved states for each of them.
+    """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle.
 
     Parameters
     ----------
@@ -123,6 +145,8 @@ def states_by_inputs(
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of solved states.
+    friction : callable
+        As for :func:`states_of`.
 
     Returns
     -------
@@ -130,20 +154,35 @@ def states_by_inputs(
         As :func:`states_of` returns them.
     """
 
-    def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
-        moved = contact.replace(**{name: getattr(contact, name) * math.exp(distance) for name in inputs})
+    def at(distances: Mapping[str, float]) -> Array:
+        moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})
         return _values(solve(moved, rtol=rtol), definition, contact)
+
+    def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
+        return at(dict.fromkeys(inputs, distance))
+
+    def sample(i: int) -> Array:
+        distances: dict[str, float] = {}
+        for inputs, distance in zip(moves, (draws[i] * sigmas).tolist(), strict=True):
+            for name in inputs:
+                distances[name] = distances.get(name, 0.0) + distance
+        return at(distances)
 
     start = values()
     axes = [
         (draws[:, i], values(inputs, NODE * sigma), values(inputs, -NODE * sigma))
         for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
     ]
-    return _quadratic(start, axes, contact.groups.geometry, len(draws))
+    return _followed(_quadratic(start, axes, contact.groups.geometry, len(draws)), draws, sample, friction)
 
 
 def _by_quadratics(
-    groups: Groups, offsets: Array, definition: Definition, rtol: float, contact: Contact | None = None
+    groups: Groups,
+    offsets: Array,
+    definition: Definition,
+    rtol: float,
+    contact: Contact | None = None,
+    friction: Callable[[dict[str, Array]], Array] | None = None,
 ) -> dict[str, Array]:
     middle = offsets.mean(axis=0)
     variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
@@ -157,10 +196,75 @@ def _by_quadratics(
         if width >= NARROW:
             node = NODE * width * direction
             axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
-    return _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
+    found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
+    if friction is None or not axes:
+        return found.values()
+    places = np.stack([place for place, *_ in axes], axis=1)
+    return _followed(found, places, lambda i: values(offsets[i] - middle), friction)
 
 
-def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> dict[str, Array]:
+class _Samples(NamedTuple):
+    """What solved states and samples have in common: logarithms and log odds, which are nearly quadratic in the inputs."""
+
+    y: Array
+    sign: float
+    is_power: bool
+    geometry: Geometry
+
+    def of_state(self, values: Array) -> Array:
+        """Return the row of a solved state."""
+        row = values.copy()
+        if self.is_power:
+            row[VISCOUS] = np.log(max(self.sign * row[VISCOUS], TINY))
+        return row
+
+    def values(self) -> dict[str, Array]:
+        """Return load share, viscous friction and films."""
+        odds, viscous, *films = self.y.T
+        return {
+            "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
+            "viscous": self.sign * np.exp(viscous) if self.is_power else viscous,
+            **{name: np.exp(film) for name, film in zip(films_of(self.geometry), films, strict=True)},
+        }
+
+
+def _followed(
+    base: _Samples, places: Array, solved: Callable[[int], Array], friction: Callable[[dict[str, Array]], Array]
+) -> dict[str, Array]:
+    """Return samples corrected by solved states until the ends of the interval of friction are where solved states have them.
+
+    Each round solves some samples that lie at both ends and some anywhere.  Where they are not as predicted they join the
+    states through which a smooth function corrects the quadratics.
+    """
+    from scipy.interpolate import RBFInterpolator
+
+    found, known, random = base, dict[int, Array](), np.random.default_rng(CHECKED_SEED)
+    for _ in range(MOST_ROUNDS):
+        predicted = friction(found.values())
+        low, high = np.quantile(predicted, [0.025, 0.975])
+        near = [np.argsort(np.abs(predicted - end))[: 4 * EACH_END] for end in (low, high)]
+        chosen = [*random.choice(near[0], EACH_END, False), *random.choice(near[1], EACH_END, False)]
+        chosen += random.choice(len(predicted), EACH_END, False).tolist()
+        new: dict[int, Array] = {}
+        for i in {int(each) for each in chosen} - known.keys():
+            with suppress(SolveError):  # one that cannot be solved tells nothing
+                new[i] = base.of_state(solved(i))
+        exact = found.y.copy()
+        exact[list(new)] = list(new.values())
+        wrong = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)].max(initial=0.0)
+        known |= new
+        if wrong <= PART_OF_WIDTH * (high - low):
+            break
+        rows = list(known)
+        rest = np.array([known[i] - base.y[i] for i in rows])
+        # The middle is known too; the smooth function leaves it where it is.
+        centres = np.vstack([np.zeros(places.shape[1]), places[rows]])
+        smooth = RBFInterpolator(centres, np.vstack([np.zeros(rest.shape[1]), rest]), kernel="linear", degree=0)
+        found = base._replace(y=base.y + smooth(places))
+    return found.values()
+
+
+def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> _Samples:
     """Return the quadratics through the middle and two states on each axis, at the places of samples along the axes."""
     every = [start, *(each for _, *pair in axes for each in pair)]
     sign = np.sign(start[VISCOUS])
@@ -171,12 +275,7 @@ def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometr
     for places, ahead, behind in axes:
         t = np.clip(places, -FARTHEST, FARTHEST)[:, None]
         y += (ahead - behind) / (2 * NODE) * t + (ahead + behind - 2 * start) / (2 * NODE**2) * t**2
-    odds, viscous, *films = y.T
-    return {
-        "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
-        "viscous": sign * np.exp(viscous) if is_power else viscous,
-        **{name: np.exp(film) for name, film in zip(films_of(geometry), films, strict=True)},
-    }
+    return _Samples(y, float(sign), is_power, geometry)
 
 
 def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
