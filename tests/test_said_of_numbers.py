@@ -61,7 +61,7 @@ CURVED = {
         (0.035525, 0.356099),
     ),
 }
-"""Contacts near the minimum of friction, where it is curved, with errors, and the ends of the interval by 3000 solved states."""
+"""Contacts near the minimum of friction, where it is curved, with errors, and the ends by 3000 solved states."""
 
 
 @pytest.mark.parametrize("name", CURVED)
