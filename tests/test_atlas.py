@@ -185,7 +185,7 @@ def test_a_table_of_persson_serves_its_spectrum_and_refuses_others():
 
 
 def test_seals_with_the_law_of_persson_are_read_off_their_table():
-    seal = sb.load_case(Path(__file__).parents[1] / "examples" / "rod_seal.toml").contact
+    seal = sb.load_case(Path(__file__).parents[1] / "examples" / "rod_seal.toml").contact.replace(cavitation="none")
     read = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, method="atlas")
     solved = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, rtol=1e-5)
     assert read.table.name == "line-persson"
