@@ -219,7 +219,7 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
 
 def test_what_is_outside_the_model_is_said_above_the_numbers(open_page):
     page = open_page("?modulus=100+GPa&load=100+kN/m")
-    assert page.locator(".numbers .outside").inner_text().startswith("Outside the range of the model")
+    assert page.locator(".applies .verdict.outside").inner_text().startswith("Outside the range of the model")
 
 
 def test_dragging_a_slider_follows_the_hand(open_page):

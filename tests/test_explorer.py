@@ -11,6 +11,7 @@ import sys
 import time
 import tomllib
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 from urllib.parse import parse_qsl
@@ -547,10 +548,14 @@ def test_what_is_outside_the_model_stands_above_every_number():
     steel = inputs.typed(inputs.typed(START, "modulus", "100 GPa"), "load", "100 kN/m")
     shown = Answerer()(steel)
     expected = sb.check(steel.contact)
-    assert not expected.applies and shown.outside and shown.outside.split(". ")[0] in expected.first_line
-    html = table.numbers_html(shown, table.numbers(shown))
-    assert html.startswith('<p class="outside"') and html.index("outside") < html.index('data-key="friction_balanced"')
-    assert Answerer()(START).outside == ""
+    assert not expected.applies and shown.checks.verdict == "outside"
+    html = table.verdict_html(shown)
+    assert html.startswith('<details class="verdict outside"') and " open>" in html
+    assert all(escape(each.sentence) in html for each in expected.with_verdict("outside"))
+    model = Answerer()
+    model(START)
+    model.settle_checks(START, always)
+    assert escape(sb.check(START.contact).headline) in table.verdict_html(model(START))
 
 
 def test_a_change_ends_the_checks_that_need_curves():
@@ -564,7 +569,7 @@ def test_a_change_ends_the_checks_that_need_curves():
     model(START)
     with pytest.raises(ChangedError):
         model.settle_checks(START, changed)
-    assert model.settle_checks(START, lambda part: None) is False  # they were not taken for made, and say nothing new
+    assert model.settle_checks(START, always)  # they were not taken for made
 
 
 def test_pinned_contacts_stand_beside_the_present_one(answer):
@@ -1180,6 +1185,10 @@ def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
 
     for outcome in sb.Outcome:
         assert "rtol" not in without_rtol(outcome.value)
+        assert ("error" in without_rtol(outcome.value)) is ("error of" in outcome.value)
+    kept = "Double precision keeps the error of this state above the requested tolerance."
+    assert without_rtol(f"{kept[:-10]}rtol; ask for a larger rtol, or use the value with its error estimate.") == kept
+    assert without_rtol("The error for each color is not there.") == "The error for each color is not there."
     assert without_rtol("Refining came to its end; ask for a larger rtol.") == "Refining came to its end."
 
 

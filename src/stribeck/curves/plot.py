@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -58,6 +58,13 @@ FEW = 25
 """Number of points up to which each is marked."""
 
 
+class Interval(Protocol):
+    """An interval of the friction along the speed."""
+
+    def along(self, speed: Array, friction: Array) -> tuple[Array, Array]:
+        """Return its ends at some speeds, around the friction there."""
+
+
 @picture()
 def plot_curve(
     curve: StribeckCurve,
@@ -68,6 +75,7 @@ def plot_curve(
     title: str = "",
     notes: bool = True,
     abscissa: Abscissa = "hersey",
+    band: Interval | None = None,
 ) -> Figure:
     """Draw a Stribeck curve.
 
@@ -84,6 +92,8 @@ def plot_curve(
         Axes to draw friction into, over the coordinate of the curve, instead of a new figure.
     abscissa : {"hersey", "speed"}
         Lower axis of a curve over the speed of a contact; the other one stands above.
+    band : stribeck.uncertainty.band.Band, optional
+        What errors of the inputs leave open along the speed, which is drawn around the friction.
     """
     if abscissa not in ("hersey", "speed"):
         raise InputError(f"abscissa = {show(abscissa)}; it must be 'hersey' or 'speed'.")
@@ -105,6 +115,9 @@ def plot_curve(
     )
     x, label = _abscissa(curve, abscissa)
     _draw_friction(left, curve, x)
+    if band is not None and by_speed:
+        low, high = band.along(curve.values, np.abs(np.asarray(curve.friction)))
+        left.fill_between(x, low, high, color=INK, alpha=0.14, lw=0, zorder=1, label="95 % by errors of the inputs")
     _strip(left, curve, x)
     left.set_xlabel(label)
     for axes in (left, right):

@@ -16,13 +16,14 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics import FORMULAS
+from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import ARTICLE
 from stribeck.curves.regime import Regime, regime_of
-from stribeck.explorer.asked.carried import facts_of
+from stribeck.explorer.asked.carried import errors_of, facts_of
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.curves import (
     FIRST_RTOL,
@@ -34,6 +35,7 @@ from stribeck.explorer.curves import (
     Transition,
     axis_speeds,
     curve_from_atlas,
+    curve_notes,
     decade_of_roughness,
     diagram_from_atlas,
     in_atlas,
@@ -49,6 +51,9 @@ from stribeck.solver.point.solution import solution_of as point_solution_of
 from stribeck.solver.point.solve import solve_from
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, solve
+from stribeck.uncertainty.band import friction_band
+from stribeck.uncertainty.propagate import propagate
+from stribeck.uncertainty.result import Uncertainty
 
 __all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down", "round_up", "asymptotic_fields"]
 
@@ -104,8 +109,12 @@ class Answer:
         The state.
     regime : str
         Its regime.
-    outside : str
-        What stands above every number where the model does not apply; empty where it does.
+    checks : Checks
+        Whether the model applies: those that the state decides, and at rest all.
+    notes : tuple of str
+        What to know of the curve, as ``stribeck curve`` prints it; at rest.
+    spread : Uncertainty or None
+        What the errors of the inputs leave open in the state; at rest, where some are given.
     curve : Curve or None
         The curve through it, None where it cannot be solved.
     diagram : Diagram or None
@@ -125,7 +134,9 @@ class Answer:
     inputs: Inputs
     solution: Solution | PointSolution
     regime: Regime
-    outside: str
+    checks: Checks
+    notes: tuple[str, ...]
+    spread: Uncertainty | None
     curve: Curve | None
     diagram: Diagram | None
     reach: float
@@ -146,7 +157,7 @@ class Answerer:
         self._last_diagrams: dict[str, Diagram] = {}
         if known is not None:
             self._last = known.inputs.contact, known.solution
-            self._kept["checks", known.inputs.contact, known.inputs.rest] = known.outside
+            self._kept["checks", known.inputs.contact, known.inputs.rest] = known.checks
             if known.curve is not None:
                 self._last_curves[known.inputs.table.geometry] = known.curve
 
@@ -174,6 +185,9 @@ class Answerer:
         solution = self._state(inputs)
         friction = solution.friction(definition=definition)
         curve, speeds = self._curve_now(contact, definition, measured)
+        band = self._kept.get(("band", _key(contact), definition, inputs.rest))
+        if curve is not None and not curve.stale and band is not None:
+            curve = replace(curve, band=band)
         reach = profile_reach(solution)
         x = np.linspace(-reach, reach, 241)
         nodes = solution.x[np.abs(solution.x) < reach]
@@ -186,7 +200,9 @@ class Answerer:
             inputs=inputs,
             solution=solution,
             regime=regime_of(solution.fluid_load_share, friction.contact_share),
-            outside=self._keep(("checks", contact, inputs.rest), lambda: self._checks(inputs, solution)),
+            checks=self._keep(("checks", contact, inputs.rest), lambda: self._checks(inputs, solution)),
+            notes=self._kept.get(("notes", _key(contact), definition), ()),
+            spread=self._kept.get(_spread_key(inputs)),
             curve=curve,
             diagram=self._diagram_now(contact, definition, speeds),
             reach=reach,
@@ -262,9 +278,38 @@ class Answerer:
         facts = facts_of(inputs.rest)
         solution: Any = self._last[1] if self._last is not None and self._last[0] == contact else None
         subject = Subject(contact, facts, inputs.definition, solution, on_point=lambda done, of: report(done / of))
-        self._kept[key] = checks_of(subject).first_line
+        self._kept[key] = checks_of(subject)
         self._kept["all checks", *key] = True
         return bool(self._kept[key] != before)
+
+    def settle_notes(self, inputs: Inputs, report: Report) -> bool:
+        """Find what to know of the curve over the speed; return whether there is something new to show."""
+        contact, definition = inputs.contact, inputs.definition
+        key = ("notes", _key(contact), definition)
+        if key in self._kept:
+            return False
+        curve: Curve | None = self._kept.get(("solved", _key(contact), definition))
+        if curve is None or curve.solved is None:
+            notes = curve_notes(contact, definition, report)
+        else:
+            notes = curve.solved.notes
+        self._keep(key, lambda: notes)
+        return bool(notes)
+
+    def settle_spread(self, inputs: Inputs, report: Report) -> bool:
+        """Find what the errors of the inputs leave open in the state and along the curve; return whether some are given."""
+        errors, key = errors_of(inputs.rest), _spread_key(inputs)
+        contact, definition = inputs.contact, inputs.definition
+        if not errors or key in self._kept:
+            return False
+        spread = propagate(contact, errors, definition=definition)
+        self._keep(key, lambda: spread)
+        curve, _ = self._curve_now(contact, definition)
+        if curve is not None and not curve.stale:
+            ends = curve.speed[[0, -1]]
+            band = friction_band(contact, errors, ends, definition, on_point=lambda done, of: report(done / of))
+            self._keep(("band", _key(contact), definition, inputs.rest), lambda: band)
+        return True
 
     def why_no_curve(self, inputs: Inputs) -> str:
         """Return why a curve could not be solved; empty if it was, or was not tried."""
@@ -307,9 +352,9 @@ class Answerer:
         return found
 
     @staticmethod
-    def _checks(inputs: Inputs, solution: Solution | PointSolution) -> str:
+    def _checks(inputs: Inputs, solution: Solution | PointSolution) -> Checks:
         subject = Subject(inputs.contact, facts_of(inputs.rest), inputs.definition, solved=solution)  # type: ignore[arg-type]
-        return checks_of(subject, "state").first_line
+        return checks_of(subject, "state")
 
     def _marks(self, contact: Contact, definition: Definition) -> tuple[Transition, ...]:
         return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
@@ -359,6 +404,11 @@ class Answerer:
 def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
     """Return all inputs, law and parts of a contact but the speed, and but what else is named."""
     return tuple(getattr(contact, each.name) for each in fields(contact) if each.name not in ("speed", *without))
+
+
+def _spread_key(inputs: Inputs) -> tuple[Any, ...]:
+    """Return what the propagated errors of a state depend on."""
+    return ("spread", inputs.contact, inputs.definition, inputs.rest)
 
 
 def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, float]) -> tuple[Any, ...]:

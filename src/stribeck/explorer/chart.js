@@ -107,6 +107,24 @@ const PAINT = {
     for (const [one, two] of data) brush.lineTo(x(one), y(two));
     brush.fill();
   },
+  // Strips along the axis, hatched.
+  hatch({ data, color }, { brush, x, box }) {
+    const foot = box.top + box.height, tall = 10;
+    [brush.strokeStyle, brush.lineWidth] = [color, 1.2];
+    for (const [low, high] of data) {
+      brush.save();
+      brush.beginPath();
+      brush.rect(x(low), foot - tall, Math.max(x(high) - x(low), 2), tall);
+      brush.clip();
+      brush.beginPath();
+      for (let at = x(low) - tall; at < x(high) + 2; at += 5) {
+        brush.moveTo(at, foot);
+        brush.lineTo(at + tall, foot - tall);
+      }
+      brush.stroke();
+      brush.restore();
+    }
+  },
   text({ data, words, color }, { brush, x, y, box }) {
     [brush.textAlign, brush.fillStyle, brush.font] = ["center", color, `italic 12px ${FONT}`];
     const half = 0.5 * brush.measureText(words).width;
@@ -201,6 +219,7 @@ function wordsOf(options) {
   }
   for (const { type, name, data } of series) {
     if (type === "bands") found.push(...data.map(([low, high, , regime]) => `${regime} from ${there(low)} to ${there(high)}`));
+    else if (type === "hatch") found.push(...data.map(([low, high]) => `${name} from ${there(low)} to ${there(high)}`));
     else if (isMark({ type, data })) found.push(`${name} at ${there(data[0][0])}`);
     else if (type === "points" && data.length > 1) found.push(`${name}: ${data.length} points`);
     else if (type === "points") found.push(`${name} ${inWords(data[0][1])} at ${there(data[0][0])}`);

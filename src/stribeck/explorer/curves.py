@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,9 @@ from stribeck.curves import regime
 from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
 from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.solver.notes import law_notes
 from stribeck.solver.solve import SolveError
+from stribeck.uncertainty.band import Band
 
 __all__ = [
     "Curve",
@@ -31,6 +33,7 @@ __all__ = [
     "Transition",
     "axis_speeds",
     "curve_from_atlas",
+    "curve_notes",
     "decade_of_roughness",
     "diagram_from_atlas",
     "hersey_scale",
@@ -51,6 +54,10 @@ some take more states."""
 
 SOLVED_POINTS = {"line": 200, "point": 15}
 """Points of curves that are solved; of a ball those for which states are solved where it is no function."""
+
+
+NOTED_POINTS, NOTED_RTOL = {"line": 101, "point": 41}, 1e-4
+"""Of the curve that is solved for its notes where the page reads it off the atlas."""
 
 
 class SolvedRows(NamedTuple):
@@ -127,6 +134,10 @@ class Curve:
         Whether it belongs to inputs before the present ones.
     solved : StribeckCurve or None
         The solved curve that it shows; None off the atlas.
+    doubtful : ndarray of bool, shape (n,)
+        Where the contact law is outside its range while asperities matter.
+    band : Band or None
+        What the errors of the inputs leave open, where some are given.
     """
 
     speed: Array
@@ -136,6 +147,8 @@ class Curve:
     source: str
     stale: bool = False
     solved: StribeckCurve | None = None
+    doubtful: Array = field(default_factory=lambda: np.zeros(0, bool))
+    band: Band | None = None
 
     def transition(self, name: str) -> Transition | None:
         """Return the transition of a name, or None."""
@@ -228,7 +241,62 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
     solid = boundary_friction * float(rule.rubbing(groups, inputs)) * terms["balanced"][0]
     friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
-    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
+    doubtful = law_in_doubt(contact, along, terms["balanced"][0], friction["balanced"])
+    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}", doubtful=doubtful)
+
+
+def law_in_doubt(contact: Contact, along: Groups, share: Array, friction: Array) -> Array:
+    """Return where the exponential law is outside its range along groups off the atlas, as notes of states say it."""
+    gap, films = atlas.central_gap(along), [float(each) for each in np.ravel(along.speed)]
+    found = []
+    for speed, here, load, whole in zip(films, np.ravel(gap), np.ravel(share), np.ravel(friction), strict=True):
+        values = _Read(float(load), float(here), float(here), float(whole) - contact.boundary_friction * float(load))
+        found.append(bool(law_notes(replace(along, speed=speed), contact, values)))
+    return np.array(found)
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The values of a state off the atlas on which notes on the contact law depend."""
+
+    contact_load_share: float
+    central_gap: float
+    minimum_gap: float
+    viscous: float
+
+    def viscous_friction(self, beta: float) -> float:
+        """Return the viscous friction, which is known for the contact's own beta alone."""
+        return self.viscous
+
+
+def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
+    """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    definition : {"balanced", "published"}
+        By which the minimum goes.
+    report : callable
+        Called with the finished part; an exception that it raises ends the work.
+
+    Returns
+    -------
+    tuple of str
+        Its notes; why there are none in its place where it cannot be solved.
+    """
+    try:
+        found = stribeck_curve(
+            contact,
+            points=NOTED_POINTS[contact.INPUTS.geometry],
+            rtol=NOTED_RTOL,
+            definition=definition,
+            on_point=lambda done, of: report(done / of),
+        )
+    except (InputError, SolveError) as problem:
+        return (str(problem),)
+    return found.notes
 
 
 def solved_curve(
@@ -276,6 +344,7 @@ def solved_curve(
     if found.is_function and len(found) < POINTS:
         found = found.sampled(POINTS)
     speed = np.asarray(found.values)
+    doubtful = np.array([bool(law_notes(each.groups, each.contact, each.observables)) for each in found.solutions])
     friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
     contact_part = np.asarray(friction[definition].contact)
     totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}
@@ -284,9 +353,10 @@ def solved_curve(
         source += f"; at {len(speed)} speeds, smooth in between"
         dense = np.unique(np.concatenate([np.geomspace(speed[0], speed[-1], POINTS), speed]))
         viscous = {kind: _between(speed, np.asarray(friction[kind].viscous), dense) for kind in DEFINITIONS}
+        doubtful = doubtful[np.abs(np.log(dense[:, None] / speed)).argmin(axis=1)]
         contact_part, speed = _between(speed, contact_part, dense), dense
         totals = {kind: contact_part + part for kind, part in viscous.items()}
-    return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found)
+    return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found, doubtful=doubtful)
 
 
 def _between(speed: Array, values: Array, at: Array) -> Array:

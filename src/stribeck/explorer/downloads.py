@@ -7,7 +7,7 @@ import functools
 import io
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -148,7 +148,7 @@ def _rounded(inputs: Inputs, name: str) -> str:
     return "none" if value is None else si_text(float(value), name, 4, inputs.table)
 
 
-def content(kind: str, shown: View) -> bytes:
+def content(kind: str, shown: View, go_on: Callable[..., object] | None = None) -> bytes:
     """Return the content of a file of what is shown.
 
     Parameters
@@ -157,6 +157,8 @@ def content(kind: str, shown: View) -> bytes:
         One of the endings of :data:`KINDS`.
     shown : View
         What is shown.
+    go_on : callable, optional
+        Is called while a curve is solved; an exception that it raises ends the work.
 
     Returns
     -------
@@ -172,7 +174,7 @@ def content(kind: str, shown: View) -> bytes:
     if ending in ("png", "svg"):
         from stribeck.explorer.charts.picture import picture
 
-        return picture(shown, what, ending)
+        return picture(shown, what, ending, go_on)
     text = {"toml": case_text, "csv": curves_text, "profile.csv": profile_text}[kind]
     return text(shown).encode()
 

@@ -13,9 +13,9 @@ from typing import Any
 
 from nicegui import background_tasks
 
-from stribeck.explorer import table
 from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.asked import url
+from stribeck.explorer.asked.carried import errors_of
 from stribeck.explorer.asked.history import History
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.asked.url import Pin
@@ -23,8 +23,9 @@ from stribeck.explorer.downloads import View
 from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.explorer.opening import curves_of
 from stribeck.explorer.page import UPDATING, Page
-from stribeck.explorer.serving.pools import LIVE, SLOW, run
+from stribeck.explorer.serving.pools import Threads, run
 from stribeck.quantities.units import InputError
+from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solve import SolveError
 
@@ -39,11 +40,19 @@ REST = 0.4
 
 def without_rtol(sentence: str) -> str:
     """Return a sentence about a failure without advice on the tolerance, which the page does not offer."""
-    return re.sub(r"[;,]? *(?:ask for|or) [^.;]*rtol[^.;]*", "", sentence)
+    left = re.sub(r"[;,]? *\b(?:ask for|or)\b[^.;]*\brtol\b[^.;]*", "", sentence)
+    return re.sub(r"\brtol\b", "tolerance", left)
 
 
 class Superseded(Exception):  # noqa: N818
-    """The inputs changed while something slow was computed for them."""
+    """The inputs changed, or the page was closed, while something slow was computed for them."""
+
+
+def reason(problem: Exception) -> str:
+    """Return in a sentence why something could not be computed."""
+    if isinstance(problem, InputError | SolveError):
+        return without_rtol(str(problem))
+    return f"Internal error ({' '.join(repr(problem).split())[:300]})."
 
 
 def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
@@ -51,9 +60,13 @@ def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
     try:
         if now.table.geometry == "point":
             return '<p class="note">Margins of a ball take ten seconds to a minute; run stribeck regimes.</p>'
-        return regime_margins(now.contact, definition=now.definition, on_point=go_on)
-    except (InputError, SolveError) as problem:
-        return f'<p class="note">{escape(without_rtol(str(problem)))}</p>'
+        found = regime_margins(now.contact, definition=now.definition, on_point=go_on)
+        errors = errors_of(now.rest)
+        return with_intervals(now.contact, found, errors, now.definition) if errors else found
+    except Superseded:
+        raise
+    except Exception as problem:  # else what is being updated would say so for ever
+        return f'<p class="note">{escape(reason(problem))}</p>'
 
 
 class Following:
@@ -74,10 +87,12 @@ class Following:
         self.states: list[Any] = list(shown.states)
         self.said = ""
         self.asked = False
+        self.changes = self.answered_changes = 0
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
         self.closed = False
         self.answer, self.pinned = shown.answer, list(shown.pins)
+        self.threads = Threads()
         self.page = Page(self.inputs)
         self.history = History(self.inputs)
 
@@ -93,27 +108,35 @@ class Following:
         try:
             while self.asked and not self.closed:
                 self.asked = False
-                now = self.inputs
+                now, changes = self.inputs, self.changes
                 try:
                     await self.answered(now)
-                except (InputError, SolveError) as problem:
-                    self.page.say(f"{without_rtol(str(problem))} The last picture is kept.", bad=True)
+                    await self.page.draw(self.inputs, self.seen())
                 except Exception as problem:  # a page that silently no longer follows would be worse
-                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
+                    await self.kept(problem)
                 else:
                     self.page.say(self.said)
                     self.said = ""
-                try:
-                    await self.page.draw(self.inputs, self.seen())
-                except Exception as problem:
-                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
+                self.answered_changes = changes
         finally:
             self.working = False
         self.rest()
 
+    async def kept(self, problem: Exception) -> None:
+        """Keep the last answer, with all that belongs to it, and say why the next one is not there."""
+        self.page.fail(f"{reason(problem)} What is shown belongs to the inputs before.")
+        if not isinstance(problem, InputError | SolveError):
+            self.model = Answerer(self.answer)  # what the failure left in the old one is not to be trusted
+        try:
+            await self.page.draw(self.inputs, self.seen())
+        except Exception as again:
+            self.page.fail(f"{reason(again)} Reload the page.")
+
     async def answered(self, now: Inputs) -> None:
         """Compute the answer; where that takes longer than a moment, mark what is shown."""
-        work = asyncio.ensure_future(run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)))
+        work = asyncio.ensure_future(
+            run(self.threads.live, self.compute, now, tuple(self.pins), speeds_of(self.measured, now))
+        )
         done, _ = await asyncio.wait({work}, timeout=MOMENT)
         if not done:
             self.page.show_working(now)
@@ -131,12 +154,15 @@ class Following:
 
     async def refresh(self, now: Inputs) -> None:
         """Show what has been solved since for the inputs that are shown."""
-        if self.inputs is now and not self.working and not self.closed:
-            self.answer, self.pinned, self.states = await run(
-                LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured, now)
-            )
-            if self.inputs is now:
-                await self.page.draw(now, self.seen())
+        if self.is_shown(now) and not self.working:
+            found = await run(self.threads.live, self.compute, now, tuple(self.pins), speeds_of(self.measured, now))
+            if self.is_shown(now) and not self.working:
+                self.answer, self.pinned, self.states = found
+                await self.page.draw(self.inputs, self.seen())
+
+    def is_shown(self, now: Inputs) -> bool:
+        """Whether the page shows the answer to these inputs, and no others were asked for since."""
+        return self.answer.inputs is now and self.answered_changes == self.changes and not self.closed
 
     # --- when the sliders rest ---
 
@@ -150,21 +176,30 @@ class Following:
 
     async def settle(self) -> None:
         """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
-        now = self.inputs
+        now = self.answer.inputs
         go_on = self.watcher(now)
 
         def report(part: float) -> None:
             go_on()
             self.page.progress = f"{UPDATING} {100 * part:.0f} %"
 
+        async def tried(part: Callable[..., Any]) -> None:
+            try:
+                await part(now, go_on)
+            except Superseded:
+                raise
+            except Exception as problem:  # of one part, which holds up no other
+                self.page.fail(reason(problem))
+
         self.page.progress = ""
+        slow = self.threads.slow
         with self.page.client:
             try:
-                curve = asyncio.ensure_future(run(SLOW, self.model.settle, now, report))
+                curve = asyncio.ensure_future(run(slow, self.model.settle, now, report))
                 curve.add_done_callback(lambda task: task.cancelled() or task.exception())
                 began = asyncio.get_running_loop().time()
                 done, _ = await asyncio.wait({curve}, timeout=REST)
-                if done and curve.result():
+                if done and not curve.exception() and curve.result():
                     await self.refresh(now)
                 await asyncio.sleep(max(0.0, began + REST - asyncio.get_running_loop().time()))
                 self.page.show_address(f"?{url.encode(now, self.pins)}")
@@ -175,36 +210,52 @@ class Following:
                         if self.page.progress:  # it is being solved, and does not only wait for another page
                             self.page.show_progress()
                         await asyncio.wait({curve}, timeout=REST)
-                    if curve.result():
+                    if not curve.exception() and curve.result():
                         await self.refresh(now)
-                if await run(SLOW, self.model.settle, now, go_on, True):
-                    await self.refresh(now)
-                self.page.progress = self.model.why_no_curve(now)
+                try:
+                    curve.result()
+                    if await run(slow, self.model.settle, now, go_on, True):
+                        await self.refresh(now)
+                    self.page.progress = self.model.why_no_curve(now)
+                except Superseded:
+                    raise
+                except Exception as problem:  # else what is being updated would say so for ever
+                    self.page.progress = reason(problem)
+                    self.page.fail(f"The curve could not be computed. {self.page.progress}")
                 if self.page.progress:
                     self.page.show_progress()
-                slow = [self.settle_margins, self.settle_checks]
-                for part in [self.settle_map, *slow] if self.model.map_is_quick(now) else [*slow, self.settle_map]:
-                    await part(now, go_on)
+                parts = [self.settle_margins, self.settle_spread, self.settle_checks, self.settle_notes]
+                for part in [self.settle_map, *parts] if self.model.map_is_quick(now) else [*parts, self.settle_map]:
+                    await tried(part)
             except Superseded:
                 return
-            except Exception as problem:  # else what is being updated would say so for ever
-                self.page.say(f"Internal error ({problem!r}).", bad=True)
 
     async def settle_map(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show the rows of the phase diagram as they are solved."""
         rows = self.model.diagrams(now, go_on)
-        while await run(SLOW, next, rows, False) is not False:
+        while await run(self.threads.slow, next, rows, False) is not False:
             await self.refresh(now)
 
     async def settle_margins(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show the margins to the next regimes."""
-        found = await run(SLOW, ways, now, go_on)
-        if self.inputs is now:
-            self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
+        found = await run(self.threads.slow, ways, now, go_on)
+        if self.is_shown(now):
+            self.page.show_margins(found, now)
+            await self.refresh(now)
+
+    async def settle_spread(self, now: Inputs, go_on: Callable[..., None]) -> None:
+        """Show what the errors of the inputs leave open."""
+        if await run(self.threads.slow, self.model.settle_spread, now, go_on):
+            await self.refresh(now)
 
     async def settle_checks(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show what the checks say that need the curve, or another one."""
-        if await run(SLOW, self.model.settle_checks, now, go_on):
+        if await run(self.threads.slow, self.model.settle_checks, now, go_on):
+            await self.refresh(now)
+
+    async def settle_notes(self, now: Inputs, go_on: Callable[..., None]) -> None:
+        """Show what to know of the curve."""
+        if await run(self.threads.slow, self.model.settle_notes, now, go_on):
             await self.refresh(now)
 
     @property
@@ -216,7 +267,7 @@ class Following:
         """Return what slow work calls again and again: it ends where the inputs have changed."""
 
         def go_on(*_: Any) -> None:
-            if self.inputs is not now or not self.is_seen:
+            if not self.is_shown(now) or not self.is_seen:
                 raise Superseded
 
         return go_on

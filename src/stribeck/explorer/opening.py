@@ -11,7 +11,7 @@ from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.downloads import View
-from stribeck.explorer.serving.pools import LIVE, run
+from stribeck.explorer.serving.pools import OPENING, run
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 
@@ -70,5 +70,5 @@ async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Open
             told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
             return told, View(answer_of(start))
 
-    opened, shown = await run(LIVE, prepare)
+    opened, shown = await run(OPENING, prepare)
     return opened, shown

@@ -29,6 +29,7 @@ from stribeck.explorer.curves import in_atlas
 from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.scans import ENDINGS
+from stribeck.regimes.margins import RegimeMargins
 
 __all__ = ["UPDATING", "Page"]
 
@@ -125,6 +126,7 @@ class Page:
         self.client = ui.context.client
         self.client_name = dumps(self.client.id)
         self.ways_of: Inputs | None = None
+        self.ways: RegimeMargins | None = None
         self.moved: int | None = None
         self.knobs: dict[str, Slider | ChoiceRow] = {}
         self.charts: dict[str, Chart] = {}
@@ -142,11 +144,13 @@ class Page:
         """Make all elements."""
         with ui.element("div").classes("explorer"):
             self.build_bar(now)
+            self.verdict = ui.html("", sanitize=False).classes("applies").props('role="status"')
             with ui.element("section").classes("card controls").props('aria-label="Inputs"'):
                 self.build_controls(now)
             with ui.element("div").classes("middle"):
                 with ui.element("section").classes("card friction").props('aria-label="Stribeck curve"'):
                     self.build_friction(now)
+                    self.curve_notes = ui.html("", sanitize=False).classes("curve-notes")
                     self.comparison = ui.html("", sanitize=False).classes("comparison")
                 with ui.element("section").classes("card fields").props('aria-label="Gap and pressure"'):
                     ui.html("<h2>Gap and pressure along the contact</h2>", sanitize=False)
@@ -164,6 +168,10 @@ class Page:
             with ui.element("div").classes("side"):
                 with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
                     self.status = ui.label().classes("status").props('role="status"')
+                    with ui.element("div").classes("ways-out") as self.ways_out:
+                        self.retry = button("Try again", "refresh", "Compute this once more")
+                        self.back = button("Back", "undo", "Go back to what is shown")
+                    self.ways_out.set_visibility(False)
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
                     head = f"Margins to the next regimes <span class='caption waits'>{UPDATING}</span>"
@@ -178,7 +186,7 @@ class Page:
         """Make the line of title and buttons."""
         endings = ",".join((".toml", ".csv", ".txt", ".tsv", ".dat", *ENDINGS))
         with ui.element("header").classes("bar"):
-            self.title = ui.html("", sanitize=True, tag="h1")
+            self.title = ui.html("", sanitize=False, tag="h1")
             self.upload = (
                 ui.element("input")
                 .props(f'type=file multiple accept="{endings}" aria-hidden="true" tabindex=-1')
@@ -201,7 +209,6 @@ class Page:
             self.pin_button = button("Pin", "push_pin", "Keep this curve to compare (p)")
             button("Link", "link", "Copy the address of this state (l)").on("click", js_handler="() => explorerCopy()")
             self.theme_button = button("", "contrast", "Light or dark (t)").props("aria-label='Light or dark'")
-            self.show_title(now)
 
     def build_controls(self, now: Inputs) -> None:
         """Make fields and sliders of the contact and of the groups."""
@@ -241,11 +248,6 @@ class Page:
 
     # --- what they show ---
 
-    def show_title(self, now: Inputs) -> None:
-        """Show the headline of the case."""
-        title = escape(now.title)
-        self.title.content = f"<b>stribeck</b> explorer<span>{title}</span>"
-
     def show_address(self, query: str) -> None:
         """Put a state into the address."""
         self.client.run_javascript(f"history.replaceState(null, '', {dumps(query)})")
@@ -275,6 +277,12 @@ class Page:
         """Show a sentence above the numbers, in red where something went wrong."""
         self.status.text = sentence
         self.status.classes(remove="said") if bad else self.status.classes("said")
+        self.ways_out.set_visibility(False)
+
+    def fail(self, sentence: str) -> None:
+        """Say what went wrong, and offer the ways out."""
+        self.say(sentence, bad=True)
+        self.ways_out.set_visibility(True)
 
     def renew(self, name: str) -> None:
         """Let a field be shown anew, without mark."""
@@ -324,8 +332,12 @@ class Page:
         waits = answer.curve is None or answer.curve.stale
         source = (self.progress or UPDATING) if waits or answer.curve is None else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
+        margins = self.ways if not self.ways_words(answer.inputs) else None
         return [
-            (self.numbers, table.numbers_html(answer, table.numbers(answer))),
+            (self.title, f"<b>stribeck</b> explorer<span>{escape(answer.inputs.title)}</span>"),
+            (self.verdict, table.verdict_html(answer)),
+            (self.curve_notes, table.curve_notes_html(answer)),
+            (self.numbers, table.numbers_html(answer, table.numbers(answer, margins))),
             (self.source, escape(source)),
             (self.drawing, drawing(answer)),
             (self.comparison, table.comparison_html(answer, seen.states)),
@@ -335,16 +347,19 @@ class Page:
             ),
         ]
 
-    def show_margins(self, content: str, now: Inputs) -> None:
-        """Show the margins of inputs to the next regimes."""
+    def show_margins(self, found: RegimeMargins | str, now: Inputs) -> None:
+        """Show the margins of inputs to the next regimes, or why there are none."""
         self.ways_of = now
-        self.margins.content = content
+        self.ways = None if isinstance(found, str) else found
+        self.margins.content = found if isinstance(found, str) else table.margins_html(found)
         self.client.run_javascript("explorerWaits('')")
 
     def ways_words(self, now: Inputs) -> str:
         """Return what stands beside the margins: whether they belong to what is shown."""
         shown = self.ways_of
-        same = shown is not None and (shown.contact, shown.definition, shown.model) == (now.contact, now.definition, now.model)
+        same = shown is not None and all(
+            getattr(shown, name) == getattr(now, name) for name in ("contact", "definition", "model", "rest")
+        )
         return "" if same else UPDATING
 
     def show_working(self, now: Inputs) -> None:
@@ -371,7 +386,8 @@ class Page:
     async def draw(self, now: Inputs, seen: View) -> None:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": self.changed_knobs(now), "moved": self.moved}
-        frame |= {"waits": self.ways_words(now), "geometry": now.table.geometry}
+        shown = seen.answer.inputs
+        frame |= {"waits": self.ways_words(shown), "geometry": shown.table.geometry}
         self.moved = None
         for element, content in self.words(seen):
             if self.shown.get(element.html_id) != content:

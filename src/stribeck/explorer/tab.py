@@ -17,15 +17,14 @@ from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.downloads import View
-from stribeck.explorer.following import Following, Superseded, without_rtol
+from stribeck.explorer.following import Following, Superseded, reason
 from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import ENDINGS, Scan, with_scan
-from stribeck.explorer.serving.pools import FILES, SLOW, run
+from stribeck.explorer.serving.pools import FILES, run
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
 
 __all__ = ["TABS", "Tab"]
 
@@ -80,6 +79,8 @@ class Tab(Following):
         page.pin_button.on("click", self.pin)
         page.fit_button.on("click", self.fit)
         page.theme_button.on("click", self.toggle_theme)
+        page.retry.on("click", self.ask)
+        page.back.on("click", self.go_back)
         for path, item in page.examples.items():
             item.on("click", lambda path=path: self.take_example(path))
         for name, way in (("undo", -1), ("redo", 1)):
@@ -125,11 +126,17 @@ class Tab(Following):
 
     def change(self, changed: Inputs) -> None:
         """Take new inputs and ask for their answer."""
-        if changed.title != self.inputs.title:
-            self.page.show_title(changed)
         self.inputs = changed
+        self.changes += 1
         self.page.show_choices(changed)
         self.ask()
+
+    def go_back(self) -> None:
+        """Return to the inputs that are shown, and from these to those before."""
+        if self.inputs is self.answer.inputs:
+            self.step(-1)
+        else:
+            self.change(self.answer.inputs)
 
     def step(self, way: int) -> None:
         """Undo or redo."""
@@ -237,11 +244,11 @@ class Tab(Following):
                 raise Superseded
 
         try:
-            fitted = await run(SLOW, fit_measured, now, last, step)
+            fitted = await run(self.threads.slow, fit_measured, now, last, step)
         except Superseded:
             self.page.say("The fit was given up, as the inputs changed.", bad=True)
-        except (InputError, SolveError) as problem:
-            self.page.say(f"No fit: {without_rtol(str(problem))}", bad=True)
+        except Exception as problem:
+            self.page.say(f"No fit: {reason(problem)}", bad=True)
         else:
             with self.page.client:
                 self.change(fitted.inputs)
@@ -250,15 +257,23 @@ class Tab(Following):
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
         try:
-            found: bytes = await run(SLOW, files.content, kind, self.seen())
-        except (InputError, SolveError, MissingExtraError) as problem:
-            self.page.complain(str(problem))
+            found: bytes = await run(self.threads.slow, files.content, kind, self.seen(), self.while_open)
+        except Superseded:
+            return None
+        except Exception as problem:
+            self.page.complain(str(problem) if isinstance(problem, MissingExtraError) else reason(problem))
             return None
         return found
+
+    def while_open(self, *_: Any) -> None:
+        """End slow work of a page that is gone."""
+        if self.closed:
+            raise Superseded
 
     def close(self) -> None:
         """Stop what runs for a page that is gone."""
         self.closed = True
+        self.threads.close()
         tidy_soon()
         if self.resting is not None:
             self.resting.cancel()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 
 from stribeck.contacts.friction import Definition
@@ -15,10 +15,12 @@ from stribeck.explorer.curves import Transition
 from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.outputs import ENDS
+from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
+from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["Row", "comparison_html", "margins_html", "numbers", "numbers_html"]
+__all__ = ["Row", "comparison_html", "curve_notes_html", "margins_html", "numbers", "numbers_html", "verdict_html"]
 
 MOST_DIGITS = 4
 
@@ -40,7 +42,9 @@ class Row:
     text : str
         The number as shown, with its unit.
     error_text : str
-        The error as shown.
+        The error of the solver as shown, in a tooltip.
+    interval : str
+        The 95 % interval by the errors of the inputs; empty where none are given.
     """
 
     key: str
@@ -49,15 +53,18 @@ class Row:
     error: float
     text: str
     error_text: str
+    interval: str = ""
 
 
-def numbers(answer: Answer) -> list[Row]:
+def numbers(answer: Answer, margins: RegimeMargins | None = None) -> list[Row]:
     """Return friction by both definitions, shares, films and their ends, ratios and the nearest transitions.
 
     Parameters
     ----------
     answer : Answer
         What is shown.
+    margins : RegimeMargins, optional
+        Margins of the same contact, which have the intervals of the transitions nearby.
 
     Returns
     -------
@@ -93,11 +100,29 @@ def numbers(answer: Answer) -> list[Row]:
     )
     symbol = RULES[contact.groups.geometry].hersey_symbol.replace("F_N", "F<sub>N</sub>")
     rows.append(_row("hersey_number", f"Hersey number {symbol}", contact.hersey_number, 0.0))
-    rows += _transition_rows(answer)
-    return rows
+    known = _intervals(answer)
+    rows = [replace(row, interval=known.get(row.key, "")) for row in rows]
+    return rows + _transition_rows(answer, margins)
 
 
-def _transition_rows(answer: Answer) -> list[Row]:
+def _intervals(answer: Answer) -> dict[str, str]:
+    """Return the 95 % interval of each number that the errors of the inputs leave open."""
+    if answer.spread is None:
+        return {}
+    films = {each.name: each.film for each in answer.solution.outputs.rows if each.film}
+    named = {"friction": f"friction_{answer.inputs.definition}", **films}
+    found = {}
+    for each in answer.spread.spreads:
+        ends = each.interval_95
+        if each.name.endswith("_share"):
+            text = " to ".join(f"{100 * end:.3g}" for end in ends) + " %"
+        else:
+            text = " to ".join(format_si(end, each.dimension).replace("*", "·") for end in ends)
+        found[named.get(each.name, each.name)] = text
+    return found
+
+
+def _transition_rows(answer: Answer, margins: RegimeMargins | None) -> list[Row]:
     """Return by which factor of the speed boundary lubrication ends and hydrodynamic lubrication begins."""
     names = {
         "boundary": "Speed at end of boundary regime",
@@ -117,8 +142,27 @@ def _transition_rows(answer: Answer) -> list[Row]:
         factor = mark.speed / speed if speed > 0 else math.inf
         if speed > 0:
             text = f"{text} ({_times(factor)})"
-        rows.append(Row(key, label, factor, factor * mark.error, text, _relative(mark)))
+        interval = _factor_interval(answer.regime, name, margins)
+        rows.append(Row(key, label, factor, factor * mark.error, text, _relative(mark), interval))
     return rows
+
+
+def _factor_interval(regime: str, name: str, margins: RegimeMargins | None) -> str:
+    """Return the 95 % interval of the factor in speed to a transition that ends the present regime."""
+    into = {("boundary", "boundary"): "mixed", ("mixed", "boundary"): "boundary"}
+    into |= {("mixed", "hydrodynamic"): "hydrodynamic", ("hydrodynamic", "hydrodynamic"): "mixed"}
+    speeds = None if margins is None else next((each for each in margins.margins if each.name == "speed"), None)
+    mark = None if speeds is None else speeds.crossing_into(into.get((regime, name), ""))
+    return "" if mark is None else _interval(mark)
+
+
+def _interval(mark: Crossing) -> str:
+    """Return the 95 % interval of a factor, which is multiplied with or divided by as the factor itself."""
+    if mark.interval_95 is None:
+        return ""
+    larger = mark.factor >= 1
+    low, high = sorted(mark.interval_95 if larger else (1 / end for end in mark.interval_95))
+    return f"{'×' if larger else '÷'} {format_factor(low)} to {format_factor(high)}"
 
 
 def _relative(mark: Transition) -> str:
@@ -179,15 +223,13 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
     str
         HTML without text of the user.
     """
-    solution = answer.solution
-    applies = f'<p class="outside" data-key="outside" data-value="">{escape(answer.outside)}</p>' if answer.outside else ""
-    notes = [note for note in solution.notes if not answer.outside or note not in answer.outside]
+    notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
+    head = '<tr><td></td><td></td><th scope="col">95 %</th></tr>' if any(row.interval for row in rows) else ""
     return "".join(
         [
-            applies,
             f'<div class="regime {answer.regime}" data-key="regime" data-value="{answer.regime}">{answer.regime}'
             f"<small>{_regime_words(answer)}</small></div>",
-            "<table>",
+            f"<table>{head}",
             *(_line(row) for row in rows),
             "</table>",
             _notes(notes),
@@ -205,10 +247,51 @@ def _regime_words(answer: Answer) -> str:
 
 
 def _line(row: Row) -> str:
+    solver = f"error of the solver: {row.error_text}" if row.error_text.startswith("±") else row.error_text
+    tip = f' title="{escape(solver)}"' if solver else ""
     return (
         f'<tr data-key="{row.key}" data-value="{row.value!r}" data-error="{row.error!r}"><th scope="row">{row.label}</th>'
-        f"<td>{escape(row.text)}</td><td>{escape(row.error_text)}</td></tr>"
+        f"<td{tip}>{escape(row.text)}</td><td>{escape(row.interval)}</td></tr>"
     )
+
+
+def verdict_html(answer: Answer) -> str:
+    """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+
+    Returns
+    -------
+    str
+        One line, which opens where a check is not fine.
+    """
+    checks = answer.checks
+    said = [each.sentence for verdict in ("outside", "doubtful") for each in checks.with_verdict(verdict)]
+    look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
+    if not said:
+        return f"<p {look}>{escape(checks.headline)}</p>"
+    more = "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
+    opened = " open" if checks.verdict == "outside" else ""
+    return f"<details {look}{opened}><summary>{escape(checks.headline)}</summary>{more}</details>"
+
+
+def curve_notes_html(answer: Answer) -> str:
+    """Return the notes of the curve as HTML, but for those that the verdict holds.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+
+    Returns
+    -------
+    str
+        A paragraph for each.
+    """
+    return _notes(note for note in answer.notes if not answer.checks.covers(note))
 
 
 def _notes(notes: Iterable[str]) -> str:
@@ -287,6 +370,8 @@ def margins_html(margins: RegimeMargins) -> str:
                 continue
             value = format_si(mark.value, INPUT_TABLES[margins.geometry].quantities[margin.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
-            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>({escape(value)})</small></td>')
+            interval = f"<br><small>95 %: {_interval(mark)}</small>" if mark.interval_95 is not None else ""
+            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>({escape(value)})</small>{interval}</td>')
         lines.append("</tr>")
-    return "".join([*lines, "</table>", _notes(margins.notes)])
+    exact = (line for line in ways_to(margins) if "exact" in line)
+    return "".join([*lines, "</table>", *(f'<p class="caption">{escape(line)}</p>' for line in exact), _notes(margins.notes)])

@@ -29,6 +29,7 @@ from stribeck.quantities.units import InputError, show
 __all__ = [
     "check_rest",
     "contact_of",
+    "errors_of",
     "facts_of",
     "fluid_table",
     "geometry_of",
@@ -200,6 +201,11 @@ def facts_of(rest: str) -> dict[str, float]:
     """Return the facts of the table ``[check]`` in what the page carries along, in SI units."""
     given = json.loads(rest).get("check", {}) if rest else {}
     return fact_values({name: value for name, value in given.items() if name in FACTS})
+
+
+def errors_of(rest: str) -> dict[str, float]:
+    """Return the relative standard errors of inputs in what the page carries along."""
+    return json.loads(rest).get("errors", {}) if rest else {}
 
 
 def law_words(model: str) -> str:

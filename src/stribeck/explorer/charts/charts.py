@@ -91,6 +91,16 @@ def friction_chart(
             line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
             line("friction", names[chosen], x, size[chosen], palette.ink, 2.4),
         ]
+        if curve.band is not None:
+            lower, upper = curve.band.along(curve.speed, size[chosen])
+            heights += [*_range(lower[lower > 0.1 * size[chosen]]), *_range(upper)]
+            there = np.isfinite(lower)
+            floor = np.maximum(lower, 1e-3 * size[chosen])[there]
+            outline = [*pairs(x[there], upper[there]), *pairs(x[there][::-1], floor[::-1])]
+            band = {"id": "spread", "name": "95 % by errors of the inputs", "type": "area", "data": outline}
+            series.insert(0, band | {"color": palette.ink, "opacity": 0.14, "width": 8, "dash": []})
+        if curve.doubtful.any() and not curve.stale:
+            series.append(_doubtful_stretches(x, curve.doubtful, palette))
         if curve.stale:
             for old in series:
                 old["opacity"] = 0.25
@@ -115,7 +125,7 @@ def friction_chart(
     series.append(marker(contact.speed * scale if contact.speed > 0 else ends[0], friction, palette))
     abscissa = f"{speed_words(contact)} U (m/s)" if inputs.abscissa == "speed" else f"Hersey number {symbol} (–)"
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
-    listed += [each["name"] for each in series if each["id"].startswith(("pin", "measured", "minimum"))]
+    listed += [each["name"] for each in series if each["id"].startswith(("pin", "measured", "minimum", "doubtful", "spread"))]
     return chart(palette, log_axis(abscissa, *ends), log_axis("friction coefficient µ", low, high), series, listed)
 
 
@@ -252,6 +262,16 @@ def _regime_bands(curve: Curve, ends: tuple[float, float], scale: float, palette
         [start, end, palette.tints[name], name] for name, start, end in pieces if end > start * 1.0001 and not curve.stale
     ]
     return {"id": "bands", "name": "regimes", "type": "bands", "data": shown}
+
+
+def _doubtful_stretches(x: Array, doubtful: Array, palette: Palette) -> Options:
+    """Return the stretches along the axis where the contact law is outside its range."""
+    edges = np.sqrt(x[:-1] * x[1:])
+    lows, highs = np.append(x[0], edges), np.append(edges, x[-1])
+    turns = np.flatnonzero(np.diff(np.concatenate([[False], doubtful, [False]]).astype(int)))
+    data = [[float(lows[first]), float(highs[last - 1])] for first, last in zip(turns[::2], turns[1::2], strict=True)]
+    look = {"color": palette.contact, "width": 6, "dash": [2, 2]}
+    return {"id": "doubtful", "name": "contact law outside its range", "type": "hatch", "data": data, **look}
 
 
 def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: float, palette: Palette) -> list[Options]:

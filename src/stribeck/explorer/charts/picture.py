@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ POINTS, RTOL = 101, 1e-4
 """Of the curve that is solved for a picture where the page reads it off the atlas."""
 
 
-def picture(shown: View, what: str, kind: str) -> bytes:
+def picture(shown: View, what: str, kind: str, go_on: Callable[..., object] | None = None) -> bytes:
     """Return a picture of the curve, with pinned and measured ones, or of the state.
 
     Parameters
@@ -31,6 +32,8 @@ def picture(shown: View, what: str, kind: str) -> bytes:
         Which.
     kind : {"png", "svg"}
         Its format.
+    go_on : callable, optional
+        Is called while a curve is solved; an exception that it raises ends the work.
 
     Returns
     -------
@@ -44,32 +47,40 @@ def picture(shown: View, what: str, kind: str) -> bytes:
     MissingExtraError
         If matplotlib is not installed.
     """
-    figure = figure_of(shown, what)
+    figure = figure_of(shown, what, go_on)
     file = io.BytesIO()
     metadata: dict[str, Any] = {"Date": None} if kind == "svg" else {}
     figure.savefig(file, format=kind, metadata=metadata)
     return file.getvalue()
 
 
-def figure_of(shown: View, what: str) -> Any:
-    """Return the figure of the curve or of the state."""
-    if what == "state":
-        return shown.answer.solution.plot()
+def figure_of(shown: View, what: str, go_on: Callable[..., object] | None = None) -> Any:
+    """Return the figure of the curve, over what the page shows it, or of the state."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
+    if what == "state":
+        return shown.answer.solution.plot(title=inputs.title)
     found = None if curve is None or curve.stale else curve.solved
     if found is None:
         found = stribeck_curve(
-            inputs.contact, speed=shown.answer.speeds, points=POINTS, rtol=RTOL, definition=inputs.definition
+            inputs.contact, speed=shown.answer.speeds, points=POINTS, rtol=RTOL, definition=inputs.definition, on_point=go_on
         )
-    figure = found.plot()
+    band = None if curve is None or curve.stale else curve.band
+    figure = found.plot(title=inputs.title, abscissa=inputs.abscissa, band=band)
     axes = figure.axes[0]
-    added = []
+    added, heights = [], [np.array(axes.get_ylim())]
     for i, (name, pinned, hersey) in enumerate(shown.pins):
         style: Any = {"color": LIGHT.pins[i % 6], "ls": (0, PIN_DASHES[i % 6])}
-        added += axes.plot(pinned.speed * hersey, np.abs(pinned.friction[inputs.definition]), lw=1.4, label=name, **style)
+        places = pinned.speed * (hersey if inputs.abscissa == "hersey" else 1.0)
+        friction = np.abs(pinned.friction[inputs.definition])
+        added += axes.plot(places, friction, lw=1.4, label=name, **style)
+        heights.append(friction[friction > 0])
     for each in shown.measured:
-        places = each.places(inputs.contact, "hersey") * hersey_scale(inputs.contact)
+        places = each.places(inputs.contact, inputs.abscissa)
+        places = places * (hersey_scale(inputs.contact) if inputs.abscissa == "hersey" else 1.0)
         added += axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=LIGHT.ink, label=each.name)
+        heights.append(each.friction[each.friction > 0])
     if added:  # the others are named below the picture
+        all_heights = np.concatenate(heights)
+        axes.set_ylim(all_heights.min(), all_heights.max())
         axes.legend(handles=added, frameon=False, fontsize=8)
     return figure

@@ -1,4 +1,4 @@
-"""The threads in which pages compute: of what follows a slider, of what comes when it rests, and of files that are read."""
+"""The threads in which pages compute: each page has its own for what follows a slider and for what comes when it rests."""
 
 from __future__ import annotations
 
@@ -7,11 +7,24 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-__all__ = ["FILES", "LIVE", "SLOW", "run"]
+__all__ = ["FILES", "OPENING", "Threads", "run"]
 
-LIVE = ThreadPoolExecutor(2, "explorer")
-SLOW = ThreadPoolExecutor(1, "explorer-slow")
+OPENING = ThreadPoolExecutor(2, "explorer")
 FILES = ThreadPoolExecutor(2, "explorer-files")
+"""Of all pages: what a page opens with, and files, which are read in processes that end by themselves."""
+
+
+class Threads:
+    """The threads of one page, which wait for no other page; they start when they are first needed."""
+
+    def __init__(self) -> None:
+        self.live = ThreadPoolExecutor(1, "explorer-live")
+        self.slow = ThreadPoolExecutor(1, "explorer-slow")
+
+    def close(self) -> None:
+        """Drop what waits, and end with what runs."""
+        for pool in (self.live, self.slow):
+            pool.shutdown(wait=False, cancel_futures=True)
 
 
 async def run(pool: ThreadPoolExecutor, function: Callable[..., Any], *arguments: Any) -> Any:
