@@ -1,5 +1,6 @@
 """What is said beside numbers: notes with the coefficients that were given, what an interval counts, and what was searched."""
 
+import itertools
 import re
 
 import pytest
@@ -71,3 +72,22 @@ def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states
     found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
     # The ends of 3000 draws scatter by 2 % of the width themselves.
     assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
+
+
+@pytest.mark.parametrize("free", [True, 5, 1.5, "roughness", None], ids=str)
+def test_what_is_free_is_a_list_of_inputs(free):
+    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+    if free is None:
+        assert sb.fit(data, case, intervals=False).inputs
+        return
+    with pytest.raises(sb.InputError, match="free = .* must be a list of inputs"):
+        sb.fit(data, case, free=free, intervals=False)
+
+
+def test_inputs_that_data_cannot_tell_apart_are_named_together_once():
+    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+    found = sb.fit(data, case, free=["viscosity", "modulus", "load"], intervals=False)  # the case knows the modulus a little
+    assert [set(each.names) for each in found.undetermined] == [{"viscosity factor", "modulus", "load"}]
+    said = [*found.notes, *(each.message for each in found.undetermined)]
+    for pair in itertools.combinations(found.undetermined[0].names, 2):
+        assert sum(all(name in sentence for name in pair) for sentence in said) == 1

@@ -249,6 +249,8 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
     InputError
         If one is unknown, not to be fitted, or there twice.
     """
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise InputError(f"{where} = {show(names)} must be a list of inputs, such as ['boundary_friction', 'roughness'].")
     found = []
     for name in names:
         meant = MEANT.get(name, name) if isinstance(name, str) else name

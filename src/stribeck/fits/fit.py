@@ -408,7 +408,7 @@ def _scaled(free: Sequence[FreeInput], contact: Contact, contacts: Sequence[Cont
     """Return the sentence on a surface that was scaled as a whole."""
     if not any(each.also for each in free):
         return []
-    fitted = ", ".join(f"{each.beta:.4g}" for each in contacts)
+    fitted = ", ".join(dict.fromkeys(f"{each.beta:.4g}" for each in contacts))
     return [
         f"The roughness scales the surface as a whole, so that beta follows: {contact.beta:.4g} in the case, {fitted} fitted."
     ]
