@@ -1208,3 +1208,52 @@ def test_history_goes_back_and_forth_and_forgets_what_was_undone_before_a_change
     for k in range(300):
         past.rest(states[k % 2])
     assert len(past.states) == 100
+
+
+# --- what errors leave open ---
+
+
+@pytest.fixture(scope="module")
+def uncertain(tmp_path_factory):
+    """Return the case with errors, and the answer of a page that has come to rest on it."""
+    path = tmp_path_factory.mktemp("case") / "case.toml"
+    text = (EXAMPLES / "pdms_cylinder.toml").read_text()
+    path.write_text(re.sub(r'^(load = "30 N/m)"', r'\1 +- 10 %"', text, flags=re.MULTILINE))
+    case = sb.load_case(path)
+    assert case.errors
+    shown, model = inputs.from_case(case), Answerer()
+    model(shown)
+    assert model.settle_spread(shown, lambda *_: None) and not model.settle_spread(shown, lambda *_: None)
+    model.settle_notes(shown, lambda *_: None)
+    model.settle_checks(shown, lambda *_: None)
+    return case, model(shown)
+
+
+def test_the_numbers_have_the_intervals_of_the_command_and_the_error_of_the_solver_apart(uncertain):
+    case, answer = uncertain
+    rows = {row.key: row for row in table.numbers(answer)}
+    low, high = sb.propagate(case.contact, case.errors)["friction"].interval_95
+    assert rows[f"friction_{case.definition}"].interval == f"{low:.3g} to {high:.3g}"
+    shown = table.numbers_html(answer, list(rows.values()))
+    assert ">95 %</th>" in shown and "count as exact" in shown
+    assert "95 %" not in table.numbers_html(Answerer()(START), table.numbers(Answerer()(START)))
+
+
+def test_the_curve_has_the_band_of_the_propagated_errors(uncertain):
+    case, answer = uncertain
+    band = answer.curve.band
+    at = len(band.speed) // 2
+    found = sb.propagate(case.contact.replace(speed=float(band.speed[at])), case.errors, transitions=False)["friction"]
+    assert (band.low[at], band.high[at]) == pytest.approx([end / found.value for end in found.interval_95], rel=1e-9)
+    assert (band.low < 1).all() and (band.high > 1).all()
+
+
+def test_the_verdict_and_the_notes_are_those_of_the_commands(uncertain):
+    case, answer = uncertain
+    assert answer.checks.headline in table.verdict_html(answer).replace("&#x27;", "'")
+    assert answer.checks.headline.split(":")[0] in str(sb.check(case.contact, **case.facts)).split("\n")[0]
+
+
+def test_a_scan_says_alpha_and_beta_with_their_interval_of_95_per_cent():
+    words = read_scan("profile.csv", PROFILE).words
+    assert re.search(r"alpha [0-9.]+ \([0-9.]+ to [0-9.]+\), beta [0-9.e-]+ \([^)]+\), at 95 %\.", words)

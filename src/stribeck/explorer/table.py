@@ -224,6 +224,7 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
         HTML without text of the user.
     """
     notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
+    notes += [] if answer.spread is None else answer.spread.sources
     head = '<tr><td></td><td></td><th scope="col">95 %</th></tr>' if any(row.interval for row in rows) else ""
     return "".join(
         [
