@@ -38,10 +38,10 @@ CURVE = "curve"
 
 EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 
-SAMPLED = 200
+SAMPLE_ROWS = 200
 """Rows of each table by which tables are compared."""
 
-SAME = 0.05
+SETTING_TOLERANCE = 0.05
 """Relative difference of numbers up to which a column has only one setting."""
 
 MANY = 10
@@ -352,14 +352,14 @@ def _telling(lines: list[Line], headings: list[Heading], knows: Callable[[str], 
     cells = [
         heading.row(line.text, Path(), line.number, filled_up=True)
         for each in headings
-        for line in [line for line in lines[each.below : each.end] if line.numeric][:SAMPLED]
+        for line in [line for line in lines[each.below : each.end] if line.numeric][:SAMPLE_ROWS]
         if heading.fits(line)
     ]
     for at, name in enumerate(heading.names):
         if knows(name):
             read = [number_of(row[at].replace(",", "."), ".") for row in cells]
             values = [abs(each[0]) for each in read if each is not None]
-            telling += bool(values) and min(values) < (1 - SAME) * max(values)
+            telling += bool(values) and min(values) < (1 - SETTING_TOLERANCE) * max(values)
     return telling
 
 

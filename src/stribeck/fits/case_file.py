@@ -36,7 +36,7 @@ DIGITS = 10
 AGREEMENT = 1e-8
 """Relative difference that rounding to these digits may leave."""
 
-CHANGED = 1.01
+TRIAL_FACTOR = 1.01
 """Factor on free inputs by which it is tried before a fit whether its case can be written."""
 
 SPECTRUM = {"spectrum", "wavenumber", "density"}
@@ -102,7 +102,7 @@ def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
     known = {name: value for name in names if (value := getattr(contact, name, None))}
     if case.fit.scales_surface and "beta" not in known and "roughness" in known:
         known["beta"] = contact.beta
-    changed = contact.replace(**{name: value * CHANGED for name, value in known.items()})
+    changed = contact.replace(**{name: value * TRIAL_FACTOR for name, value in known.items()})
     with TemporaryDirectory() as folder:
         _write(case, changed, [name for name in names if name in known], lambda name: [], [], Path(folder) / "case.toml", path)
 

@@ -32,7 +32,7 @@ SIZES = np.geomspace(1e-12, 1e12, 241)
 DECAY_LENGTHS = (1e-12, 1.0)
 """Those of the roughness: far below a length of the law's own, and the only length there is."""
 
-SEE = "See Add a fluid in for_developers.md."
+GUIDE = "See Add a fluid in for_developers.md."
 
 
 def check_law(law: Any) -> None:
@@ -54,7 +54,7 @@ def _checked(law: Any) -> None:
     except InputError:
         raise
     except Exception as error:
-        raise InputError(f"{_name(law)} fails where it is checked ({type(error).__name__}: {error}). {SEE}") from error
+        raise InputError(f"{_name(law)} fails where it is checked ({type(error).__name__}: {error}). {GUIDE}") from error
 
 
 def _rate_law(law: RateLaw) -> None:
@@ -126,7 +126,7 @@ def _pair(law: Any, member: str, at: Array) -> tuple[Array, Array]:
     found = getattr(law, member)(at)
     shapes = {at.shape, ()} if isinstance(law, FlowFactors) else {at.shape}
     if not isinstance(found, tuple) or len(found) != 2 or not {np.shape(each) for each in found} <= shapes:
-        raise InputError(f"{_name(law)}: {member} must return two arrays, its values and its slopes. {SEE}")
+        raise InputError(f"{_name(law)}: {member} must return two arrays, its values and its slopes. {GUIDE}")
     value, slope = (np.broadcast_to(np.asarray(each, dtype=float), at.shape) for each in found)
     return value, slope
 
@@ -151,7 +151,7 @@ def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: 
         i = int(np.argmax(wrong))
         raise InputError(
             f"{_name(law)}: {member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}. "
-            f"{SEE}"
+            f"{GUIDE}"
         )
 
 

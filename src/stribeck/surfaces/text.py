@@ -35,13 +35,13 @@ NO_HEIGHT = MISSING | {"inf", "-inf", "+inf", "infinity", "-infinity", "void", "
 CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
 """Sizes of numbers that instruments write for a missing point."""
 
-BEYOND = 1e30
+HEIGHT_LIMIT = 1e30
 """Size of a number that is no height in any unit: 1e37, or the largest number of a float."""
 
 UNEVEN = 0.02
 """Largest deviation of a position from the even grid, over the spacing, that passes for even."""
 
-AGREES = 0.005
+SPACING_TOLERANCE = 0.005
 """Relative difference of spacings, one given and one in the file, up to which they agree: files round."""
 
 LARGEST_FILE = 1_000_000_000  # [byte]
@@ -151,7 +151,11 @@ def _without_positions(
                 f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
                 "(in Python spacing='0.5 um')."
             )
-        if declared is not None and given is not None and not math.isclose(given[axis], declared[0], rel_tol=AGREES):
+        if (
+            declared is not None
+            and given is not None
+            and not math.isclose(given[axis], declared[0], rel_tol=SPACING_TOLERANCE)
+        ):
             raise InputError(
                 f"{path} declares {declared[0] * 1e6:.4g} um between points along {'xy'[axis]} ({show(declared[1])}), but "
                 f"spacing = {show(spacing)}; leave out the wrong one."
@@ -405,7 +409,7 @@ def _values(
     values = values_of(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
     # Positions are left as they are: only heights may be missing.
     z = values if values.shape[1] > 3 else values[:, -1]
-    beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= BEYOND)
+    beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= HEIGHT_LIMIT)
     words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and _is_missing(cell))
     notes = [
         f"{_points(count, 'reads', 'read')} {show(word)} and {_counts(count)} as missing." for word, count in words.items()

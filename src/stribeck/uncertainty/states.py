@@ -52,7 +52,7 @@ EACH_END, MOST_ROUNDS = 4, 10
 PART_OF_WIDTH = 0.05
 """Part of the width of the interval within which solved samples must lie where they are predicted: what the pages promise."""
 
-CHECKED_SEED = 20_261_126
+SEED = 20_261_126
 
 TINY = 1e-290
 """Value in place of a share that underflows."""
@@ -238,7 +238,7 @@ def _followed(
     """
     from scipy.interpolate import RBFInterpolator
 
-    found, known, random = base, dict[int, Array](), np.random.default_rng(CHECKED_SEED)
+    found, known, random = base, dict[int, Array](), np.random.default_rng(SEED)
     for _ in range(MOST_ROUNDS):
         predicted = friction(found.values())
         low, high = np.quantile(predicted, [0.025, 0.975])

@@ -26,7 +26,7 @@ LARGEST_NOISE = 0.02
 DEVIATIONS = 4.0
 """Standard deviations of the noise of a speed within which rows belong to one step."""
 
-STEADILY = 0.75
+RAMP_SHARE = 0.75
 """Way from end to end over the way from row to row, from which a speed is ramped: 1 on a ramp, 1/2 for three rows of noise."""
 
 FEWEST = 3
@@ -35,7 +35,7 @@ FEWEST = 3
 FEWEST_BLOCKS = 8
 """Blocks of a series from which the correlation of neighbours is estimated."""
 
-RARE = 0.01
+SMALL_PROBABILITY = 0.01
 """Probability below which the scatter of one step is its own and not that of all."""
 
 RUN_IN, CLEAR = 0.03, 3.0
@@ -241,7 +241,7 @@ def _is_its_own(series: Array, common: tuple[float, float]) -> bool:
 
     rows, alone = len(series), _memory([series])
     freedom = max(1.0, 1 / _share(rows, common[1]) - 1)
-    scatters = alone[0] > common[0] * float(chi2.ppf(1 - RARE, freedom)) / freedom
+    scatters = alone[0] > common[0] * float(chi2.ppf(1 - SMALL_PROBABILITY, freedom)) / freedom
     return bool(scatters) or alone[1] - common[1] > 2 / math.sqrt(rows)
 
 
@@ -301,7 +301,7 @@ def _is_ramp(steps: Sequence[_Step]) -> bool:
             speeds = np.log([row[2] for row in step.rows])
             way += abs(float(speeds[-1] - speeds[0]))
             path += float(np.abs(np.diff(speeds)).sum())
-    return way > STEADILY * path
+    return way > RAMP_SHARE * path
 
 
 def _curve_of(row: Row) -> tuple[str, tuple[tuple[str, float], ...]]:

@@ -96,10 +96,10 @@ _IN_BRACKETS = re.compile(
 TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K", "°F": "°F", "ºC": "°C"}
 """Units of temperatures, and how they are printed."""
 
-SAME_TEMPERATURE = 0.1
+TEMPERATURE_TOLERANCE = 0.1
 """Difference of temperatures that a sentence does not tell apart."""
 
-ROLLING = 0.005
+ROLLING_RATIO = 0.005
 """Slide-to-roll ratio up to which it is that of pure rolling: what drives hold a ratio within."""
 
 NEXT_LEVEL = 1.1
@@ -209,7 +209,7 @@ def temperature_note(table: TextTable) -> tuple[str, ...]:
         values = [value for value in _cells_or_none(table, name) if value is not None]
         if values:
             low, high, unit = min(values), max(values), TEMPERATURES[table.unit(name)]
-            said = f"{low:g} {unit}" if high - low < SAME_TEMPERATURE else f"{low:g} to {high:g} {unit}"
+            said = f"{low:g} {unit}" if high - low < TEMPERATURE_TOLERANCE else f"{low:g} to {high:g} {unit}"
             return (f"Temperature by {show(name)}: {said}; the viscosity of the case must be that at this temperature.",)
     return ()
 
@@ -222,7 +222,7 @@ def _levelled(
     if name == MADE_RATIO or not all(value is None or math.isfinite(value) for value in values):
         return table, ()
     # Pure rolling is a setting; a load of zero is no contact.
-    still = ROLLING if meaning == "slide_to_roll" else 0.0
+    still = ROLLING_RATIO if meaning == "slide_to_roll" else 0.0
     sizes = [None if value is None else abs(value) if abs(value) > still else 0.0 for value in values]
     of_value = _levels([size for size in sizes if size])
     if meaning == "slide_to_roll":
@@ -462,7 +462,7 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
     if "sliding_speed" in found and "slide_to_roll" in found:
         name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
         ratios = _ratios(table, ratio, settings)
-        if any(each is not None and abs(each) <= ROLLING for each in ratios):
+        if any(each is not None and abs(each) <= ROLLING_RATIO for each in ratios):
             raise InputError(
                 f"{table.path}: {show(name)} does not give the sum of the surface speeds where {show(ratio)} is zero; write a "
                 "column 'mean speed' or 'sum of speeds', or take these rows out."

@@ -15,7 +15,7 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["without_stops"]
 
-AT_REST = 1e-9
+REST_SPEED = 1e-9
 """Speed over the largest of the file below which it is zero but for rounding."""
 
 CODES = (-999.0, -9999.0, -99999.0)
@@ -71,7 +71,7 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
                 "where a value is missing; leave such cells empty."
             )
     largest = np.nanmax(np.abs(speeds), initial=0.0)
-    rest = np.abs(speeds) <= AT_REST * largest
+    rest = np.abs(speeds) <= REST_SPEED * largest
     if settings.magnitudes:
         return _moving(table, speeds, rest, list(frictions.values()))
     kinds = [

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
-THICK = 0.1
+THICK_FILM = 0.1
 """Film over the radius of the ball above which a note says that lubrication theory does not hold."""
 
 WAKE = (
@@ -450,7 +450,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
         film = model.film.at(groups.speed)
         notes += fluid_notes(film, np.array([values.minimum_gap]), np.array([state.lowest_pressure]), math.nan)
     thickness = 0.0 if contact is None else values.central_gap * contact.slope**2
-    if thickness > THICK:
+    if thickness > THICK_FILM:
         notes.append(
             f"The film is {thickness:.2g} radii thick: lubrication theory is the limit of thin films, and the friction of "
             "a ball is known to the first order in that ratio only."
