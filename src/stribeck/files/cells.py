@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from stribeck.quantities.units import InputError
@@ -17,11 +18,15 @@ __all__ = [
     "is_named",
     "looks_like_units",
     "number_of",
+    "rows_listed",
     "split_header",
 ]
 
 MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 """Cells that hold no value, in lower case."""
+
+MOST_LISTED = 10
+"""Rows that a sentence lists."""
 
 SYMBOLS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
 """What may stand in the brackets of a header in place of a unit: the letter of the quantity."""
@@ -132,3 +137,9 @@ def looks_like_units(cell: str) -> bool:
 def has_number(cell: str) -> bool:
     """Return whether a cell holds a number, with or without a unit."""
     return any(sign.isdigit() for sign in cell) and number_of(cell, ",") is not None
+
+
+def rows_listed(numbers: Iterable[object], most: int = MOST_LISTED) -> str:
+    """Return rows of a file as a sentence lists them, the first of them where there are many."""
+    named = list(map(str, numbers))
+    return ", ".join(named[:most]) + (", ..." if len(named) > most else "")

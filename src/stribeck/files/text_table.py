@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, number_of, split_header
+from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, number_of, rows_listed, split_header
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEETS, sheets_of
@@ -43,9 +43,6 @@ SAMPLE_ROWS = 200
 
 SETTING_TOLERANCE = 0.05
 """Relative difference of numbers up to which a column has only one setting."""
-
-MANY = 10
-"""Rows that a sentence lists."""
 
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
@@ -194,7 +191,7 @@ def read_table(
             f"A table of {other.rows} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
         )
     if text:
-        notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {_some(text)}.",)
+        notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {rows_listed(text)}.",)
     units, labels = heading.units, heading.labels
     if not labels and _are_pairs(header, rows):
         header, labels = ("X", "Y") * (len(header) // 2), header
@@ -519,7 +516,3 @@ def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewher
         mark = SEPARATORS.get(separator, "space")
         return f"{said}: the header is separated by {mark}s and this row by {other}s; use one separator{elsewhere}."
     return f"{said}; use one separator, and leave a cell empty if a value is missing{elsewhere}."
-
-
-def _some(numbers: Sequence[int]) -> str:
-    return ", ".join(map(str, numbers[:MANY])) + (", ..." if len(numbers) > MANY else "")

@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import split_header
+from stribeck.files.cells import rows_listed, split_header
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.text_table import TextTable, read_table
@@ -269,8 +269,8 @@ def _notes(
     if table.decimal_comma([name for name in table.written if name in used or show(name) in told]):
         notes.append("Numbers were read with decimal commas.")
     if empty:
-        rows = ", ".join(map(str, sorted(set(empty))[:10])) + (", ..." if len(set(empty)) > 10 else "")
-        notes.append(f"{len(empty)} row{'s' * (len(empty) != 1)} without a value left out: {rows}.")
+        count = f"{len(empty)} row{'s' * (len(empty) != 1)}"
+        notes.append(f"{count} without a value left out: {rows_listed(sorted(set(empty)))}.")
     unused = [name for name in table.header if name and name not in used and name != run and show(name) not in told]
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.files.cells import rows_listed
 
 __all__ = ["Averaged", "Row", "average_repeats"]
 
@@ -125,7 +126,7 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
     errors, said = _errors(groups)
     made = [_together(group, error) for group, error in zip(groups, errors, strict=True)]
     if starting:
-        listed = ", ".join(map(str, starting[:20])) + (", ..." if len(starting) > 20 else "")
+        listed = rows_listed(starting, 20)
         many = len(starting) != 1
         of = "their steps" if many else "its step"
         sentences.append(f"{len(starting)} row{'s' * many} of other speeds than {of}, as while starting, left out: {listed}.")

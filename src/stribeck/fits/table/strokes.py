@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, number_of
+from stribeck.files.cells import MISSING, number_of, rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show
 
@@ -20,9 +20,6 @@ REST_SPEED = 1e-9
 
 CODES = (-999.0, -9999.0, -99999.0)
 """Numbers that programs write where there is none."""
-
-MANY = 10
-"""Rows that a sentence lists."""
 
 
 @dataclass(frozen=True)
@@ -139,8 +136,7 @@ def _sentence(table: TextTable, kind: _Kind) -> str:
 
 
 def _listed(table: TextTable, rows: Flags) -> str:
-    numbers = [str(table.numbers[i]) for i in np.flatnonzero(rows)]
-    return ", ".join(numbers[:MANY]) + (", ..." if len(numbers) > MANY else "")
+    return rows_listed(table.numbers[i] for i in np.flatnonzero(rows))
 
 
 def _numbers(table: TextTable, name: str) -> Array:
