@@ -53,6 +53,7 @@ PART_OF_WIDTH = 0.05
 """Part of the width of the interval within which solved samples must lie where they are predicted: what the pages promise."""
 
 SEED = 20_261_126
+"""Seed of the choice of samples that are solved."""
 
 TINY = 1e-290
 """Value in place of a share that underflows."""
@@ -249,6 +250,8 @@ def _followed(
         for i in {int(each) for each in chosen} - known.keys():
             with suppress(SolveError):  # one that cannot be solved tells nothing
                 new[i] = base.of_state(solved(i))
+        if not new:
+            continue
         exact = found.y.copy()
         exact[list(new)] = list(new.values())
         wrong = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)].max(initial=0.0)
