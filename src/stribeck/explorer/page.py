@@ -150,7 +150,11 @@ class Page:
             with ui.element("div").classes("middle"):
                 with ui.element("section").classes("card friction").props('aria-label="Stribeck curve"'):
                     self.build_friction(now)
-                    self.curve_notes = ui.html("", sanitize=False).classes("curve-notes")
+                    self.curve_notes = (
+                        ui.html("", sanitize=False)
+                        .classes("curve-notes")
+                        .props('tabindex="0" role="region" aria-label="Notes on the curve"')
+                    )
                     self.comparison = ui.html("", sanitize=False).classes("comparison")
                 with ui.element("section").classes("card fields").props('aria-label="Gap and pressure"'):
                     ui.html("<h2>Gap and pressure along the contact</h2>", sanitize=False)
