@@ -1,51 +1,108 @@
-"""What people open first: shipped cases and templates are in no doubt that their own notes tell how to mend."""
+"""What people open first: shipped cases and templates are in no doubt, and errors that remain are numbers."""
 
+import math
 import re
 import tomllib
 
+import numpy as np
 import pytest
-from command_line import EXAMPLES, PDMS
+from command_line import EXAMPLES, PDMS, call
 
 import stribeck as sb
 
-DOUBTS = ("cavitates", "range of the exponential", "range of Persson")
-"""Words of the notes on suction, and on a contact law outside its range."""
-
-THICK = "pdms_ball"
-"""The ball in the middle of its range of speeds, where its film is thicker than its law reaches; no law reaches further."""
-
-CAVITATING = "rubber_ball"
-"""The ball of an optical rig: a film that breaks would need the length of its wake, which the source does not give."""
-
 CASES = sorted(path for path in EXAMPLES.glob("*.toml") if "vary" not in tomllib.loads(path.read_text()))
 
+CONDITIONAL = {"contact_lens": "The model applies if adhesion is small and no liquid flows in pores."}
+"""The lens is a hydrogel: what adheres and flows in its pores is not known, and its measured friction is ten times larger."""
 
-def doubts(case):
-    """Return the notes that doubt cavitation or contact law at the speed of a case."""
-    return [note for note in sb.solve(case.contact, rtol=1e-3).notes if any(words in note for words in DOUBTS)]
+FINE = re.compile(r"The model applies: all \d+ checks are fine\.(?: Largest error stated: \d+ % \([a-z ]+\)\.)?")
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
-def test_a_shipped_case_opens_without_a_doubt_that_another_model_would_mend(path):
-    found = doubts(sb.load_case(path))
-    if path.stem in (THICK, CAVITATING):
-        [note] = found  # a case that has no doubt any more leaves the exceptions
-        assert ("beyond the range" if path.stem == THICK else "cavitates") in note
-    else:
-        assert found == []
+def first_line(capsys, path):
+    """Return the first line of ``stribeck check``."""
+    return call(capsys, "check", str(path)).out.split("\n")[0].rstrip()
+
+
+DEAR = ("contact_lens", "pdms_ball", "rubber_ball", "tongue_model")
+"""Balls, whose two curves take seconds."""
+
+CHECKED = [pytest.param(path, marks=[pytest.mark.slow] if path.stem in DEAR else [], id=path.stem) for path in CASES]
+
+
+@pytest.mark.parametrize("path", CHECKED)
+def test_check_of_a_shipped_case_begins_without_a_doubt(capsys, monkeypatch, path):
+    monkeypatch.setenv("COLUMNS", "200")
+    line = first_line(capsys, path)
+    expected = CONDITIONAL.get(path.stem)
+    assert line.startswith(expected) and "Doubtful" not in line if expected else FINE.fullmatch(line), line
 
 
 @pytest.mark.parametrize("geometry", ["line", "point"])
-def test_a_template_opens_without_one(geometry, tmp_path):
+def test_check_of_a_template_begins_without_a_doubt(capsys, monkeypatch, geometry, tmp_path):
+    monkeypatch.setenv("COLUMNS", "200")
     path = tmp_path / "case.toml"
     path.write_text(sb.new_case(geometry))
-    assert doubts(sb.load_case(path)) == []
+    assert FINE.fullmatch(first_line(capsys, path))
 
 
-def test_the_law_of_the_article_is_kept_with_a_reason_and_the_amount_that_check_gives():
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_the_state_of_a_shipped_case_is_inside_the_range_of_its_laws(path):
+    notes = sb.solve(sb.load_case(path).contact, rtol=1e-3).notes
+    assert not [note for note in notes if "the film cavitates" in note or "range of" in note or "is wide" in note]
+
+
+def test_the_error_of_the_first_line_is_that_of_the_check_that_it_names():
+    found = sb.check(sb.load_case(PDMS).contact)
+    tail = found["tail of the contact law"]
+    assert found.headline.endswith(f"Largest error stated: {100 * tail.error:.0f} % (tail of the contact law).")
+    assert tail.error == max(each.error for each in found) == tail.value
+    assert tail.sentence in str(found)
+
+
+@pytest.mark.parametrize(("contact", "factor"), [(sb.LineContact, 3 / 8), (sb.PointContact, 2 / 5)])
+def test_a_wide_contact_says_what_its_parabola_costs(contact, factor):
+    """The load of a rigid circle over that of the parabola at the same half-width, by quadrature of its slope."""
+    given = {"radius": 1e-2, "modulus": 1e6, "viscosity": 0.01, "speed": 0.0, "roughness": 0.0, "alpha": 2.0, "beta": 0.05}
+    wide = contact(**given, load=500.0 if contact is sb.LineContact else 1.0, boundary_friction=0.5)
+    found = sb.check(wide)["contact width a/R"]
+    power, steps = (1 if contact is sb.LineContact else 2), 4000
+    slope = [found.value * (i + 0.5) / steps for i in range(steps)]
+    weights = [x**power / (found.value**2 - x**2) ** 0.5 for x in slope]
+    circle = sum(w * x / (1 - x**2) ** 0.5 for w, x in zip(weights, slope, strict=True))
+    parabola = sum(w * x for w, x in zip(weights, slope, strict=True))
+    assert found.verdict == "fine" and 0.1 < found.value < 0.3
+    assert found.error == pytest.approx(factor * found.value**2, rel=1e-12)
+    assert circle / parabola - 1 == pytest.approx(found.error, rel=0.1)
+
+
+def test_a_shipped_law_that_is_the_articles_says_why_and_the_amount_that_check_gives():
     texts = [(EXAMPLES / "pdms_cylinder.toml").read_text(), sb.new_case("line")]
     case, template = (" ".join(line.lstrip("# ") for line in text.splitlines()) for text in texts)
     for words in (case, template):
         assert "article" in words and "The minimum of friction lies beyond" in words and "stribeck check" in words
     moved = re.search(r"minimum of friction, (speed \S+ % and friction \S+ %)", str(sb.check(sb.load_case(PDMS).contact)))
     assert moved and moved[1] in case
+
+
+def test_check_prints_what_a_law_of_greenwood_has_in_common_with_the_exponential_one(capsys, tmp_path):
+    path = tmp_path / "case.toml"
+    old, new = 'law = "exponential"', 'law = "greenwood-williamson"'
+    text = sb.new_case("line").replace("alpha = 2.0", "alpha = 1.0")
+    assert old in text
+    path.write_text(text.replace(old, new))
+    said = " ".join(call(capsys, "check", str(path)).out.split())
+    contact = sb.load_case(path).contact
+    assert found_beta(said) == pytest.approx(beta_of_same_pressure(contact), rel=0.01)
+    assert found_beta(" ".join(str(sb.check(contact)).split())) == found_beta(said)
+
+
+def found_beta(text):
+    """Return the beta of the exponential law that a text names."""
+    return float(re.search(r"presses as the exponential law with alpha = 2 and beta = ([0-9.e-]+) does", text)[1])
+
+
+def beta_of_same_pressure(contact):
+    """Return the beta of the exponential law with alpha = 2 that presses as much at the central gap."""
+    gap = sb.solve(contact, rtol=1e-4).central_gap * contact.hertz.indentation / contact.roughness
+    [log] = contact.law.log_pressure(np.array([gap]))
+    return contact.beta * math.exp(log + 2 * gap)

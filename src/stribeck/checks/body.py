@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from stribeck.checks.check import Check, verdict_of
+from stribeck.checks.check import WORTH_SAYING, Check, verdict_of
 from stribeck.checks.subject import Subject
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import POINT, InputTable
-from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
+from stribeck.solver.notes import HARD, OIL, WIDEST_CONTACT, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0
 """Pressure coefficient times Hertz pressure that is fine, and beyond which the film differs: 12 % thicker, its friction
@@ -18,8 +18,11 @@ FINE_STIFFENING, STIFFENING = 0.1, 1.0
 SOFT, HARD_MODULUS = 1e9, 1e10
 """E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
 
-FINE_WIDTH, TOO_WIDE = 0.1, 0.5
-"""Half-width over the radius up to which a parabola on a half-space is accurate, and beyond which it is not valid."""
+TOO_WIDE = 0.5
+"""Half-width over the radius beyond which a parabola on a half-space is not valid."""
+
+CIRCLE = {"line": 3 / 8, "point": 2 / 5}
+"""Load that a circle bears beyond the parabola at the same width, over (a/R)^2: see :func:`width`."""
 
 FINE_LAYER, THIN_LAYER = 0.3, 1.0
 """Half-width over thickness up to which a layer acts as a half-space within about a tenth, and beyond which it does not."""
@@ -171,14 +174,25 @@ def stiffness(subject: Subject) -> Check:
 
 
 def width(subject: Subject) -> Check:
-    """Return the check of the half-width over the radius."""
+    r"""Return the check of the half-width over the radius, with what the parabola costs.
+
+    .. math:: f = \frac{x^2}{2 R} + \frac{x^4}{8 R^3} + \dots, \qquad
+        F = \frac{E^*}{2} \int_{-a}^a \frac{x f'(x) \, dx}{(a^2 - x^2)^{1/2}}
+        = \frac{\pi E^* a^2}{4 R} \Bigl(1 + \frac38 \frac{a^2}{R^2} + \dots\Bigr)
+
+    for a cylinder, and 1 + (2/5) (a/R)^2 by the same integral of Sneddon for a ball.  Source: derived for docs/checks.md.
+    """
     contact = subject.contact
     slope = contact.hertz.half_width / contact.radius
-    verdict = verdict_of(slope, FINE_WIDTH, TOO_WIDE)
+    verdict = verdict_of(slope, WIDEST_CONTACT, TOO_WIDE)
+    error = CIRCLE[contact.groups.geometry] * slope**2
     notes = width_notes(contact)
-    about = f"a/R is {slope:.2g}: a parabola on a half-space is accurate up to 0.1 and coarse at 0.3."
+    about = (
+        f"a/R is {slope:.2g}: at this width a circle bears {format_percent(error)} more load than the parabola in "
+        "its place; finite bodies and large strains count in the same order."
+    )
     sentence = notes[0] if notes else about
-    return Check("contact width a/R", slope, FINE_WIDTH, verdict, sentence)
+    return Check("contact width a/R", slope, WIDEST_CONTACT, verdict, sentence, error=error, notable=error >= WORTH_SAYING)
 
 
 ADVICE = " Give layer_thickness in [solid]: the layer is then solved."

@@ -15,7 +15,7 @@ from stribeck.files.results import Exported
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OUTSIDE", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
+__all__ = ["OUTSIDE", "WORTH_SAYING", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
 
 Verdict = Literal["fine", "doubtful", "outside"]
 
@@ -23,6 +23,12 @@ ORDER: tuple[Verdict, ...] = ("fine", "doubtful", "outside")
 
 OUTSIDE = "Outside the range of the model"
 """Beginning of the first line of an output if the model does not apply."""
+
+WORTH_SAYING = 0.005
+"""Smallest relative change that a sentence names."""
+
+RESOLVED = 0.05
+"""Smallest error that the headline names: about what experiments resolve."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,10 @@ class Check:
         Whether larger values than the limit are the fine ones.
     condition : str
         What must hold for the model to apply, where the check cannot judge it; empty otherwise.
+    error : float
+        Relative error of the result that the check estimates [-]; 0 where it estimates none.
+    notable : bool
+        Whether outputs print the sentence although the check is fine.
     """
 
     name: str
@@ -57,6 +67,13 @@ class Check:
     unit: str = ""
     at_least: bool = False
     condition: str = ""
+    error: float = 0.0
+    notable: bool = False
+
+    @property
+    def word(self) -> str:
+        """The word with which outputs begin its sentence."""
+        return "Note" if self.verdict == "fine" else self.verdict.capitalize()
 
     @property
     def of_law(self) -> bool:
@@ -135,6 +152,12 @@ class Checks(Exported):
         return tuple(each for each in self.checks if each.verdict == verdict)
 
     @property
+    def said(self) -> tuple[Check, ...]:
+        """The checks whose sentences outputs print: the worst first, then the fine ones that are notable."""
+        notable = (each for each in self.with_verdict("fine") if each.notable)
+        return (*self.with_verdict("outside"), *self.with_verdict("doubtful"), *notable)
+
+    @property
     def unchecked(self) -> tuple[str, ...]:
         """What could not be checked, and what is missing for it, in sentences."""
         facts = [f"{fact} ({name})" for name, fact in self.missing.items()]
@@ -158,15 +181,18 @@ class Checks(Exported):
         outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
         doubts = [each for each in doubtful if not each.condition or outside and not self.applies_with_another_law]
         said = f" Doubtful: {_names(doubts)}." if doubts else ""
+        largest = max((each for each in self.checks), key=lambda each: each.error, default=None)
+        stated = largest is not None and largest.error >= RESOLVED and largest.verdict == "fine"
+        error = f" Largest error stated: {100 * largest.error:.0f} % ({largest.name})." if largest and stated else ""
         if self.applies_with_another_law:
-            return f"{self._applies}: the present one is outside its range ({_names(outside)}).{said}"
+            return f"{self._applies}: the present one is outside its range ({_names(outside)}).{said}{error}"
         if outside:
             return f"{OUTSIDE}: {_names(outside)}.{said}"
         if self._conditions:
-            return f"{self._applies}.{said}"
+            return f"{self._applies}.{said}{error}"
         if doubtful:
-            return f"The model applies, with doubts about {_names(doubtful)}."
-        return f"The model applies: all {len(self.checks)} checks are fine."
+            return f"The model applies, with doubts about {_names(doubtful)}.{error}"
+        return f"The model applies: all {len(self.checks)} checks are fine.{error}"
 
     @property
     def first_line(self) -> str:
@@ -243,7 +269,7 @@ class Checks(Exported):
         rows = [("check", "value", "fine", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-        said = [each.sentence for each in self.checks if each.verdict != "fine"]
+        said = [each.sentence for each in self.said]
         return "\n".join([self.headline, "", *lines, *([""] if said else []), *said])
 
     __repr__ = __str__

@@ -139,6 +139,8 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
             found.append(made)
         elif row.missing:
             missing[row.name] = row.missing
+    if any(each.name == law.TAIL for each in found):
+        found = [law.beside_the_tail(each) if each.name == law.MINIMUM else each for each in found]
     return Checks(tuple(found), tuple(unsolved), missing)
 
 

@@ -167,9 +167,8 @@ def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     for check in content.checks:
         value, limit = check.texts
         yield f"{check.name:<32}{value:<18}fine {limit:<18}{check.verdict}", False
-    for check in content.checks:
-        if check.verdict != "fine":
-            yield from wrapped(f"{check.verdict.capitalize()}: {check.sentence}")
+    for check in content.checks.said:
+        yield from wrapped(f"{check.word}: {check.sentence}")
     for each in content.checks.unchecked:
         yield from wrapped(f"Not checked: {each}")
     if content.notes:

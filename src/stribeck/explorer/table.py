@@ -267,10 +267,10 @@ def verdict_html(answer: Answer) -> str:
     Returns
     -------
     str
-        One line, which opens where a check is not fine.
+        One line, which opens where a check is not fine or states an error.
     """
     checks = answer.checks
-    said = [each.sentence for verdict in ("outside", "doubtful") for each in checks.with_verdict(verdict)]
+    said = [each.sentence for each in checks.said]
     look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
     if not said:
         return f"<p {look}>{escape(checks.headline)}</p>"

@@ -1,4 +1,4 @@
-"""The checks of a contact in words: the headline, a table, and a sentence for each that is not fine."""
+"""The checks of a contact in words: the headline, a table, and a sentence for each that is not fine or notable."""
 
 from __future__ import annotations
 
@@ -37,8 +37,7 @@ def print_checks(console: Console, checks: Checks, title: str) -> None:
         value, limit = each.texts
         table.add_row(each.name, value, limit, each.verdict, style=None if each.verdict == "fine" else STYLES[each.verdict])
     print_table(console, table)
-    for verdict in ("outside", "doubtful"):
-        for each in checks.with_verdict(verdict):
-            say(console, f"{verdict.capitalize()}: {each.sentence}")
+    for each in checks.said:
+        say(console, f"{each.word}: {each.sentence}")
     for sentence in checks.unchecked:
         say(console, f"Not checked: {sentence}")
