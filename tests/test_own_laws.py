@@ -8,6 +8,7 @@ import pytest
 import stribeck as sb
 from stribeck.fluids.laws import FlowFactors, ViscosityLaw
 from stribeck.fluids.rheology.tabulated import TabulatedLaw
+from stribeck.solids.solid import Lengths
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -250,3 +251,120 @@ def test_contact_laws_that_contradict_themselves_are_refused():
     for law, said in ((wrong, "log_slope"), (rises, "fall")):
         with pytest.raises(sb.InputError, match=said):
             sb.solve(CONTACT, law=law())
+
+
+@dataclass(frozen=True)
+class Pad:
+    length: float
+    name = "pad"
+
+    @property
+    def parameters(self):
+        return {"length": self.length}
+
+    @property
+    def lengths(self):
+        return Lengths(self.length)
+
+    def scaled(self, length, speed=1.0):
+        return replace(self, length=self.length / length)
+
+    def deflection(self, mesh):
+        return sb.solids.HalfPlane().deflection(mesh) + self.length * np.eye(mesh.size)
+
+    def far_gap(self, x):
+        return sb.solids.HalfPlane().far_gap(x)
+
+
+def test_a_body_of_ones_own_is_solved_and_nearly_a_half_plane_where_it_hardly_yields():
+    assert sb.solve(CONTACT, solid=Pad(1e-9)).central_gap == pytest.approx(sb.solve(CONTACT).central_gap, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("said", "members"),
+    [
+        ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: self}),
+        ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: type(self)(self.length * length)}),
+        ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: self, "lengths": Lengths()}),
+        ("far_gap does not agree", {"far_gap": lambda self, x: 0.5 * x**2}),
+        ("far_gap does not agree", {"deflection": lambda self, mesh: -Pad(self.length).deflection(mesh)}),
+        ("far_gap does not agree", {"deflection": lambda self, mesh: 2 * Pad(self.length).deflection(mesh)}),
+        ("finite matrix", {"deflection": lambda self, mesh: np.zeros(mesh.size)}),
+        ("finite matrix", {"deflection": lambda self, mesh: np.full((mesh.size, mesh.size), np.nan)}),
+        ("pad.*ZeroDivisionError", {"deflection": lambda self, mesh: 1 / 0}),
+        ("a number for each place", {"far_gap": lambda self, x: 0.0}),
+        ("cannot be hashed", {"__hash__": None}),
+    ],
+    ids=[
+        "no units",
+        "inverse",
+        "no units, no lengths",
+        "no logarithm",
+        "sign",
+        "factor",
+        "shape",
+        "nan",
+        "raises",
+        "one number",
+        "hash",
+    ],
+)
+def test_a_body_that_contradicts_itself_is_refused_where_it_enters(said, members):
+    body = other(Pad, **members)(1e-4)
+    for enter in (
+        lambda: sb.solve(CONTACT, solid=body),
+        lambda: CONTACT.replace(solid=body),
+        lambda: sb.solids.TwoBodies(body),
+    ):
+        with pytest.raises(sb.InputError, match=said):
+            enter()
+
+
+@pytest.mark.parametrize("lacks", ["name", "parameters", "scaled", "far_gap"])
+def test_a_body_that_lacks_a_member_is_refused_with_its_name(lacks):
+    members = {name: value for name, value in vars(Pad).items() if name not in (lacks, "__dict__", "__weakref__")}
+    body = type("Lacking", (), members)(1e-4)
+    with pytest.raises(sb.InputError, match=f"lacks {lacks}"):
+        CONTACT.replace(solid=body)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        (sb.solids.HalfPlane,),
+        (sb.solids.Layer, "2 mm"),
+        (sb.solids.Layer, "1 um", 0.3),
+        (sb.solids.StandardLinearSolid, "10 ms", 3.0),
+        (sb.solids.StandardLinearSolid, "1 s", 3.0, sb.solids.Layer("2 mm")),
+        (sb.solids.Prony, ["1 ms", "10 ms"], [1.0, 0.5]),
+        (sb.solids.TwoBodies, sb.solids.Layer("1 mm"), None, 0.3),
+    ],
+    ids=lambda body: body[0].__name__,
+)
+def test_the_bodies_of_the_package_pass_the_check_of_others(body):
+    kind, *arguments = body
+    assert CONTACT.replace(solid=other(kind)(*arguments)).solid.name
+
+
+@pytest.mark.parametrize("name", ["fluid", "cavitation"])
+def test_a_film_and_an_end_of_it_are_not_given_as_classes(name):
+    class Film:
+        def gradient(self, gap, pressure, flux_gap):
+            return gap
+
+    for enter in (sb.solve, lambda contact, **part: contact.replace(**part)):
+        with pytest.raises(sb.InputError, match=f"{name} = .*(give a law|must be one of)"):
+            enter(CONTACT, **{name: Film()})
+
+
+def test_groups_take_no_film_of_ones_own_and_check_their_body():
+    class Film(type(CONTACT.groups.model.film)):
+        pass
+
+    model = CONTACT.groups.model
+    with pytest.raises(sb.InputError, match="films are those of the package"):
+        replace(model, film=Film())
+    with pytest.raises(sb.InputError, match="must be one of 'none', 'exit', 'reform'"):
+        replace(model, cavitation="ends")
+    with pytest.raises(sb.InputError, match="scaled does not agree"):
+        replace(model, solid=other(Pad, scaled=lambda self, length, speed=1.0: self)(1.0))

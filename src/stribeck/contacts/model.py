@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.solids.half_plane import HalfPlane
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
 __all__ = ["ARTICLE", "Model"]
@@ -33,6 +34,18 @@ class Model:
     cavitation: Cavitation = Cavitation.NONE
     solid: Solid = HalfPlane()
     cavity_pressure: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse films and endings of somebody else, and bodies that contradict themselves."""
+        if not type(self.film).__module__.startswith("stribeck."):
+            raise InputError(
+                f"film = {show(self.film)}; films are those of the package. A fluid of your own is a law of shear, viscosity "
+                "or density, given as fluid = ... to a contact or to solve: see Add a fluid in for_developers.md."
+            )
+        if self.cavitation not in tuple(Cavitation):
+            known = ", ".join(repr(str(each)) for each in Cavitation)
+            raise InputError(f"cavitation = {show(self.cavitation)} must be one of {known}.")
+        as_solid("solid", self.solid)
 
 
 ARTICLE = Model()

@@ -24,6 +24,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.quantities.units import InputError, show
+from stribeck.solids.check_solid import check_solid
 from stribeck.solids.solid import Solid
 
 FAR_ACCURACY = 4e-13
@@ -315,5 +316,6 @@ def as_solid(name: str, solid: Solid | None) -> Solid:
     if solid is None:
         return HalfPlane()
     if hasattr(solid, "deflection") and not isinstance(solid, type):
+        check_solid(name, solid)
         return solid
     raise InputError(f"{name} = {show(solid)}; give one of sb.solids such as Layer('2 mm'), or leave it out: a half-space.")

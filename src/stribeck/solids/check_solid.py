@@ -1,0 +1,131 @@
+"""The check of a body that somebody else wrote: its units, its deflection and its gap far away must agree."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.solid import Solid, lengths_of
+
+__all__ = ["check_solid"]
+
+MEMBERS = ("name", "parameters", "scaled", "deflection", "far_gap")
+
+RTOL = 1e-6
+"""Largest difference of deflections in two units of length, over the largest of them: they differ by rounding alone."""
+
+FAR, FAR_RTOL = 1e3, 0.05
+"""Distance over the longest length of the body where a load of pi/2 is nearly one of a point, and the largest difference of
+gaps from a tenth of that distance on [u_Hz]."""
+
+UNITS = (0.1, 10.0)
+"""Units of length to which the body is scaled."""
+
+ORDERS = np.geomspace(1e-6, 1.0, 7)
+"""Lengths at which a body is looked at that tells none of its own, SI to Hertz units."""
+
+GUIDE = "See Add a fluid in for_developers.md."
+
+
+def check_solid(name: str, solid: Any) -> None:
+    """Refuse a body of somebody else's whose members contradict each other; those of the package have tests of their own."""
+    if type(solid).__module__.startswith("stribeck."):
+        return
+    lacking = [member for member in MEMBERS if not hasattr(solid, member)]
+    if lacking:
+        raise InputError(f"{name} = {show(solid)} lacks {', '.join(lacking)}. {GUIDE}")
+    if not isinstance(solid, Hashable):
+        raise InputError(f"{name} = {show(solid)} cannot be hashed; make it a frozen dataclass.")
+    _checked(solid)
+
+
+@lru_cache(maxsize=64)
+def _checked(solid: Solid) -> None:
+    try:
+        longest = _longest(solid.scaled(1.0))
+        for length in (longest,) if longest > 0 else ORDERS.tolist():
+            _scaling(solid, length)
+        _far_gap(solid, longest if longest > 0 else 1.0)
+    except InputError:
+        raise
+    except Exception as error:
+        raise InputError(f"{_name(solid)} fails where it is checked ({type(error).__name__}: {error}). {GUIDE}") from error
+
+
+def _scaling(solid: Solid, length: float) -> None:
+    """Refuse a body that deflects in another way in another unit of length: deflection over u_Hz is a length over a."""
+    mesh = Mesh(_edges(FAR), ORDER)
+    longest = _longest(solid.scaled(1.0))
+    for unit in UNITS:
+        found = unit * length * _longest(solid.scaled(unit * length))
+        if not abs(found - longest) <= RTOL * longest:
+            raise InputError(
+                f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its lengths have "
+                f"{found:.6g} for {longest:.6g}. {GUIDE}"
+            )
+    first = _deflection(solid.scaled(length), mesh)
+    size = float(np.abs(first).max())
+    for unit in UNITS:
+        other = unit * _deflection(solid.scaled(unit * length), Mesh(mesh.edges / unit, ORDER))
+        if not np.abs(other - first).max() <= RTOL * size:
+            raise InputError(
+                f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its deflection differs "
+                f"by {np.abs(other - first).max() / size:.2g} of the largest. {GUIDE}"
+            )
+
+
+def _far_gap(solid: Solid, length: float) -> None:
+    """Refuse a body whose gap far away is not that of its own deflection under a load of pi/2."""
+    scaled = solid.scaled(length)
+    mesh = Mesh(_edges(FAR), ORDER)
+    x = mesh.nodes[: -mesh.order]
+    gap = np.asarray(scaled.far_gap(x), dtype=float)
+    if gap.shape != x.shape:
+        raise InputError(f"{_name(solid)}: far_gap must return a number for each place. {GUIDE}")
+    beyond = gap - 0.5 * x**2 - _deflection(scaled, mesh)
+    for side in (-1, 1):
+        far = beyond[side * x > 0.1 * FAR]
+        if not np.ptp(far) <= FAR_RTOL:
+            raise InputError(
+                f"{_name(solid)}: far_gap does not agree with deflection under a load of pi/2: beyond an offset they differ "
+                f"by {np.ptp(far):.2g} u_Hz from {0.1 * FAR:g} to {FAR:g} times the longest of its lengths. {GUIDE}"
+            )
+
+
+ORDER = 8
+"""Nodes of a panel."""
+
+
+def _edges(far: float) -> Array:
+    """Return panels that are even where the load is, and double beyond."""
+    beyond = np.geomspace(1.0, far, 11)
+    return np.concatenate([-beyond[::-1], np.linspace(-0.75, 0.75, 7), beyond])
+
+
+def _deflection(solid: Solid, mesh: Mesh) -> Array:
+    """Return the deflection beyond its mean under a smooth load of pi/2 in the middle of the mesh, on the finite panels."""
+    matrix = np.asarray(solid.deflection(mesh), dtype=float)
+    if matrix.shape != (mesh.size, mesh.size) or not np.isfinite(matrix).all():
+        raise InputError(f"{_name(solid)}: deflection must return a finite matrix, nodes by nodes. {GUIDE}")
+    finite = slice(0, mesh.size - mesh.order)
+    half = mesh.edges[-1] / FAR
+    x = mesh.nodes[finite] / half
+    pressure = np.where(np.abs(x) < 1, 15 * np.pi / 32 * (1 - x**2) ** 2, 0.0)
+    found = matrix[finite, finite] @ pressure
+    return np.asarray(found - found.mean())
+
+
+def _longest(solid: Solid) -> float:
+    """Return the longest length that a body tells; zero if none."""
+    lengths = lengths_of(solid)
+    return max((each for each in (lengths.thickness, *lengths.memories) if np.isfinite(each)), default=0.0)
+
+
+def _name(solid: Solid) -> str:
+    return f"the solid {solid.name or type(solid).__name__!r}"
