@@ -75,8 +75,30 @@ def test_a_console_block_does_what_it_shows(code, desk):
         run = subprocess.run([*start, *arguments], capture_output=True, text=True, check=False)
         output = " ".join((run.stdout + run.stderr).split())
         assert run.returncode == (2 if "# exit code 2" in command else 0), output
-        pieces = " ... ".join(" ".join(line.split()) for line in shown).split("...")
-        assert re.search(".*?".join(re.escape(piece.strip()) for piece in pieces), output, re.DOTALL), output
+        assert not (missing := first_missing(shown, output)), f"$ {command}\n{missing}\nThe command printed: {output}"
+
+
+def first_missing(shown, output):
+    """Return the first shown line that the output lacks after those before it, with what it has there; empty if none."""
+    output, place = f" {output} ", 0
+    for line in shown:
+        for piece in re.sub(r"\s+", " ", f" {line} ").split("..."):
+            found = output.find(piece, place)  # with the spaces around it, so that 0.2 is not found in 0.27
+            if found < 0:
+                return f"The page shows: {line.strip()}\nNot there after: {output[max(0, place - 60) : place]!r}"
+            place = found + len(piece) - piece.endswith(" ")
+    return ""
+
+
+def test_a_shown_line_that_is_not_printed_is_named_at_once():
+    printed = [f"row {i} of the table {i * i} end" for i in range(3000)]
+    shown = [f"row {i} ... {i * i} ..." for i in range(3000)]
+    assert first_missing(shown, " ".join(printed)) == ""
+    assert first_missing(["row 1", "  ... end", "row 2 of"], " ".join(printed)) == ""
+    changed = [*shown[:2000], "row 2000 ... 4000001 ...", *shown[2001:]]
+    assert first_missing(changed, " ".join(printed)).startswith("The page shows: row 2000 ... 4000001 ...\n")
+    assert first_missing(["friction 0.2"], "friction 0.27").startswith("The page shows: friction 0.2\n")
+    assert first_missing(["row 2 of", "row 1 of"], "row 1 of row 2 of").startswith("The page shows: row 1 of")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
