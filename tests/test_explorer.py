@@ -1246,8 +1246,8 @@ def test_the_numbers_have_the_intervals_of_the_command_and_the_error_of_the_solv
 def test_the_curve_has_the_band_of_the_propagated_errors(uncertain):
     case, answer = uncertain
     band = answer.curve.band
-    at = len(band.speed) // 2
-    found = sb.propagate(case.contact.replace(speed=float(band.speed[at])), case.errors, transitions=False)["friction"]
+    at = len(band.values) // 2
+    found = sb.propagate(case.contact.replace(speed=float(band.values[at])), case.errors, transitions=False)["friction"]
     assert (band.low[at], band.high[at]) == pytest.approx([end / found.value for end in found.interval_95], rel=1e-9)
     assert (band.low < 1).all() and (band.high > 1).all()
 

@@ -102,6 +102,12 @@ def test_a_report_says_everything_and_asks_no_server(content):
     assert any(line.source for line in said.inputs)
 
 
+def test_the_picture_of_a_report_is_hatched_where_the_contact_law_is_outside_its_range(content):
+    path, said = content
+    assert said.curve.law_in_doubt.any() and not said.curve.law_in_doubt.all()
+    assert "contact law outside its range" in path.read_text()
+
+
 def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
     _, said = content
     before = said.solution.friction().total

@@ -15,6 +15,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.facts import FACTS
 from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 
@@ -103,7 +104,7 @@ class Subject:
 
         tracing = TRACES[contact.groups.geometry]
         speeds = None if tracing.films is None else tuple(speed_of_film(contact, film) for film in tracing.films)
-        return stribeck_curve(
+        found = stribeck_curve(
             contact,
             speed=speeds,
             points=tracing.points,
@@ -111,6 +112,9 @@ class Subject:
             definition=self.definition,
             on_point=self.on_point,
         )
+        if found.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        return found
 
     @property
     def passing_gap(self) -> float:

@@ -165,7 +165,12 @@ def checks_of_solution(solution: Solution, facts: dict[str, float] | None = None
 
 
 def checks_of_curve(
-    curve: StribeckCurve, facts: dict[str, float] | None = None, solution: Solution | None = None
+    curve: StribeckCurve,
+    facts: dict[str, float] | None = None,
+    solution: Solution | None = None,
+    *,
+    is_whole: bool = False,
+    on_point: Callable[[int, int], object] | None = None,
 ) -> Checks | None:
     """Return the checks of a solved curve, at the last of its points over a load; None of groups alone.
 
@@ -177,17 +182,23 @@ def checks_of_curve(
         Facts in SI units.
     solution : Solution, optional
         The state of its contact, which is then checked too.
+    is_whole : bool
+        Whether what all checks need is solved, as :func:`check` does.
+    on_point : callable, optional
+        As in :class:`Subject`.
 
     Returns
     -------
     Checks or None
-        Those that need no other state.
+        All, or those that need no other state.
     """
     if curve.contact is None or not len(curve):
         return None
     over_speed = curve.over == "speed"
     contact = curve.contact if over_speed else curve.solutions[-1].contact
     assert contact is not None
+    if is_whole:  # on a curve of its own: this one need not hold the minimum
+        return checks_of(Subject(contact, facts or {}, curve.definition, solution, on_point=on_point))
     subject = Subject(contact, facts or {}, curve.definition, solution, curve if over_speed else None)
     found = checks_of(
         subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact"

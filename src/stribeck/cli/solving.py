@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -37,10 +38,14 @@ from stribeck.cli.arguments import (
     read_duration,
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, attempted, complain, say, stdout_console
-from stribeck.cli.progress import interruptible
+from stribeck.cli.progress import Progress, interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    from stribeck.checks.check import Checks
+    from stribeck.uncertainty.band import Band
 
 
 def solve_command(
@@ -166,9 +171,10 @@ def curve_command(
     output
         Write the data to this file (.nc or .csv); may be given several times.
     plot
-        Draw the curve to this file (.png, .svg or .pdf).
+        Draw the curve to this file (.png, .svg or .pdf), with the verdict of stribeck check and, where the case has errors of
+        inputs, the 95 % interval of friction along it.
     no_notes
-        Leave the notes out of the picture; they are printed.
+        Leave verdict and notes out of the picture; they are printed.
     over
         What varies: speed, load or roughness; defaults to the value in the case, or speed.
     range
@@ -201,34 +207,84 @@ def curve_command(
     seconds = None if time_limit is None else read_duration(time_limit, "--time-limit")
     with interruptible(sigterm=True, time_limit=seconds) as progress:
         curve = sb.stribeck_curve(on_point=progress, **arguments)
-        progress.writes = True
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
-        written, problems = _write(curve, title, outputs, pictures, force, not no_notes)
-    from stribeck.checks.table import checks_of_curve
+        judged = _judged(curve, loaded, bool(pictures), progress)
+        progress.writes = True
+        verdict = judged.checks.headline if judged.checks is not None and judged.is_whole else ""
+        shown = {"title": title, "notes": not no_notes, "band": judged.band, "verdict": verdict}
+        written, problems = _write(curve, title, outputs, pictures, force, shown)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-
-    checks = checks_of_curve(curve, loaded.facts if loaded else None)
     from stribeck.cli.reports.words import conversions_json, print_conversions
 
     if json:
-        print(report_json.dump(report_json.curve_json(curve, title, written, checks) | conversions_json(loaded)))
+        content = report_json.curve_json(curve, title, written, judged.checks) | conversions_json(loaded)
+        content |= {"uncertainty": judged.errors.to_dict()} if judged.errors is not None else {}
+        print(report_json.dump(content))
     else:
         console = stdout_console()
-        report.print_curve(console, curve, title, written, checks)
+        report.print_curve(console, curve, title, written, judged.checks, judged.errors, verdict)
         print_conversions(console, loaded)
     if problems:
         return complain("\n".join(problems), BAD_INPUT)
+    stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"
+    if judged.problem:
+        complain(judged.problem, 0)
     if curve.outcome is Outcome.INTERRUPTED:
         kept = (
             f"{' and '.join(written)} contain the points so far, marked as incomplete" if written else "no file was asked for"
         )
-        stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"
         return complain(f"{stopped} after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
     if not curve.outcome.ok:
         return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
+    if judged.is_stopped:
+        left_out = "a picture has no verdict, and errors of inputs are not propagated"
+        return complain(f"{stopped} after the curve was solved; {left_out}.", INTERRUPTED)
     return 0
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """Whether the model applies to a curve, and what the errors of the inputs leave open in it."""
+
+    checks: Checks | None
+    is_whole: bool = False
+    errors: sb.Uncertainty | None = None
+    band: Band | None = None
+    problem: str = ""
+    is_stopped: bool = False
+
+
+def _judged(curve: sb.StribeckCurve, case: sb.Case | None, is_drawn: bool, progress: Progress) -> _Judged:
+    """Judge a curve that is solved, for a picture as ``stribeck check`` does; Ctrl-C leaves that out and keeps the curve."""
+    from stribeck.checks.table import checks_of_curve
+
+    facts = case.facts if case else None
+    plain = _Judged(checks_of_curve(curve, facts))
+    if case is None or curve.contact is None or not curve.outcome.ok:
+        return plain
+    from stribeck.uncertainty.band import friction_band
+
+    found = plain
+    try:
+        if is_drawn:
+            found = replace(found, checks=checks_of_curve(curve, facts, is_whole=True, on_point=progress), is_whole=True)
+        if case.errors:
+            errors, definition = case.errors, curve.definition
+            spread = sb.propagate(curve.contact, errors, definition=definition, transitions=curve.over == "speed")
+            found = replace(found, errors=spread)
+            if is_drawn:
+                ends = curve.values[[0, -1]]
+                band = friction_band(curve.contact, errors, ends, definition, curve.over, on_point=progress)
+                found = replace(found, band=band)
+        if progress.wanted:  # what solves a curve keeps its points when it is stopped
+            raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        return replace(plain, is_stopped=True)
+    except (InputError, sb.SolveError) as problem:
+        return replace(found, problem=f"The errors of the inputs are not propagated: {problem}")
+    return found
 
 
 def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
@@ -352,7 +408,12 @@ def figures_command(
 
 
 def _write(
-    curve: sb.StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool, notes: bool
+    curve: sb.StribeckCurve,
+    title: str,
+    outputs: Collection[Path],
+    pictures: Collection[Path],
+    force: bool,
+    shown: Mapping[str, Any],
 ) -> tuple[list[str], list[str]]:
     """Write the files of a curve; return their names, and sentences about those that failed."""
     actions: dict[Path, Callable[[], object]] = {}
@@ -366,7 +427,7 @@ def _write(
     for path in pictures:
         from stribeck.curves.plot import plot_curve
 
-        actions[path] = lambda path=path: plot_curve(curve, path, force=force, title=title, notes=notes)  # type: ignore[misc]
+        actions[path] = lambda path=path: plot_curve(curve, path, force=force, **shown)  # type: ignore[misc]
     return attempted(actions)
 
 

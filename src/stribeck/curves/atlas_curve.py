@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from stribeck.quantities.inputs import si_text
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
+from stribeck.solver.notes import law_notes
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 
@@ -189,6 +190,12 @@ class AtlasCurve(Drawn, Shown):
         crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
         return tuple(self._mark(Transition.MINIMUM, int(i), int(i) + 1, self._slope_at) for i in crossings)
 
+    @cached_property
+    def law_in_doubt(self) -> Array:
+        """Whether the contact law is outside its range at each point while asperities matter there."""
+        viscous = atlas.friction_terms(self.groups, self._inputs(self.groups), "balanced")[1]
+        return where_law_is_in_doubt(self.groups, self.contact, viscous, (self.boundary_friction, self.beta))
+
     def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.curves.plot import plot_atlas_curve
 
@@ -263,6 +270,50 @@ class AtlasCurve(Drawn, Shown):
     def _contact_part_at(self, values: Array) -> Array:
         contact = self._rubbing * np.asarray(atlas.contact_load_share(self.groups_at(values)))
         return friction_share(contact, self._friction_at(values) - contact)
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The values of a state off the atlas on which notes on the contact law depend."""
+
+    contact_load_share: float
+    central_gap: float
+    minimum_gap: float
+    viscous: float
+
+    def viscous_friction(self, beta: float) -> float:
+        """Return the viscous friction, which is known for the contact's own beta alone."""
+        return self.viscous
+
+
+def where_law_is_in_doubt(
+    along: Groups, contact: Contact | None, viscous: Array, given: tuple[float, float] | None = None
+) -> Array:
+    """Return where the contact law is outside its range along groups off the atlas, as notes of states say it.
+
+    Parameters
+    ----------
+    along : Groups
+        Groups, as arrays.
+    contact : Contact or None
+        The contact.
+    viscous : ndarray, shape (n,)
+        Balanced viscous friction there [-].
+    given : tuple of float, optional
+        Boundary friction and beta of groups without a contact.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Where.
+    """
+    axes = np.broadcast_arrays(along.speed, along.load, along.roughness)
+    read = [atlas.contact_load_share(along), atlas.central_gap(along), atlas.minimum_gap(along), viscous]
+    found = []
+    for speed, load, roughness, *values in np.stack([*axes, *read]).T.tolist():
+        groups = replace(along, speed=speed, load=load, roughness=roughness)
+        found.append(bool(law_notes(groups, contact, _Read(*values), given)))
+    return np.array(found, bool)
 
 
 def crossing(function: Callable[[Array], Array], low: float, high: float) -> float:

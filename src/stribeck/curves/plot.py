@@ -31,7 +31,6 @@ from stribeck.files.pictures import (
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import DIMENSIONS, InputError, show
-from stribeck.solver.notes import law_notes
 from stribeck.solver.plot import law_text, plot_profile
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from stribeck.curves.atlas_curve import AtlasCurve
     from stribeck.curves.result import StribeckCurve
 
-__all__ = ["plot_atlas_curve", "plot_curve", "plot_profile"]
+__all__ = ["hatch_law_in_doubt", "plot_atlas_curve", "plot_curve", "plot_profile"]
 
 Abscissa = Literal["hersey", "speed"]
 
@@ -59,10 +58,10 @@ FEW = 25
 
 
 class Interval(Protocol):
-    """An interval of the friction along the speed."""
+    """An interval of the friction along a curve."""
 
-    def along(self, speed: Array, friction: Array) -> tuple[Array, Array]:
-        """Return its ends at some speeds, around the friction there."""
+    def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
+        """Return its ends at values of what varies, around the friction there."""
 
 
 @picture()
@@ -76,6 +75,7 @@ def plot_curve(
     notes: bool = True,
     abscissa: Abscissa = "hersey",
     band: Interval | None = None,
+    verdict: str = "",
 ) -> Figure:
     """Draw a Stribeck curve.
 
@@ -93,7 +93,9 @@ def plot_curve(
     abscissa : {"hersey", "speed"}
         Lower axis of a curve over the speed of a contact; the other one stands above.
     band : stribeck.uncertainty.band.Band, optional
-        What errors of the inputs leave open along the speed, which is drawn around the friction.
+        What errors of the inputs leave open along the curve, which is drawn around the friction.
+    verdict : str
+        Sentence that says whether the model applies, which stands before the notes.
     """
     if abscissa not in ("hersey", "speed"):
         raise InputError(f"abscissa = {show(abscissa)}; it must be 'hersey' or 'speed'.")
@@ -101,24 +103,23 @@ def plot_curve(
         figure = figure_of(ax)
         label = _abscissa_of_values(curve)
         _draw_friction(ax, curve, curve.values)
-        _strip(ax, curve, curve.values)
+        _draw_band(ax, curve, curve.values, band)
+        hatch_law_in_doubt(ax, curve, curve.values)
         ax.set(xlabel=label, ylabel=_ordinate(curve))
         ax.legend(frameon=False, fontsize=8.5)
         return finish_figure(figure, path, force)
     by_speed = curve.over == "speed" and curve.contact is not None
     figure, (left, right) = new_figure(
         (11.0, 5.0 if by_speed else 4.6),
-        *_caption(curve, notes),
+        *_caption(curve, notes, verdict),
         columns=2,
         top=1.0 if by_speed else 0.6,
         title=title or "Stribeck curve",
     )
     x, label = _abscissa(curve, abscissa)
     _draw_friction(left, curve, x)
-    if band is not None and by_speed:
-        low, high = band.along(curve.values, np.abs(np.asarray(curve.friction)))
-        left.fill_between(x, low, high, color=INK, alpha=0.14, lw=0, zorder=1, label="95 % by errors of the inputs")
-    _strip(left, curve, x)
+    _draw_band(left, curve, x, band)
+    hatch_law_in_doubt(left, curve, x)
     left.set_xlabel(label)
     for axes in (left, right):
         axes.set_ylabel(_ordinate(curve))
@@ -138,7 +139,7 @@ def plot_curve(
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":
         _draw_friction(right, curve, law, parts=False)
-        _strip(right, curve, law)
+        hatch_law_in_doubt(right, curve, law)
         right.set_xlabel("friction coefficient of smooth surfaces at the same speed")
         right.set_ylim(left.get_ylim())
         ends = np.array(right.get_ylim())
@@ -177,6 +178,7 @@ def plot_atlas_curve(
     lines = [[*_given(curve), read, f"stribeck {version('stribeck')}"]]
     figure, (axes,) = new_figure((6.8, 4.6), lines, title=title or "Stribeck curve", ax=ax)
     _draw_friction(axes, curve, curve.values)
+    hatch_law_in_doubt(axes, curve, curve.values)
     axes.set(xlabel=_abscissa_of_values(curve), ylabel=_ordinate(curve))
     if ax is None:
         add_legend(figure, (axes,))
@@ -256,6 +258,14 @@ def _draw_friction(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array, *, p
         )
 
 
+def _draw_band(axes: Axes, curve: StribeckCurve, x: Array, band: Interval | None) -> None:
+    """Draw what errors of the inputs leave open around the friction, and make room for it."""
+    if band is not None:
+        low, high = band.along(curve.values, np.abs(np.asarray(curve.friction)))
+        axes.fill_between(x, low, high, color=INK, alpha=0.14, lw=0, zorder=1, label="95 % by errors of the inputs")
+        axes.set_ylim(top=max(axes.get_ylim()[1], 1.2 * float(np.nanmax(high))))
+
+
 def _along(curve: StribeckCurve | AtlasCurve, x: Array, values: Any) -> Any:
     """Return where values of what varies lie along an abscissa that the points of a curve have; its points exactly."""
     found = np.exp(np.interp(np.log(values), np.log(curve.values), np.log(x)))
@@ -276,6 +286,7 @@ def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:
     )
     axes.plot(x, curve.observable("fluid_load_share"), color=FLUID, lw=1.8, ls="-.", label="from the fluid")
     axes.set_ylim(-0.04, 1.12)
+    hatch_law_in_doubt(axes, curve, x)
     if len(curve) > 1:
         axes.set_xlim(x.min(), x.max())
     _shade(axes, curve, x)
@@ -304,9 +315,9 @@ def _shade(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array) -> None:
             )
 
 
-def _strip(axes: Axes, curve: StribeckCurve, x: Array) -> None:
+def hatch_law_in_doubt(axes: Axes, curve: StribeckCurve | AtlasCurve, x: Array) -> None:
     """Hatch a strip along the axis where the contact law is outside its range: there the check of it is not fine."""
-    outside = np.array([bool(law_notes(s.groups, s.contact, s.observables)) for s in curve.solutions])
+    outside = curve.law_in_doubt
     if outside.any():
         middles = np.sqrt(x[:-1] * x[1:])
         axes.fill_between(
@@ -338,8 +349,8 @@ def _given(curve: StribeckCurve | AtlasCurve) -> list[str]:
     return first
 
 
-def _caption(curve: StribeckCurve, notes: bool) -> tuple[list[list[str]], list[str]]:
-    """Return what stands below the picture: inputs and how they were solved, and the notes where they are wanted."""
+def _caption(curve: StribeckCurve, notes: bool, verdict: str) -> tuple[list[list[str]], list[str]]:
+    """Return what stands below the picture: inputs and how they were solved, and verdict and notes where they are wanted."""
     count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
     law = law_text(curve.solutions[0]) if len(curve) else ""
     first = _given(curve)
@@ -357,4 +368,4 @@ def _caption(curve: StribeckCurve, notes: bool) -> tuple[list[list[str]], list[s
         f"stribeck {version('stribeck')}",
     ]
     said = [] if curve.outcome.ok else [curve.outcome.value]
-    return [first, second], [*said, *(curve.notes if notes else ())]
+    return [first, second], [*said, *([verdict] if verdict and notes else ()), *(curve.notes if notes else ())]

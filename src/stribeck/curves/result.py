@@ -29,7 +29,7 @@ from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.along.path import SolvedPath
 from stribeck.solver.base_solution import si_films
-from stribeck.solver.notes import HARD, minimum_note
+from stribeck.solver.notes import HARD, law_notes, minimum_note
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate
 
@@ -327,6 +327,12 @@ class StribeckCurve(Exported, Shown, ByValue):
         They meet at a located transition where there is one, else in the middle between two points.
         """
         return ranges_of(self.values, self.regimes, self.transitions)
+
+    @property
+    def law_in_doubt(self) -> Array:
+        """Whether the contact law is outside its range at each point while asperities matter there."""
+        given = self.boundary_friction, self.beta
+        return np.array([bool(law_notes(each.groups, each.contact, each.observables, given)) for each in self.solutions], bool)
 
     @property
     def error_estimate(self) -> float:

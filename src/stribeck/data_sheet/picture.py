@@ -8,6 +8,7 @@ import numpy as np
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
+from stribeck.curves.plot import hatch_law_in_doubt
 from stribeck.data_sheet.content import Content
 from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS, add_legend, make_logarithmic, new_figure
 from stribeck.fits.measurements import Measurements
@@ -40,6 +41,7 @@ def draw_report(content: Content) -> Figure:
     assert contact is not None
     for axes in (left, right):
         make_logarithmic(axes, "x", speed)
+        hatch_law_in_doubt(axes, curve, speed)
         axes.set_xlabel("speed $U$ (m/s)")
         for regime, low, high in curve.regime_ranges:
             axes.axvspan(low, high, color=TINTS[regime], lw=0, zorder=0)

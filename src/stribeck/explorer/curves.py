@@ -20,10 +20,10 @@ from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves import regime
+from stribeck.curves.atlas_curve import where_law_is_in_doubt
 from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
 from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_from_atlas import transition_speeds
-from stribeck.solver.notes import law_notes
 from stribeck.solver.solve import SolveError
 from stribeck.uncertainty.band import Band
 
@@ -241,32 +241,8 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
     solid = boundary_friction * float(rule.rubbing(groups, inputs)) * terms["balanced"][0]
     friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
-    doubtful = law_in_doubt(contact, along, terms["balanced"][0], friction["balanced"])
+    doubtful = where_law_is_in_doubt(along, contact, terms["balanced"][1])
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}", doubtful=doubtful)
-
-
-def law_in_doubt(contact: Contact, along: Groups, share: Array, friction: Array) -> Array:
-    """Return where the exponential law is outside its range along groups off the atlas, as notes of states say it."""
-    gap, films = atlas.central_gap(along), [float(each) for each in np.ravel(along.speed)]
-    found = []
-    for speed, here, load, whole in zip(films, np.ravel(gap), np.ravel(share), np.ravel(friction), strict=True):
-        values = _Read(float(load), float(here), float(here), float(whole) - contact.boundary_friction * float(load))
-        found.append(bool(law_notes(replace(along, speed=speed), contact, values)))
-    return np.array(found)
-
-
-@dataclass(frozen=True)
-class _Read:
-    """The values of a state off the atlas on which notes on the contact law depend."""
-
-    contact_load_share: float
-    central_gap: float
-    minimum_gap: float
-    viscous: float
-
-    def viscous_friction(self, beta: float) -> float:
-        """Return the viscous friction, which is known for the contact's own beta alone."""
-        return self.viscous
 
 
 def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
@@ -344,7 +320,7 @@ def solved_curve(
     if found.is_function and len(found) < POINTS:
         found = found.sampled(POINTS)
     speed = np.asarray(found.values)
-    doubtful = np.array([bool(law_notes(each.groups, each.contact, each.observables)) for each in found.solutions])
+    doubtful = found.law_in_doubt
     friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
     contact_part = np.asarray(friction[definition].contact)
     totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}

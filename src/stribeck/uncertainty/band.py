@@ -1,4 +1,4 @@
-"""What errors of the inputs leave open along a Stribeck curve: the interval of the friction at each speed."""
+"""What errors of the inputs leave open along a Stribeck curve: the interval of the friction at each of its points."""
 
 from __future__ import annotations
 
@@ -11,48 +11,49 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.curves.coordinate import Over
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 from stribeck.uncertainty.propagate import propagate
 
 __all__ = ["Band", "friction_band"]
 
-SPEEDS = {"line": 13, "point": 7}
-"""At how many speeds errors are propagated, by geometry: between them the ends of intervals are smooth in the logarithm."""
+POINTS = {"line": 13, "point": 7}
+"""At how many points errors are propagated, by geometry: between them the ends of intervals are smooth in the logarithm."""
 
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """The 95 % interval of the friction along the speed.
+    """The 95 % interval of the friction along a curve.
 
     Attributes
     ----------
-    speed : ndarray, shape (n,)
-        Speeds at which errors were propagated [m/s].
+    values : ndarray, shape (n,)
+        Speeds, loads or roughnesses at which errors were propagated, in SI units.
     low, high : ndarray, shape (n,)
         Ends of the interval over the friction for the inputs as given [-].
     """
 
-    speed: Array
+    values: Array
     low: Array
     high: Array
 
-    def along(self, speed: Array, friction: Array) -> tuple[Array, Array]:
-        """Return the ends of the interval of friction along other speeds.
+    def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
+        """Return the ends of the interval of friction at other places.
 
         Parameters
         ----------
-        speed : ndarray, shape (m,)
-            Speeds [m/s].
+        values : ndarray, shape (m,)
+            Speeds, loads or roughnesses, in SI units.
         friction : ndarray, shape (m,)
             Size of the friction there [-].
 
         Returns
         -------
         ndarray, ndarray
-            Low and high ends; nan beyond the speeds of the band.
+            Low and high ends; nan beyond those of the band.
         """
-        at, known = np.log(speed), np.log(self.speed)
+        at, known = np.log(values), np.log(self.values)
         low, high = (friction * np.interp(at, known, part, left=np.nan, right=np.nan) for part in (self.low, self.high))
         return low, high
 
@@ -62,10 +63,11 @@ def friction_band(
     errors: Mapping[str, Any],
     ends: Sequence[float] | Array,
     definition: Definition = "balanced",
+    over: Over = "speed",
     *,
     on_point: Callable[[int, int], object] | None = None,
 ) -> Band | None:
-    """Return the 95 % interval of the friction between two speeds, as :func:`stribeck.propagate` finds it.
+    """Return the 95 % interval of the friction between two speeds, loads or roughnesses, as :func:`stribeck.propagate` has it.
 
     Parameters
     ----------
@@ -74,22 +76,24 @@ def friction_band(
     errors : mapping
         Standard errors of inputs, as for :func:`stribeck.propagate`.
     ends : sequence of float
-        Lowest and highest speed [m/s].
+        Lowest and highest value of what varies, in SI units.
     definition : {"balanced", "published"}
         Definition of the viscous friction.
+    over : {"speed", "load", "roughness"}
+        What varies.
     on_point : callable, optional
-        Is called after each speed with their number and that of all; an exception that it raises ends the work.
+        Is called after each point with their number and that of all; an exception that it raises ends the work.
 
     Returns
     -------
     Band or None
-        The band over the speeds whose states can be solved; None if there are fewer than two.
+        The band over the points whose states can be solved; None if there are fewer than two.
     """
-    count = SPEEDS[contact.groups.geometry]
+    count = POINTS[contact.groups.geometry]
     found = []
-    for i, speed in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):
+    for i, value in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):
         try:
-            spread = propagate(contact.replace(speed=speed), errors, definition=definition, transitions=False)["friction"]
+            spread = propagate(contact.replace(**{over: value}), errors, definition=definition, transitions=False)["friction"]
         except (InputError, SolveError):
             continue
         finally:
@@ -97,5 +101,5 @@ def friction_band(
                 on_point(i + 1, count)
         if spread.value != 0:
             low, high = sorted(end / spread.value for end in spread.interval_95)
-            found.append((speed, max(low, 0.0), high))
+            found.append((value, max(low, 0.0), high))
     return Band(*np.array(found).T) if len(found) > 1 else None

@@ -22,6 +22,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.given.uncertain import relative_error
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
@@ -279,6 +280,8 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
 
     def marks(each: Contact) -> tuple[dict[str, float], Array]:
         curve = stribeck_curve(each, points=POINTS, rtol=1e-3, definition=definition)
+        if curve.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
         return {mark.name: mark.value for mark in curve.transitions}, curve.values[[0, -1]]
 
     start, searched = marks(contact)

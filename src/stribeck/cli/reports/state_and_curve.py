@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
+from stribeck.cli.reports.regimes import print_uncertainty
 from stribeck.cli.reports.words import (
     digits,
     error_text,
@@ -26,6 +27,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_si
 from stribeck.solver.base_solution import BaseSolution, hysteresis_coefficient
+from stribeck.uncertainty.result import Uncertainty
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -128,9 +130,15 @@ def _solution_rows(
 
 
 def print_curve(
-    console: Console, curve: StribeckCurve, title: str, files: Sequence[str], checks: Checks | None = None
+    console: Console,
+    curve: StribeckCurve,
+    title: str,
+    files: Sequence[str],
+    checks: Checks | None = None,
+    errors: Uncertainty | None = None,
+    verdict: str = "",
 ) -> None:
-    """Print what a curve holds: inputs, regimes, transitions, error, notes, files.
+    """Print what a curve holds: inputs, regimes, transitions, what errors leave open, error, notes, files.
 
     Parameters
     ----------
@@ -144,7 +152,13 @@ def print_curve(
         Files that were written.
     checks : Checks, optional
         Those of its contact.
+    errors : Uncertainty, optional
+        The propagated errors of its inputs.
+    verdict : str
+        Sentence that says whether the model applies, which stands first unless the checks say more.
     """
+    if verdict and checks is not None and not checks.first_line:
+        say(console, verdict)
     print_head(console, title, curve.contact, curve.groups, curve.over, checks)
     low, high = place(curve, curve.values[0]), place(curve, curve.values[-1])
     say(console, f"{len(curve)} point{'s' * (len(curve) > 1)}, {curve.over} {low} to {high}.")
@@ -159,6 +173,9 @@ def print_curve(
         print_table(console, table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")
+    if errors is not None:
+        say(console, f"At the {curve.over} of the contact itself, {place(curve, getattr(errors.contact, curve.over), 4)}:")
+        print_uncertainty(console, errors)
     friction = {"friction": float(curve.friction.relative_error.max(initial=0.0))}
     print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes, checks, friction)
     for name in files:

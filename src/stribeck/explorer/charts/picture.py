@@ -65,7 +65,8 @@ def figure_of(shown: View, what: str, go_on: Callable[..., object] | None = None
             inputs.contact, speed=shown.answer.speeds, points=POINTS, rtol=RTOL, definition=inputs.definition, on_point=go_on
         )
     band = None if curve is None or curve.stale else curve.band
-    figure = found.plot(title=inputs.title, abscissa=inputs.abscissa, band=band)
+    verdict = shown.answer.checks.headline
+    figure = found.plot(title=inputs.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
     axes = figure.axes[0]
     added, heights = [], [np.array(axes.get_ylim())]
     for i, (name, pinned, hersey) in enumerate(shown.pins):
