@@ -155,9 +155,9 @@ def test_errors_of_groups_by_the_atlas_and_by_seven_states_agree():
     """Well inside the atlas, where both are possible."""
     groups = TRUE.replace(speed="5 mm/s").groups
     offsets = np.random.default_rng(77).standard_normal((400, 3)) * [0.15, 0.1, 0.2]
-    read, method = states_of(groups, offsets, "balanced", 1e-6)
+    read, method, _ = states_of(groups, offsets, "balanced", 1e-6)
     assert method == "atlas"
-    made = _by_quadratics(groups, offsets, "balanced", 1e-6)
+    made, _ = _by_quadratics(groups, offsets, "balanced", 1e-6)
     for name, values in read.items():
         parts = (0.025, 0.16, 0.5, 0.84, 0.975)
         width = np.quantile(values, 0.975) - np.quantile(values, 0.025)

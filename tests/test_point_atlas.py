@@ -286,7 +286,7 @@ def test_fits_begin_on_it_where_it_holds(cavitation):
 @pytest.mark.quick
 def test_uncertainties_are_sampled_on_it():
     contact = ball(wetted_radius=3e-3)
-    found, method = states_of(contact.groups, np.zeros((2, 3)), "published", 1e-5, contact)
+    found, method, _ = states_of(contact.groups, np.zeros((2, 3)), "published", 1e-5, contact)
     assert method == "atlas"
     inputs = RULES["point"].of_contact(contact)
     share, viscous = sb.atlas.friction_terms(contact.groups, inputs, "published")

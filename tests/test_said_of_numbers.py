@@ -74,6 +74,24 @@ def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states
     assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
 
 
+def test_an_interval_that_solved_states_do_not_settle_says_so():
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s")
+    found = sb.propagate(contact, {"speed": 2.9, "load": 2.9, "roughness": 2.9, "viscosity": 2.9}, transitions=False)
+    (note,) = found.notes
+    assert "is not settled" in note and note in str(found) and note in found._repr_html_()
+    assert found.to_dict()["notes"] == [note]
+    assert sb.propagate(contact, {"load": 0.05}, transitions=False).notes == ()
+
+
+def test_samples_that_cannot_be_solved_are_counted_and_end_nothing():
+    fluid = sb.fluids.Carreau("1 ms", 0.5)
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", fluid=fluid)
+    found = sb.propagate(contact, {"exponent": 0.4, "load": 0.1}, transitions=False)  # two in a hundred lie above 1
+    assert any("cannot be solved" in note for note in found.notes)
+    low, high = found["friction"].interval_95
+    assert 0 < low < high < 1
+
+
 @pytest.mark.parametrize("free", [True, 5, 1.5, "roughness", None], ids=str)
 def test_what_is_free_is_a_list_of_inputs(free):
     data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"

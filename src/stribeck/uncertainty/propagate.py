@@ -91,8 +91,8 @@ def propagate(
     -----
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
     two solved states for each input, corrected by up to 120 more at both ends of the interval of friction until solved states
-    lie within 5 % of its width of where they are predicted (``test_data_sheet.py``).  Transitions move to first
-    order, and are left out where their interval leaves the speeds that were searched.
+    lie within 5 % of its width of where they are predicted (``test_data_sheet.py``); ``notes`` of the result say where
+    they do not, or cannot be solved.  Transitions move to first order, and are left out where their interval leaves the speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
     definition = check_definition(definition)
@@ -130,11 +130,12 @@ def propagate(
         return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
 
     if groups.model == ARTICLE:
-        states, method = states_of(groups, offsets @ of_groups, definition, rtol, contact, friction_of)
+        states, method, notes = states_of(groups, offsets @ of_groups, definition, rtol, contact, friction_of)
     else:
         widths = np.array([sigmas[name] for name in names])
         sampled = draws[:, : len(names)]
-        states, method = states_by_inputs(contact, moves, widths, sampled, definition, rtol, friction_of), "solver"
+        states, notes = states_by_inputs(contact, moves, widths, sampled, definition, rtol, friction_of)
+        method = "solver"
     share = states["contact_load_share"]
     dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
@@ -163,6 +164,7 @@ def propagate(
         regimes=_regimes(share, friction_share(dry, viscous)),
         contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},
         method=method,
+        notes=notes,
     )
 
 

@@ -93,6 +93,8 @@ class Uncertainty(Exported):
         without derivatives.
     method : str
         ``"atlas"`` or ``"solver"``: where the states of the samples come from.
+    notes : tuple of str
+        Where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty.
     """
 
     contact: Contact
@@ -101,6 +103,7 @@ class Uncertainty(Exported):
     regimes: dict[str, float]
     contributions: dict[str, float]
     method: str
+    notes: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> Spread:
         """Return the spread of a name."""
@@ -128,6 +131,7 @@ class Uncertainty(Exported):
             "regime_probabilities": self.regimes,
             "contributions": self.contributions,
             "method": self.method,
+            "notes": list(self.notes),
         }
 
     def to_si(self) -> dict[str, float]:
@@ -170,7 +174,11 @@ class Uncertainty(Exported):
         about = {f"probability_{name}": part for name, part in self.regimes.items()}
         about |= {f"error_{name}": error for name, error in self.errors.items()}
         about |= {f"share_{name}": part for name, part in self.contributions.items()}
-        return new_dataset(columns, names, {"title": "Propagated errors of a state", "method": self.method, **about})
+        return new_dataset(
+            columns,
+            names,
+            {"title": "Propagated errors of a state", "method": self.method, "notes": "\n".join(self.notes), **about},
+        )
 
     def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.uncertainty.plot import plot_uncertainty
@@ -187,19 +195,20 @@ class Uncertainty(Exported):
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """What intervals count, and the share of each input in the variance of friction, a sentence each."""
+        """What intervals count, the share of each input in the variance of friction, and the notes, a sentence each."""
         labels = fitted_rows(self.contact.INPUTS)
         exact = (exact_inputs(self.contact, self.errors),) if self.errors else ()
         named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
-        return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()))
+        return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()), *self.notes)
 
     def _repr_html_(self) -> str:
         """Return the table for notebooks."""
         rows = "".join(
             f"<tr><td>{html.escape(each.label)}</td><td>{html.escape(each.text)}</td></tr>" for each in self.spreads
         )
-        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table><p>{html.escape(self.probabilities)}</p>"
+        said = "".join(f"<p>{html.escape(each)}</p>" for each in (self.probabilities, *self.notes))
+        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table>{said}"
 
 
 def exact_inputs(contact: Contact, errors: Collection[str]) -> str:

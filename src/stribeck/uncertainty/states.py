@@ -26,7 +26,9 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
+from stribeck.quantities.formats import format_percent
 from stribeck.quantities.outputs import OUTPUT_TABLES
+from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError, solve
 
 __all__ = ["NAMES", "films_of", "states_by_inputs", "states_of"]
@@ -46,11 +48,11 @@ NARROW = 1e-9
 VISCOUS = 1
 """Place of the viscous friction in the values of a state."""
 
-EACH_END, MOST_ROUNDS = 4, 10
-"""Samples solved at each end of the interval of friction, and as many anywhere, in a round; and the most rounds."""
+END_ERROR = 0.05
+"""Part of its width within which the ends of the 95 % interval of friction are right: what the pages promise."""
 
-PART_OF_WIDTH = 0.05
-"""Part of the width of the interval within which solved samples must lie where they are predicted: what the pages promise."""
+MOST_SOLVED = 120
+"""Samples that are solved at most to hold to it."""
 
 SEED = 20_261_126
 """Seed of the choice of samples that are solved."""
@@ -82,7 +84,7 @@ def states_of(
     rtol: float,
     contact: Contact | None = None,
     friction: Callable[[dict[str, Array]], Array] | None = None,
-) -> tuple[dict[str, Array], str]:
+) -> tuple[dict[str, Array], str, tuple[str, ...]]:
     """Return load share, viscous friction and films of samples.
 
     Parameters
@@ -106,6 +108,8 @@ def states_of(
         ``contact_load_share``, ``viscous``, which is over beta, and the films of :func:`films_of`.
     str
         ``"atlas"`` or ``"solver"``.
+    tuple of str
+        What to know of the interval of friction, where it is not as sure as the pages promise.
     """
     table = atlas.for_groups(groups)
     if table is not None:
@@ -117,8 +121,9 @@ def states_of(
             share, viscous = atlas.friction_terms(samples, inputs, definition)
             found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
             if all(np.isfinite(values).all() for values in found.values()):
-                return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas"
-    return _by_quadratics(groups, offsets, definition, rtol, contact, friction), "solver"
+                return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas", ()
+    found, notes = _by_quadratics(groups, offsets, definition, rtol, contact, friction)
+    return found, "solver", notes
 
 
 def states_by_inputs(
@@ -129,7 +134,7 @@ def states_by_inputs(
     definition: Definition,
     rtol: float,
     friction: Callable[[dict[str, Array]], Array],
-) -> dict[str, Array]:
+) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle.
 
     Parameters
@@ -153,6 +158,8 @@ def states_by_inputs(
     -------
     dict of str to ndarray, shape (n,)
         As :func:`states_of` returns them.
+    tuple of str
+        As :func:`states_of` returns it.
     """
 
     def at(distances: Mapping[str, float]) -> Array:
@@ -184,7 +191,7 @@ def _by_quadratics(
     rtol: float,
     contact: Contact | None = None,
     friction: Callable[[dict[str, Array]], Array] | None = None,
-) -> dict[str, Array]:
+) -> tuple[dict[str, Array], tuple[str, ...]]:
     middle = offsets.mean(axis=0)
     variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
 
@@ -199,7 +206,7 @@ def _by_quadratics(
             axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
     found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
     if friction is None or not axes:
-        return found.values()
+        return found.values(), ()
     places = np.stack([place for place, *_ in axes], axis=1)
     return _followed(found, places, lambda i: values(offsets[i] - middle), friction)
 
@@ -231,40 +238,62 @@ class _Samples(NamedTuple):
 
 def _followed(
     base: _Samples, places: Array, solved: Callable[[int], Array], friction: Callable[[dict[str, Array]], Array]
-) -> dict[str, Array]:
+) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return samples corrected by solved states until the ends of the interval of friction are where solved states have them.
 
-    Each round solves some samples that lie at both ends and some anywhere.  Where they are not as predicted they join the
-    states through which a smooth function corrects the quadratics.
+    Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs.  Where they are not
+    as predicted they join the states through which a smooth function corrects the quadratics.  What is not settled in the end
+    is said in notes.
     """
     from scipy.interpolate import RBFInterpolator
 
     found, known, random = base, dict[int, Array](), np.random.default_rng(SEED)
-    for _ in range(MOST_ROUNDS):
+    some = places.shape[1] + 1
+    tried = np.zeros(len(places), dtype=bool)
+    while True:
         predicted = friction(found.values())
         low, high = np.quantile(predicted, [0.025, 0.975])
-        near = [np.argsort(np.abs(predicted - end))[: 4 * EACH_END] for end in (low, high)]
-        chosen = [*random.choice(near[0], EACH_END, False), *random.choice(near[1], EACH_END, False)]
-        chosen += random.choice(len(predicted), EACH_END, False).tolist()
-        new: dict[int, Array] = {}
-        for i in {int(each) for each in chosen} - known.keys():
-            with suppress(SolveError):  # one that cannot be solved tells nothing
-                new[i] = base.of_state(solved(i))
-        if not new:
-            continue
-        exact = found.y.copy()
-        exact[list(new)] = list(new.values())
-        wrong = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)].max(initial=0.0)
-        known |= new
-        if wrong <= PART_OF_WIDTH * (high - low):
-            break
+        width, wrong = high - low, 0.0
+        near = [np.abs(predicted - end) <= END_ERROR * width for end in (low, high)]
+        for pool in (*near, np.ones_like(tried)):
+            left = np.flatnonzero(pool & ~tried)
+            chosen = random.choice(left, min(some, len(left)), False).tolist()
+            tried[chosen] = True
+            new: dict[int, Array] = {}
+            for i in chosen:
+                with suppress(InputError, SolveError):  # one that cannot be solved tells nothing
+                    new[i] = base.of_state(solved(i))
+            exact = found.y.copy()
+            exact[list(new)] = np.array(list(new.values())).reshape(-1, exact.shape[1])
+            differences = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)]
+            wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
+            known |= new
+        if wrong <= END_ERROR * width or tried.sum() + 3 * some > MOST_SOLVED:
+            return found.values(), _unsettled(wrong / width if width else 0.0, int(tried.sum()), len(known))
         rows = list(known)
-        rest = np.array([known[i] - base.y[i] for i in rows])
+        rest = np.array([known[i] - base.y[i] for i in rows]).reshape(-1, base.y.shape[1])
         # The middle is known too; the smooth function leaves it where it is.
         centres = np.vstack([np.zeros(places.shape[1]), places[rows]])
         smooth = RBFInterpolator(centres, np.vstack([np.zeros(rest.shape[1]), rest]), kernel="linear", degree=0)
         found = base._replace(y=base.y + smooth(places))
-    return found.values()
+
+
+def _unsettled(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
+    """Return what to know of an interval: that its ends are not settled, and how many of its samples cannot be solved."""
+    notes = []
+    if wrong > END_ERROR:
+        apart = f"lie up to {format_percent(wrong)} of its width" if math.isfinite(wrong) else "cannot be solved or lie far"
+        notes.append(
+            f"The interval of friction is not settled: after {solved} solved samples, states {apart} from where they are "
+            f"predicted, not within {format_percent(END_ERROR)}. Its ends are as uncertain; smaller errors of the inputs, or "
+            "states solved one by one at their ends, say more."
+        )
+    if solved < tried:
+        notes.append(
+            f"{tried - solved} of {tried} samples that were tried cannot be solved: the errors of the inputs reach contacts "
+            "beyond what this package solves, and there the intervals rest on those nearby. Smaller errors stay within."
+        )
+    return tuple(notes)
 
 
 def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> _Samples:
