@@ -1,5 +1,6 @@
 """The explorer without its browser: linked inputs, addresses, answers, charts, numbers and files."""
 
+import asyncio
 import csv
 import gc
 import io
@@ -35,6 +36,7 @@ from stribeck.explorer.charts.parts import difference
 from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
+from stribeck.explorer.serving.pools import Threads, run
 from stribeck.quantities import units
 from stribeck.quantities.formats import format_si
 from stribeck.solids.viscoelastic import Prony
@@ -570,6 +572,35 @@ def test_a_change_ends_the_checks_that_need_curves():
     with pytest.raises(ChangedError):
         model.settle_checks(START, changed)
     assert model.settle_checks(START, always)  # they were not taken for made
+
+
+class LeftError(Exception):
+    """The page was closed."""
+
+
+@pytest.mark.parametrize("work", ["a solve", "propagated errors"])
+def test_slow_work_of_a_page_ends_between_its_steps(work):
+    ball = sb.PointContact(
+        radius="5 mm", modulus="2 MPa", load="0.1 N", viscosity="0.1 Pa s", speed="20 mm/s", roughness="1 um", alpha=2.0,
+        beta=0.2, boundary_friction=0.7, fluid=sb.fluids.Carreau("1 ms", 0.5), cavitation="exit",
+    )  # fmt: skip
+    functions = {
+        "a solve": lambda: sb.solve(ball),
+        "propagated errors": lambda: sb.propagate(ball, {"load": 0.1, "exponent": 0.1}),
+    }
+    began, pool = time.monotonic(), Threads()
+    ended = []
+
+    def watch():
+        if time.monotonic() - began > 0.3:
+            ended.append(time.monotonic())
+            raise LeftError
+
+    with pytest.raises(LeftError):
+        asyncio.run(run(pool.slow, functions[work], watch=watch))
+    pool.close()
+    assert len(ended) == 1
+    assert time.monotonic() - began < 2.3
 
 
 def test_pinned_contacts_stand_beside_the_present_one(answer):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+import time
 from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any
@@ -33,6 +34,9 @@ __all__ = ["Following", "Superseded", "without_rtol"]
 
 MOMENT = 0.15
 """Seconds of waiting for an answer after which the old one is marked."""
+
+LONG = 1.0
+"""Seconds from which an answer on its way is ended when other inputs are asked for; quicker ones are shown on the way."""
 
 REST = 0.4
 """Seconds after the last change from which what takes longer is done."""
@@ -110,8 +114,10 @@ class Following:
                 self.asked = False
                 now, changes = self.inputs, self.changes
                 try:
-                    await self.answered(now)
+                    await self.answered(now, changes)
                     await self.page.draw(self.inputs, self.seen())
+                except Superseded:
+                    continue
                 except Exception as problem:  # a page that silently no longer follows would be worse
                     await self.kept(problem)
                 else:
@@ -132,11 +138,16 @@ class Following:
         except Exception as again:
             self.page.fail(f"{reason(again)} Reload the page.")
 
-    async def answered(self, now: Inputs) -> None:
+    async def answered(self, now: Inputs, changes: int) -> None:
         """Compute the answer; where that takes longer than a moment, mark what is shown."""
-        work = asyncio.ensure_future(
-            run(self.threads.live, self.compute, now, tuple(self.pins), speeds_of(self.measured, now))
-        )
+        began = time.monotonic()
+
+        def watch() -> None:
+            if self.closed or (self.changes != changes and time.monotonic() - began > LONG):
+                raise Superseded
+
+        arguments = now, tuple(self.pins), speeds_of(self.measured, now)
+        work = asyncio.ensure_future(run(self.threads.live, self.compute, *arguments, watch=watch))
         done, _ = await asyncio.wait({work}, timeout=MOMENT)
         if not done:
             self.page.show_working(now)
@@ -155,7 +166,8 @@ class Following:
     async def refresh(self, now: Inputs) -> None:
         """Show what has been solved since for the inputs that are shown."""
         if self.is_shown(now) and not self.working:
-            found = await run(self.threads.live, self.compute, now, tuple(self.pins), speeds_of(self.measured, now))
+            arguments = now, tuple(self.pins), speeds_of(self.measured, now)
+            found = await run(self.threads.live, self.compute, *arguments, watch=self.watcher(now))
             if self.is_shown(now) and not self.working:
                 self.answer, self.pinned, self.states = found
                 await self.page.draw(self.inputs, self.seen())
@@ -195,7 +207,7 @@ class Following:
         slow = self.threads.slow
         with self.page.client:
             try:
-                curve = asyncio.ensure_future(run(slow, self.model.settle, now, report))
+                curve = asyncio.ensure_future(run(slow, self.model.settle, now, report, watch=go_on))
                 curve.add_done_callback(lambda task: task.cancelled() or task.exception())
                 began = asyncio.get_running_loop().time()
                 done, _ = await asyncio.wait({curve}, timeout=REST)
@@ -214,7 +226,7 @@ class Following:
                         await self.refresh(now)
                 try:
                     curve.result()
-                    if await run(slow, self.model.settle, now, go_on, True):
+                    if await run(slow, self.model.settle, now, go_on, True, watch=go_on):
                         await self.refresh(now)
                     self.page.progress = self.model.why_no_curve(now)
                 except Superseded:
@@ -233,29 +245,29 @@ class Following:
     async def settle_map(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show the rows of the phase diagram as they are solved."""
         rows = self.model.diagrams(now, go_on)
-        while await run(self.threads.slow, next, rows, False) is not False:
+        while await run(self.threads.slow, next, rows, False, watch=go_on) is not False:
             await self.refresh(now)
 
     async def settle_margins(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show the margins to the next regimes."""
-        found = await run(self.threads.slow, ways, now, go_on)
+        found = await run(self.threads.slow, ways, now, go_on, watch=go_on)
         if self.is_shown(now):
             self.page.show_margins(found, now)
             await self.refresh(now)
 
     async def settle_spread(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show what the errors of the inputs leave open."""
-        if await run(self.threads.slow, self.model.settle_spread, now, go_on):
+        if await run(self.threads.slow, self.model.settle_spread, now, go_on, watch=go_on):
             await self.refresh(now)
 
     async def settle_checks(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show what the checks say that need the curve, or another one."""
-        if await run(self.threads.slow, self.model.settle_checks, now, go_on):
+        if await run(self.threads.slow, self.model.settle_checks, now, go_on, watch=go_on):
             await self.refresh(now)
 
     async def settle_notes(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show what to know of the curve."""
-        if await run(self.threads.slow, self.model.settle_notes, now, go_on):
+        if await run(self.threads.slow, self.model.settle_notes, now, go_on, watch=go_on):
             await self.refresh(now)
 
     @property

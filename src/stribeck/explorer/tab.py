@@ -244,7 +244,7 @@ class Tab(Following):
                 raise Superseded
 
         try:
-            fitted = await run(self.threads.slow, fit_measured, now, last, step)
+            fitted = await run(self.threads.slow, fit_measured, now, last, step, watch=step)
         except Superseded:
             self.page.say("The fit was given up, as the inputs changed.", bad=True)
         except Exception as problem:
@@ -257,7 +257,9 @@ class Tab(Following):
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
         try:
-            found: bytes = await run(self.threads.slow, files.content, kind, self.seen(), self.while_open)
+            found: bytes = await run(
+                self.threads.slow, files.content, kind, self.seen(), self.while_open, watch=self.while_open
+            )
         except Superseded:
             return None
         except Exception as problem:

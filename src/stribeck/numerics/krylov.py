@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.numerics.ending import go_on
 
 Apply = Callable[[Array], Array]
 
@@ -65,6 +66,7 @@ def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, m
     projected[0] = size
     steps = 0
     while steps < max_steps and abs(projected[steps]) > tolerance * size:
+        go_on()
         k = steps
         w = precondition(product(basis[k]))
         column = upper[:, k]

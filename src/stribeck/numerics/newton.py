@@ -26,6 +26,7 @@ import numpy.typing as npt
 from scipy.linalg import lapack
 
 from stribeck._types import Array
+from stribeck.numerics.ending import go_on
 from stribeck.quantities.outcome import Outcome
 
 SMALLEST_FRACTION = 1e-8  # a step damped below this part of Newton's makes no progress
@@ -303,6 +304,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             return root(Outcome.NOT_FINITE)
 
         while steps < control.max_steps:
+            go_on()
             chord_step = False
             if reusable and inverse is not None:
                 dx, t = step(inverse, r), 1.0

@@ -92,7 +92,8 @@ def propagate(
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
     two solved states for each input, corrected by up to 120 more at both ends of the interval of friction until solved states
     lie within 5 % of its width of where they are predicted (``test_data_sheet.py``); ``notes`` of the result say where
-    they do not, or cannot be solved.  Transitions move to first order, and are left out where their interval leaves the speeds that were searched.
+    they do not, or cannot be solved.  Transitions move to first order, and are left out where their interval leaves the
+    speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
     definition = check_definition(definition)

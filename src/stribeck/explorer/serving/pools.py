@@ -7,6 +7,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from stribeck.numerics.ending import ended_by
+
 __all__ = ["FILES", "OPENING", "Threads", "run"]
 
 OPENING = ThreadPoolExecutor(2, "explorer")
@@ -27,6 +29,14 @@ class Threads:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-async def run(pool: ThreadPoolExecutor, function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a function gives, computed in a thread."""
-    return await asyncio.get_running_loop().run_in_executor(pool, function, *arguments)
+async def run(
+    pool: ThreadPoolExecutor, function: Callable[..., Any], *arguments: Any, watch: Callable[[], object] = lambda: None
+) -> Any:
+    """Return what a function gives, computed in a thread; what ``watch`` raises between two steps of iterations ends it."""
+
+    def watched() -> Any:
+        watch()
+        with ended_by(watch):
+            return function(*arguments)
+
+    return await asyncio.get_running_loop().run_in_executor(pool, watched)
