@@ -31,12 +31,16 @@ settings.load_profile("repeated")
 def pytest_xdist_make_scheduler(config, log):
     """Keep the tests of a module in one worker, as they share solved states; those of the figures in one for all three.
 
+    The golden values share nothing, and take longest: each of their parts goes to any worker.
+
     Marks cannot say so: pytest-xdist 3.8 ignores ``xdist_group`` under pytest 9.2 (its issue 1386).
     """
     from xdist.scheduler import LoadFileScheduling
 
     class Together(LoadFileScheduling):
         def _split_scope(self, nodeid):
+            if "/test_golden.py::" in f"/{nodeid}":
+                return nodeid
             return super()._split_scope(nodeid).replace("_claims_1", "").replace("_claims_2", "")
 
     return Together(config, log)
