@@ -14,6 +14,7 @@ import tomllib
 from dataclasses import replace
 from html import escape
 from pathlib import Path
+from statistics import NormalDist
 from types import SimpleNamespace
 from urllib.parse import parse_qsl
 from xml.etree import ElementTree
@@ -21,6 +22,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from command_line import EXAMPLES
+from topography_files import write_x3p
 
 import stribeck as sb
 from stribeck.cli import main
@@ -1289,6 +1291,30 @@ def test_the_verdict_and_the_notes_are_those_of_the_commands(uncertain):
     assert answer.checks.headline.split(":")[0] in str(sb.check(case.contact, **case.facts)).split("\n")[0]
 
 
-def test_a_scan_says_alpha_and_beta_with_their_interval_of_95_per_cent():
-    words = read_scan("profile.csv", PROFILE).words
-    assert re.search(r"alpha [0-9.]+ \([0-9.]+ to [0-9.]+\), beta [0-9.e-]+ \([^)]+\), at 95 %\.", words)
+def test_a_scan_says_alpha_with_the_interval_of_its_probability_on_the_page_and_by_the_command(tmp_path, capsys):
+    """Alpha of a surface whose waves the scan shows all moves with the Hurst exponent and both cut-offs, and nothing else."""
+    step = 2 * math.pi / 128e-6
+    surface = sb.surfaces.SelfAffine(1e-6, 4 * step, 9e5, 0.8, 4 * step)
+    path = tmp_path / "scan.x3p"
+    write_x3p(path, sb.surfaces.synthetic_topography(surface, (128, 128), 1e-6, 1).heights, 1e-6, 1e-6)
+    found = sb.surfaces.analyse(sb.surfaces.read_topography(path))
+    fit, errors = found.fit.roughness, found.fit.errors
+    assert found.fit.found == ("q0", "q1")
+
+    def log_alpha(hurst, low, high):
+        moved = sb.surfaces.SelfAffine(
+            fit.h_rms, fit.q0 * math.exp(low), fit.q1 * math.exp(high), hurst, fit.q0 * math.exp(low)
+        )
+        return math.log(sb.surfaces.exponential_limit(moved, found.gamma)[0])
+
+    middle, sizes = np.array([fit.hurst, 0, 0]), (errors["hurst"], errors["q0"] / fit.q0, errors["q1"] / fit.q1)
+    slopes = [(log_alpha(*middle + part) - log_alpha(*middle - part)) / 2e-4 for part in 1e-4 * np.eye(3)]
+    error = math.hypot(*(slope * size for slope, size in zip(slopes, sizes, strict=True)))
+    assert main(["surface", str(path)]) == 0
+    page = re.search(
+        r"alpha [0-9.]+ \((\S+) to (\S+)\), beta .*?, at (\d+) %\.", read_scan("scan.x3p", path.read_bytes()).words
+    )
+    text = re.search(r"alpha +[0-9.]+ +(\S+) to (\S+) \((\d+) %\)", capsys.readouterr().out)
+    for low, high, per_cent in (page.groups(), text.groups()):
+        whole = 2 * NormalDist().inv_cdf(0.5 + float(per_cent) / 200) * error
+        assert math.log(float(high) / float(low)) == pytest.approx(whole, rel=0.08)  # of the three digits that are shown
