@@ -11,7 +11,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from command_line import PDMS, call, environment
+from command_line import FEW, PDMS, call, environment
 
 import stribeck as sb
 from stribeck.cli.exits import complain
@@ -147,6 +147,43 @@ def test_too_little_memory_is_told_before_libraries_crash():
     code, out, err = run(*SOLVE, prepare=limit)
     assert (code, out) == (1, "")
     assert re.fullmatch(r"stribeck: The memory that this process may take does not suffice: 0\.5 GB are needed; .*\n", err)
+
+
+# --- few open files, and the end of a batch job ---
+
+
+def test_twenty_open_files_suffice_for_a_state():
+    def limit():
+        resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20))
+
+    code, out, err = run(*SOLVE, prepare=limit)
+    assert (code, err) == (0, "")
+    assert "Converged." in out
+
+
+TERMINATED = """
+import os, signal, sys
+import stribeck as sb
+from stribeck.cli import main
+whole = sb.stribeck_curve
+def ended(*arguments, on_point, **options):
+    def point(done, of):
+        on_point(done, of)
+        if done == 3:
+            os.kill(os.getpid(), signal.SIGTERM)
+    return whole(*arguments, on_point=point, **options)
+sb.stribeck_curve = ended
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_sigterm_on_a_curve_keeps_the_points_that_are_solved(tmp_path):
+    file = tmp_path / "curve.csv"
+    code, _, err = run(sys.executable, "-c", TERMINATED, "curve", PDMS, *FEW, "--rtol", "1e-3", "-o", file)
+    assert code == 130
+    told = f"stribeck: Interrupted after 3 of 6 points; {file} contain the points so far, marked as incomplete.\n"
+    assert err.endswith(told), err
+    assert len(sb.read_measurements(file).friction) == 3
 
 
 # --- files ---
