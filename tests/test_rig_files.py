@@ -378,11 +378,17 @@ def test_advice_is_true_or_absent(written):
     columns = refusal(written("speed [mm/s];COF water;COF oil\n1;0.3;0.2\n2;0.2;0.1\n"))
     assert columns.endswith("as in friction = ['COF water', 'COF oil'].")
     assert "without marks between thousands" in refusal(written("speed [mm/s];mu\n1,000.5;0.3\n2,000.5;0.2\n"))
-    for magnitudes in (False, True):
-        code = refusal(written(PLAIN + "400;-9999\n500;-9999.0\n"), magnitudes=magnitudes)
-        assert "column 'COF' has '-9999' in row 10, 11, which programs write where a value is missing" in code
     several = refusal(written("A [mm/s];B [mm/s];COF\n1;2;0.3\n4;5;0.7\n"))
     assert "speed =" not in several and "'A [mm/s]', 'B [mm/s]', 'COF'" in several
+
+
+@pytest.mark.parametrize("magnitudes", [False, True])
+def test_a_code_of_missing_friction_leaves_its_row_out_and_is_counted(written, magnitudes):
+    found = read(written(PLAIN + "400;-9999\n500;-9999.0\n"), magnitudes=magnitudes)
+    assert found.friction.tolist() == read(written(PLAIN)).friction.tolist()
+    assert "2 rows with '-9999' in 'COF', a missing value, left out: 10, 11." in found.notes
+    speed = refusal(written(PLAIN + "-9999;0.1\n"), magnitudes=magnitudes)
+    assert "has '-9999' in row 10, which programs write where a value is missing" in speed
 
 
 def test_a_name_twice_stops_the_reading_only_where_it_is_needed(written):

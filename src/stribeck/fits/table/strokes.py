@@ -59,14 +59,18 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
     """
     speeds = _numbers(table, abscissa)
     frictions = {name: _numbers(table, name) for name in friction}
-    for name, values in ((abscissa, speeds), *frictions.items()):
-        coded = np.isin(values, CODES)
+    coded = np.isin(speeds, CODES)
+    if coded.any():
+        code = table.column(abscissa)[int(np.flatnonzero(coded)[0])]
+        raise InputError(
+            f"{table.path}: column {show(abscissa)} has {show(code)} in row {_listed(table, coded)}, which programs write "
+            "where a value is missing; leave such cells empty."
+        )
+    for name, mu in frictions.items():
+        coded = np.isin(mu, CODES)
         if coded.any():
-            code = table.column(name)[int(np.flatnonzero(coded)[0])]
-            raise InputError(
-                f"{table.path}: column {show(name)} has {show(code)} in row {_listed(table, coded)}, which programs write "
-                "where a value is missing; leave such cells empty."
-            )
+            table = _emptied(table, name, coded)
+            frictions[name] = np.where(coded, np.nan, mu)
     largest = np.nanmax(np.abs(speeds), initial=0.0)
     rest = np.abs(speeds) <= REST_SPEED * largest
     if settings.magnitudes:
@@ -125,6 +129,16 @@ def _moving(table: TextTable, speeds: Array, rest: Flags, frictions: list[Array]
         numbers=tuple(table.numbers[i] for i in kept),
         notes=(*table.notes, *notes),
     )
+
+
+def _emptied(table: TextTable, name: str, coded: Flags) -> TextTable:
+    """Return the table with empty cells in place of codes of missing values, which a note counts."""
+    at, count = table.header.index(name), int(coded.sum())
+    code = table.column(name)[int(np.flatnonzero(coded)[0])]
+    rows = tuple((*row[:at], "", *row[at + 1 :]) if out else row for row, out in zip(table.rows, coded, strict=True))
+    which = f"with {show(code)} in {show(name)}, a missing value"
+    note = f"{count} row{'s' * (count > 1)} {which}, left out: {_listed(table, coded)}."
+    return replace(table, rows=rows, notes=(*table.notes, note))
 
 
 def _sentence(table: TextTable, kind: _Kind) -> str:
