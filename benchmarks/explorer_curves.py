@@ -20,11 +20,11 @@ from curve_speed import factorisation
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer.answer import Answerer
-from stribeck.explorer.asked import inputs
-from stribeck.explorer.asked.choices import choose
-from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.palette import LIGHT
+from stribeck.explorer.inputs import inputs
+from stribeck.explorer.inputs.choices import choose
+from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.server import example
 from stribeck.numerics.threads import one_blas_thread
 

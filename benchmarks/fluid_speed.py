@@ -24,7 +24,7 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.along.corrector import Corrector
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 
 GROUPS = sb.Groups(1e-3, 0.1, 1e-4)

@@ -23,7 +23,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.explorer import server
-from stribeck.explorer.asked import inputs, url
+from stribeck.explorer.inputs import inputs, url
 
 pytestmark = pytest.mark.browser
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
 import stribeck as sb
-from stribeck.solver.along.line_path import LineProblem
+from stribeck.solver.path.line_path import LineProblem
 
 CONTACT = sb.LineContact(
     radius="10 mm",

@@ -17,10 +17,10 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables_of_stacked
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
-from stribeck.solver.along import corrector, line_path
-from stribeck.solver.along.expansion import expand_any_film, expand_article
-from stribeck.solver.along.line_path import LineProblem
 from stribeck.solver.cold_start import first_path
+from stribeck.solver.path import corrector, line_path
+from stribeck.solver.path.expansion import expand_any_film, expand_article
+from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.refinement import converge, verify
 
 SEED = 61_441

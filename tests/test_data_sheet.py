@@ -10,9 +10,9 @@ from fit_data import TRUE
 
 import stribeck as sb
 from stribeck.data_sheet.content import _inputs
-from stribeck.quantities.given.conversions import CONVERSIONS, GIVEN, read_given
-from stribeck.quantities.given.uncertain import split_error
+from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
 from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
+from stribeck.quantities.uncertain import split_error
 from stribeck.uncertainty.states import _by_quadratics, _values, states_of
 
 SHEET = {

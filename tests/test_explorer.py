@@ -29,12 +29,12 @@ from stribeck.cli import main
 from stribeck.explorer import curves, server, table
 from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, round_up
-from stribeck.explorer.asked import carried, choices, inputs, url
-from stribeck.explorer.asked.history import History
 from stribeck.explorer.charts import charts, picture
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.charts.parts import difference
+from stribeck.explorer.inputs import carried, choices, inputs, url
+from stribeck.explorer.inputs.history import History
 from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan

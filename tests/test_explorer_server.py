@@ -177,7 +177,7 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
 
 def test_a_page_opens_with_the_pinned_curves_of_its_address():
     from stribeck.explorer import opening, server
-    from stribeck.explorer.asked import url
+    from stribeck.explorer.inputs import url
 
     start = server.example()
     query = [("pin", dict(parse_qsl(url.encode(start, [url.Pin("kept", start.contact, "balanced")])))["pin"])]

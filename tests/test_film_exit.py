@@ -11,20 +11,20 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_exit
-from stribeck.equations.cavities.of_length import OfLength, solve_of_length
+from stribeck.equations.cavities.fixed_cavity_length import OfLength, solve_of_length
+from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
+from stribeck.equations.inverses import Coupled, Eliminated
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
-from stribeck.equations.on_mesh.inverses import Coupled, Eliminated
 from stribeck.equations.prediction import SeenFrom, extrapolate
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
-from stribeck.solver.along.corrector import Corrector
-from stribeck.solver.cavities.opening import _in_gap
+from stribeck.solver.cavities.cavity_length import _in_gap
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.models.towards import Work, _along, _coarse, _seen_from_exit, settled
+from stribeck.solver.homotopy import Work, _along, _coarse, _seen_from_exit, settled
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import solved_point
 
@@ -408,7 +408,7 @@ def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
 
 @pytest.mark.parametrize(("entries", "kept"), [(0, False), (2e7, True)])
 def test_a_mesh_that_is_left_gives_up_its_operators_beyond_the_memory_for_them(monkeypatch, entries, kept):
-    monkeypatch.setattr("stribeck.solver.along.corrector.LEFT", entries)
+    monkeypatch.setattr("stribeck.solver.path.corrector.LEFT", entries)
     first, second = (solved_point(sb.Groups(speed, 0.1, 1e-3), 1e-5) for speed in (1e-4, 1e-2))
     follower, operators = Corrector(lambda s: first.groups, 1e-5), first.state.equations.operators
     before = operators.deflection

@@ -23,14 +23,14 @@ from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.fits.certainty.posterior import draw_posterior
 from stribeck.fits.fit import _places
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.least_squares import minimise
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.objective import objective
+from stribeck.fits.posterior import draw_posterior
 from stribeck.fits.states.cylinders import solved_parts
-from stribeck.fits.states.ways import atlas_parts
+from stribeck.fits.states.sources import atlas_parts
 
 START = TRUE.replace(boundary_friction=0.3, roughness="2 um", modulus="1.5 MPa")
 NEAR = START.replace(modulus=TRUE.modulus)

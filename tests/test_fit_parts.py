@@ -10,7 +10,7 @@ from stribeck.fits.case_file import write_fitted_case
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.states.cylinders import kept_parts, solved_parts
-from stribeck.fits.states.ways import in_atlas
+from stribeck.fits.states.sources import in_atlas
 
 SPEEDS = np.geomspace(1e-3, 0.3, 6)
 EXIT_AND_BARUS = {"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}

@@ -21,7 +21,7 @@ from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.solids.layer import Layer
 from stribeck.solver.cold_start import path_of_article
-from stribeck.solver.models.towards import WAYS, _blended, _newtonian
+from stribeck.solver.homotopy import WAYS, _blended, _newtonian
 
 THINNING = [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]
 FILMS = [row for row in REFERENCE["b_d_e"] if row["case"] not in ("rigid barus", "barus", "rolling-sliding")]

@@ -8,7 +8,7 @@ import stribeck as sb
 from stribeck.cases.case import Case
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.explorer.asked.inputs import Inputs
+from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.regimes.margins import regime_margins
 
 MIXED = (1e-5, 0.1, 1e-4)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.solver.along.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
+from stribeck.solver.path.corrector import Corrector
 
 
 def disagreements(near, state):

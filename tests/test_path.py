@@ -8,7 +8,7 @@ import pytest
 
 from stribeck.numerics.series import radius
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.along.path import Expansion, Interval, follow
+from stribeck.solver.path.path import Expansion, Interval, follow
 
 pytestmark = pytest.mark.quick
 
@@ -145,8 +145,8 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.along.path.MOST_INTERVALS", 50)
-    monkeypatch.setattr("stribeck.solver.along.path.LONGEST_STEP", 0.2)
+    monkeypatch.setattr("stribeck.solver.path.path.MOST_INTERVALS", 50)
+    monkeypatch.setattr("stribeck.solver.path.path.LONGEST_STEP", 0.2)
 
     class Doubted(Known):
         def missed(self, left, right, parts, values):

@@ -18,7 +18,7 @@ from stribeck.evidence.atlas_states import groups_of
 from stribeck.explorer.curves import curve_from_atlas, in_atlas, transition_marks
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.states.ways import atlas_parts, ways_of
+from stribeck.fits.states.sources import atlas_parts, ways_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.regimes.phase_from_atlas import transition_speeds
 from stribeck.uncertainty.states import states_of

@@ -9,7 +9,7 @@ import stribeck as sb
 from stribeck.contacts.cut_off import CAVITATED, RUPTURE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.torn import swept
+from stribeck.equations.cavities.cavitated import swept
 from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh

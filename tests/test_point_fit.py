@@ -15,7 +15,7 @@ from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import ways
 from stribeck.fits.states.balls import curve_parts, lattice_parts
 from stribeck.fits.states.parts import FrictionParts
-from stribeck.fits.states.ways import Ways
+from stribeck.fits.states.sources import Ways
 
 SPEEDS = TRUE.speed * np.geomspace(0.3, 6.0, 5)
 FREE = ("boundary_friction", "roughness", "modulus", "load", "beta", "radius", "viscosity", "alpha")

@@ -16,8 +16,8 @@ from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import ways
 from stribeck.fits.states.balls import kept_balls
-from stribeck.fits.states.between import Between
-from stribeck.fits.states.ways import Ways
+from stribeck.fits.states.interpolation import Between
+from stribeck.fits.states.sources import Ways
 from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.fluids.shear_thinning import ShearThinning
 

@@ -16,7 +16,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.equations.thinning.column import column, flow_curve
-from stribeck.equations.thinning.far_power import KNOWN, FarPower, similar
+from stribeck.equations.thinning.far_field_of_power_law import KNOWN, FarPower, similar
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.rheology.eyring import Eyring

@@ -18,8 +18,8 @@ from stribeck.cases.law import LAWS
 from stribeck.data_sheet.picture import draw_report
 from stribeck.data_sheet.report import page_of
 from stribeck.fluids import presets
+from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import FACTS
-from stribeck.quantities.given.conversions import CONVERSIONS
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import to_si
 
@@ -73,7 +73,7 @@ def test_a_new_law_is_one_row_and_stands_in_new_cases_and_on_the_page(monkeypatc
     monkeypatch.setattr(presets, "PRESETS", {**presets.PRESETS, "honey": presets.PRESETS["water"]})
     source = Path(sb.__file__).parent
     text = runpy.run_path(str(source / "data_sheet/new_case.py"))["new_case"]()
-    found = runpy.run_path(str(source / "explorer/asked/choices.py"))["CHOICES"]
+    found = runpy.run_path(str(source / "explorer/inputs/choices.py"))["CHOICES"]
     for name in ("carreau-yasuda", "cross", "honey", "roelands", "patir-cheng", "retardation_time", *LAWS):
         assert name in text, name
     assert found["fluid"].options["carreau-yasuda"] == ("carreau yasuda", (("relaxation_time",), ()))

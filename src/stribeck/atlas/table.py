@@ -46,7 +46,7 @@ FAR = 1e3
 FUNCTIONS = {"line": TABULATED, "point": BALL}
 """What is tabulated, by geometry."""
 
-SOLVER = ("solver.cold_start", "solver.along.corrector", "solver.refinement", "solver.at_rest")
+SOLVER = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
 """Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
 are its own."""
 

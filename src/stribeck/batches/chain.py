@@ -16,7 +16,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.along.corrector import Corrector
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import describe, hertz_solution, solution_of

@@ -13,7 +13,7 @@ from typing import Any, Literal, Self
 from stribeck.cases.model_parts import take_parts
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import PURE_SLIDING
-from stribeck.quantities.given.hints import advice_on
+from stribeck.quantities.hints import advice_on
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, quantity
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS

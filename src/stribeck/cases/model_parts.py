@@ -16,8 +16,8 @@ from stribeck.fluids.presets import PRESETS, Liquid
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
+from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.given.conversions import GIVEN
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.layer import Layer

@@ -19,11 +19,11 @@ from stribeck.contacts.groups import Geometry
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.contact_values import check_alternatives
+from stribeck.quantities.conversions import read_given
 from stribeck.quantities.facts import FACTS, fact_values
-from stribeck.quantities.given.conversions import read_given
-from stribeck.quantities.given.uncertain import has_error, split_error
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
 from stribeck.quantities.part_inputs import PART_INPUTS
+from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 __all__ = ["check_case", "contact_inputs", "geometry_of", "group_inputs", "load_case"]

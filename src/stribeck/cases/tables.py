@@ -7,9 +7,9 @@ from typing import Annotated, Any
 from stribeck.cases.case import USUAL, Axis, Case, CurveSettings, curve_range
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law
 from stribeck.contacts.friction import Definition
+from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.facts import FACTS
-from stribeck.quantities.given.conversions import GIVEN
-from stribeck.quantities.given.hints import ELSEWHERE, MEANT, advice_on
+from stribeck.quantities.hints import ELSEWHERE, MEANT, advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, quantity
 from stribeck.quantities.units import DIMENSIONS, show
 

@@ -184,8 +184,8 @@ def fit_command(
     if steps is not None:
         need_extra("a posterior", "fit", "emcee")
     from stribeck.fits.case_file import check_fitted_case, write_fitted_case
-    from stribeck.fits.certainty.posterior import draw_posterior
     from stribeck.fits.fit import fit, names_to_fit
+    from stribeck.fits.posterior import draw_posterior
 
     if out is not None:
         check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)

@@ -15,7 +15,7 @@ from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import contact_values, refuse_former, replaced
-from stribeck.quantities.given.conversions import converted
+from stribeck.quantities.conversions import converted
 from stribeck.quantities.inputs import InputTable, si_text
 from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.units import InputError

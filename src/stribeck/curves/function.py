@@ -20,9 +20,9 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, OUTPUT_TABLES
 from stribeck.quantities.results import ByValue, Card, Shown, brief
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.along.line_path import POSITION, LineProblem
-from stribeck.solver.along.path import SolvedPath
 from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.path.line_path import POSITION, LineProblem
+from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import minimum_estimate, solution_of, state_notes

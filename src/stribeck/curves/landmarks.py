@@ -19,8 +19,8 @@ from stribeck.equations.observables import ROW
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.along.line_path import POSITION
-from stribeck.solver.along.path import SolvedPath
+from stribeck.solver.path.line_path import POSITION
+from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of

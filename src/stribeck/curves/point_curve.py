@@ -26,7 +26,7 @@ from stribeck.numerics.newton import root_between
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
-from stribeck.solver.along.path import SolvedPath, follow
+from stribeck.solver.path.path import SolvedPath, follow
 from stribeck.solver.point.curve_path import CurveState, PointProblem
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of

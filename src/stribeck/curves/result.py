@@ -27,9 +27,9 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.along.path import SolvedPath
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, law_notes, minimum_note
+from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate
 

@@ -21,7 +21,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.part_inputs import PART_INPUTS, part_names
 from stribeck.quantities.units import InputError
-from stribeck.solver.along.line_path import as_in
+from stribeck.solver.path.line_path import as_in
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 

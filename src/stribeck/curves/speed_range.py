@@ -19,8 +19,8 @@ from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
-from stribeck.solver.along.line_path import LineProblem
-from stribeck.solver.along.path import Expansion, SolvedPath, follow
+from stribeck.solver.path.line_path import LineProblem
+from stribeck.solver.path.path import Expansion, SolvedPath, follow
 from stribeck.solver.solve import SolveError, describe
 
 __all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
@@ -97,7 +97,7 @@ def grown(
     contact_part : callable
         Part of the friction caused by asperities, from a row of observables.
     on_interval : callable, optional
-        As of :func:`stribeck.solver.along.path.follow`.
+        As of :func:`stribeck.solver.path.path.follow`.
 
     Returns
     -------

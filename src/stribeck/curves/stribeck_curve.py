@@ -26,9 +26,9 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.along.line_path import LineProblem
-from stribeck.solver.along.path import Expansion, follow
 from stribeck.solver.cavities.reforming_line import problem_of
+from stribeck.solver.path.line_path import LineProblem
+from stribeck.solver.path.path import Expansion, follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]

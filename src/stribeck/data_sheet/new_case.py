@@ -10,9 +10,9 @@ from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contacts.geometries import check_geometry
 from stribeck.contacts.groups import Geometry
 from stribeck.fluids.presets import PRESETS
+from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.given.conversions import CONVERSIONS
 from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.keywords import answers_typos

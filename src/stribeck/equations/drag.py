@@ -28,8 +28,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
+from stribeck.equations.film import gradient_in_film, slopes_in_film
 from stribeck.equations.line import LOAD, Equations
-from stribeck.equations.on_mesh.film import gradient_in_film, slopes_in_film
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.solid import lengths_of
@@ -139,7 +139,7 @@ def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | No
 def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | None) -> Array:
     """Return the derivatives of :func:`viscous_friction` with respect to the unknowns, shape (3, ..., y.shape[-1]).
 
-    ``slopes`` are those of G at the nodes, see :func:`stribeck.equations.on_mesh.film.slopes_in_film`, if they are known.
+    ``slopes`` are those of G at the nodes, see :func:`stribeck.equations.film.slopes_in_film`, if they are known.
     """
     op, at, film, d = equations.operators, equations.layout, equations.film, equations.dilation(y)
     h, h_star = y[..., at.gap], y[..., at.flux_gap]

@@ -22,10 +22,10 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
+from stribeck.equations.enriched import FineOperators
+from stribeck.equations.film import gradient_in_film, slopes_in_film
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import DRAG, ROW, Observables, drag_scales, friction_integrals, friction_scale, gradients
-from stribeck.equations.on_mesh.film import gradient_in_film, slopes_in_film
-from stribeck.equations.on_mesh.finer import FineOperators
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference

@@ -32,8 +32,8 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.damping import longest_step
-from stribeck.equations.on_mesh.film import by_pressure_of, gradient_in_film, slopes_in_film
-from stribeck.equations.on_mesh.inverses import Coupled, Eliminated
+from stribeck.equations.film import by_pressure_of, gradient_in_film, slopes_in_film
+from stribeck.equations.inverses import Coupled, Eliminated
 from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.unknowns import Layout
 from stribeck.fluids.cavitation import Cavitation

@@ -23,9 +23,9 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.friction import Definition
 from stribeck.equations.drag import Nodal, drag_gradients, friction_scale, viscous_friction
+from stribeck.equations.film import slopes_in_film
 from stribeck.equations.gap import central_gap, far_gap, gap_beside, minimum_gap
 from stribeck.equations.line import LOAD, Equations
-from stribeck.equations.on_mesh.film import slopes_in_film
 from stribeck.fluids import newtonian as reynolds
 from stribeck.fluids.fluid import Slopes
 from stribeck.numerics.panels import Mesh, reference
@@ -197,7 +197,7 @@ def gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | No
     Those of the film of the article are the first alone.  The position of the minimum gap is held, to first order without
     effect.  The projected pressure enters as its moment, ``3 int x**2 g dx = -6 int x A g dx`` without the panel through
     infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to the quadrature error
-    of g.  ``slopes`` are those of G, see :func:`stribeck.equations.on_mesh.film.slopes_in_film`, if they are known.
+    of g.  ``slopes`` are those of G, see :func:`stribeck.equations.film.slopes_in_film`, if they are known.
     """
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start

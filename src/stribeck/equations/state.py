@@ -16,10 +16,10 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.equations.film import slopes_in_film
 from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.on_mesh.film import slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import ROUNDING_SIZE, Inverse, Root, StepControl, root_find

@@ -23,8 +23,6 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import ARTICLE
 from stribeck.curves.regime import Regime, regime_of
-from stribeck.explorer.asked.carried import errors_of, facts_of
-from stribeck.explorer.asked.inputs import Inputs
 from stribeck.explorer.curves import (
     FIRST_RTOL,
     SOLVED_ROWS,
@@ -43,6 +41,8 @@ from stribeck.explorer.curves import (
     solved_diagram,
     transition_marks,
 )
+from stribeck.explorer.inputs.carried import errors_of, facts_of
+from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.nearby import WarmStartSolver

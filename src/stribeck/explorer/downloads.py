@@ -17,9 +17,9 @@ from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.explorer.answer import Answer
-from stribeck.explorer.asked.carried import model_changes, model_words, tables_of, toml_text
-from stribeck.explorer.asked.inputs import Inputs, exact_text
 from stribeck.explorer.curves import Curve, hersey_scale
+from stribeck.explorer.inputs.carried import model_changes, model_words, tables_of, toml_text
+from stribeck.explorer.inputs.inputs import Inputs, exact_text
 from stribeck.explorer.measured import Measured
 from stribeck.files.toml import parse_toml
 from stribeck.quantities.inputs import si_text

@@ -15,12 +15,12 @@ from typing import Any
 from nicegui import background_tasks
 
 from stribeck.explorer.answer import Answer, Answerer
-from stribeck.explorer.asked import url
-from stribeck.explorer.asked.carried import errors_of
-from stribeck.explorer.asked.history import History
-from stribeck.explorer.asked.inputs import Inputs
-from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.downloads import View
+from stribeck.explorer.inputs import url
+from stribeck.explorer.inputs.carried import errors_of
+from stribeck.explorer.inputs.history import History
+from stribeck.explorer.inputs.inputs import Inputs
+from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.explorer.opening import curves_of
 from stribeck.explorer.page import UPDATING, Page

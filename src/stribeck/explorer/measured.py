@@ -12,8 +12,8 @@ from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
-from stribeck.explorer.asked.inputs import Abscissa, Inputs
 from stribeck.explorer.curves import hersey_scale
+from stribeck.explorer.inputs.inputs import Abscissa, Inputs
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.inputs import si_text

@@ -17,16 +17,16 @@ from nicegui.json import dumps
 from stribeck.explorer import downloads as files
 from stribeck.explorer import table
 from stribeck.explorer.answer import Answer
-from stribeck.explorer.asked import choices, inputs
-from stribeck.explorer.asked.choices import CHOICES
-from stribeck.explorer.asked.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
-from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.charts.parts import Options, difference
 from stribeck.explorer.curves import in_atlas
 from stribeck.explorer.downloads import View, examples
+from stribeck.explorer.inputs import choices, inputs
+from stribeck.explorer.inputs.choices import CHOICES
+from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
+from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.scans import ENDINGS
 from stribeck.regimes.margins import RegimeMargins
@@ -67,7 +67,7 @@ class ChoiceRow(ui.element, component="choice.js"):
     name : str
         Key of :data:`CHOICES`.
     start : dict
-        What it shows first, as of :func:`stribeck.explorer.asked.choices.state_of`.
+        What it shows first, as of :func:`stribeck.explorer.inputs.choices.state_of`.
     """
 
     def __init__(self, name: str, start: dict[str, Any]) -> None:

@@ -14,9 +14,9 @@ import threading
 from typing import Any, Literal
 
 from stribeck.contacts.contact import Contact
-from stribeck.explorer.asked.inputs import from_case
-from stribeck.explorer.asked.url import check_length
 from stribeck.explorer.downloads import read_case
+from stribeck.explorer.inputs.inputs import from_case
+from stribeck.explorer.inputs.url import check_length
 from stribeck.explorer.measured import read_measured
 from stribeck.explorer.scans import read_scan
 from stribeck.quantities.units import InputError

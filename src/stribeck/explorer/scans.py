@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.cases.law import law_of_file
-from stribeck.explorer.asked.carried import json_text, tables_of
-from stribeck.explorer.asked.inputs import Inputs, with_model
 from stribeck.explorer.downloads import shown_name
+from stribeck.explorer.inputs.carried import json_text, tables_of
+from stribeck.explorer.inputs.inputs import Inputs, with_model
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError

@@ -15,9 +15,9 @@ from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
 from stribeck.contacts.line import LineContact
-from stribeck.explorer.asked.inputs import Inputs, from_case, units_of
-from stribeck.explorer.asked.url import LONGEST, check_length
 from stribeck.explorer.downloads import KINDS, name_of, shown_name
+from stribeck.explorer.inputs.inputs import Inputs, from_case, units_of
+from stribeck.explorer.inputs.url import LONGEST, check_length
 from stribeck.explorer.serving.guard import Guard, check_host
 from stribeck.explorer.serving.tidy import set_aside
 from stribeck.files.writing import MissingExtraError

@@ -12,12 +12,12 @@ from nicegui import events, ui
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
-from stribeck.explorer.asked import choices, inputs, url
-from stribeck.explorer.asked.inputs import Inputs
-from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.downloads import View
 from stribeck.explorer.following import Following, Superseded, reason
+from stribeck.explorer.inputs import choices, inputs, url
+from stribeck.explorer.inputs.inputs import Inputs
+from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import ENDINGS, Scan, with_scan

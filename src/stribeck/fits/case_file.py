@@ -21,11 +21,11 @@ from stribeck.contacts.contact import Contact
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
+from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.given.conversions import CONVERSIONS
-from stribeck.quantities.given.uncertain import has_error, split_error
 from stribeck.quantities.inputs import ALTERNATIVES
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
+from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError
 
 __all__ = ["check_fitted_case", "format_interval", "format_value", "load_fit_case", "write_fitted_case"]

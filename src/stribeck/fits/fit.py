@@ -23,19 +23,19 @@ from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.certainty.identifiability import undetermined
-from stribeck.fits.certainty.profile_likelihood import BetterMinimumError, Ends, profile_ends
 from stribeck.fits.free_inputs import FreeInput, free_inputs
+from stribeck.fits.identifiability import undetermined
 from stribeck.fits.least_squares import Minimum, effective_parameters, minimise, settle
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.notes import notes_of, outcome_of
 from stribeck.fits.objective import Objective, objective
+from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
 from stribeck.fits.residuals import excess_of, judge_residuals
 from stribeck.fits.result import Fit, FittedInput, unit_of
-from stribeck.fits.states.between import Between
+from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import PartsOf
-from stribeck.fits.states.ways import in_atlas, ways_of
+from stribeck.fits.states.sources import in_atlas, ways_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import InputError, show

@@ -35,7 +35,7 @@ from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import check_solid, models_beside
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
-from stribeck.fits.states.between import Between
+from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
 
 __all__ = ["FrictionModel", "Prediction"]

@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.model import FrictionModel, Prediction
-from stribeck.fits.states.between import Between
+from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import PartsOf
 
 __all__ = ["Objective", "objective"]

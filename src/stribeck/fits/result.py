@@ -15,10 +15,10 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.fits.certainty.identifiability import Unidentifiable
+from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
-from stribeck.fits.states.between import Between
+from stribeck.fits.states.interpolation import Between
 from stribeck.quantities.inputs import LINE, InputTable
 from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.results import ByValue, Card, Shown

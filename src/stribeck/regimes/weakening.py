@@ -24,7 +24,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.along.corrector import Corrector
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import SolveError, as_groups, check_rtol, describe
 

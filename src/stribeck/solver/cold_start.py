@@ -28,8 +28,8 @@ from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.cavities.opening import paths_to_cavity
-from stribeck.solver.models.towards import paths_to_model
+from stribeck.solver.cavities.cavity_length import paths_to_cavity
+from stribeck.solver.homotopy import paths_to_model
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""

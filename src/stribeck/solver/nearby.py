@@ -11,7 +11,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.state import State
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.along.corrector import Corrector
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, as_groups, check_rtol, finish, hertz_solution, solved_point

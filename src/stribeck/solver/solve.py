@@ -32,9 +32,9 @@ from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
-from stribeck.solver.cavities.opening import ruptured
+from stribeck.solver.cavities.cavity_length import ruptured
 from stribeck.solver.cold_start import first_paths
-from stribeck.solver.models.towards import is_lost_to_rounding
+from stribeck.solver.homotopy import is_lost_to_rounding
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution

@@ -9,7 +9,7 @@ from stribeck.cases.law import ASPERITIES, SURFACE
 from stribeck.cases.tables import example_of, optional_table, shared_types
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import check_alternatives
-from stribeck.quantities.given.hints import advice_on
+from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind

@@ -21,9 +21,9 @@ from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.given.uncertain import relative_error
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
+from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
 from stribeck.uncertainty.states import NODE, films_of, states_by_inputs, states_of

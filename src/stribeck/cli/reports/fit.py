@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from stribeck.cli.exits import say
 from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
-from stribeck.fits.certainty.posterior import Posterior
+from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.part_inputs import fitted_rows

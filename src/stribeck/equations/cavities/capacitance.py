@@ -20,7 +20,7 @@ from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.numerics.fourier_panels import PolarMesh
 
 if TYPE_CHECKING:
-    from stribeck.equations.cavities.torn import TornLinear
+    from stribeck.equations.cavities.cavitated import TornLinear
 
 __all__ = ["Capacitance", "Preconditioner"]
 

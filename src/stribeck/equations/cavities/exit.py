@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import CAVITATED, FarFilm
-from stribeck.equations.cavities.torn import TornEquations
+from stribeck.equations.cavities.cavitated import TornEquations
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.system import Unknowns

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from stribeck._types import Array, Flags
-from stribeck.equations.cavities.torn import TornEquations
+from stribeck.equations.cavities.cavitated import TornEquations
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.lazy import cached_property

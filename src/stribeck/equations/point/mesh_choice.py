@@ -20,7 +20,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
 from stribeck.equations.thinning.column import has_viscosity_at_rest
-from stribeck.equations.thinning.far import ROLLING, far_rate, lost
+from stribeck.equations.thinning.far_field import ROLLING, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh

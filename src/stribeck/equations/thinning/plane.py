@@ -9,7 +9,7 @@ With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta 
 :math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid:
 thinning changes the drag through T alone.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
 
-At the rim and beyond it thins to first order (:mod:`stribeck.equations.thinning.far`).
+At the rim and beyond it thins to first order (:mod:`stribeck.equations.thinning.far_field`).
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
 from stribeck.equations.thinning.column import NEAR, Column, column, has_viscosity_at_rest, pull
-from stribeck.equations.thinning.far import LEAST, FarThinned
-from stribeck.equations.thinning.far_power import FarPower
+from stribeck.equations.thinning.far_field import LEAST, FarThinned
+from stribeck.equations.thinning.far_field_of_power_law import FarPower
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 

@@ -20,8 +20,8 @@ from stribeck.numerics.continuation import march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
-from stribeck.solver.along.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
+from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.solve import SolveError, stated_errors
 
 __all__ = ["kept_parts", "solved_parts"]

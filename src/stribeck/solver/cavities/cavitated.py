@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.torn import TornEquations, just_above
+from stribeck.equations.cavities.cavitated import TornEquations, just_above
 from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,

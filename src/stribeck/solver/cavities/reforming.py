@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.torn import TornEquations
+from stribeck.equations.cavities.cavitated import TornEquations
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.cavitated import follow_cavitated, holds_torn, is_torn, refine_cavitated

@@ -24,8 +24,9 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.series import interval, radius
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.along.expansion import Direction, Expanded, expand_any_film
-from stribeck.solver.along.line_path import (
+from stribeck.solver.at_rest import shift_along
+from stribeck.solver.path.expansion import Direction, Expanded, expand_any_film
+from stribeck.solver.path.line_path import (
     FARTHEST,
     MOST_TRIALS,
     POSITION,
@@ -36,8 +37,7 @@ from stribeck.solver.along.line_path import (
     LineProblem,
     as_in,
 )
-from stribeck.solver.along.path import Expansion
-from stribeck.solver.at_rest import shift_along
+from stribeck.solver.path.path import Expansion
 from stribeck.solver.refinement import RefinedState, converge
 
 __all__ = ["problem_of"]
@@ -62,7 +62,7 @@ def problem_of(
     uniform: bool = True,
     like: Sequence[Expansion] = (),
 ) -> LineProblem:
-    """Return the states of the line along a path, see :class:`stribeck.solver.along.line_path.LineProblem`."""
+    """Return the states of the line along a path, see :class:`stribeck.solver.path.line_path.LineProblem`."""
     groups = groups_at(0.0)
     may_open = groups.model.cavitation is Cavitation.REFORM and groups.speed > 0
     if may_open and groups.model.cavity_pressure < 0:

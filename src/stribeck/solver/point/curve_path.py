@@ -1,4 +1,4 @@
-"""States of a ball along a path: solved from a prediction and expanded, see :mod:`stribeck.solver.along.path`."""
+"""States of a ball along a path: solved from a prediction and expanded, see :mod:`stribeck.solver.path.path`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from stribeck.numerics.series import beyond, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, same
-from stribeck.solver.along.path import Expansion, SolvedPath
+from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.point.level import Level, band_for
 from stribeck.solver.point.path import next_state, similar, without_factors
 from stribeck.solver.point.refinement import Pair
@@ -130,7 +130,7 @@ class PointProblem:
         return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, see :class:`stribeck.solver.along.path.Problem`."""
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.path.Problem`."""
         groups = self.groups_at(s)
         start, predicted = similar(self.like, groups), None
         if near:

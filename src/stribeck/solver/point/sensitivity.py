@@ -13,7 +13,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
 from stribeck.equations.cavities.capacitance import Capacitance
-from stribeck.equations.cavities.torn import TornLinear
+from stribeck.equations.cavities.cavitated import TornLinear
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import Direction, Measure, log_derivatives

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stribeck.explorer.asked.inputs import Inputs
+from stribeck.explorer.inputs.inputs import Inputs
 
 __all__ = ["History"]
 

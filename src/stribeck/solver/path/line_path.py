@@ -24,9 +24,9 @@ from stribeck.numerics.series import ROUNDING, beyond, interval, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
-from stribeck.solver.along.between import LinePoint, between, minimum_between, on
-from stribeck.solver.along.corrector import FIRST_SPREAD, Corrector, from_cold, keeps_cavity
-from stribeck.solver.along.expansion import (
+from stribeck.solver.at_rest import shift_along, with_positive_gap
+from stribeck.solver.path.corrector import FIRST_SPREAD, Corrector, from_cold, keeps_cavity
+from stribeck.solver.path.expansion import (
     Direction,
     Expanded,
     around_state,
@@ -36,8 +36,8 @@ from stribeck.solver.along.expansion import (
     observed,
     residuals,
 )
-from stribeck.solver.along.path import KNOT_PART, Expansion
-from stribeck.solver.at_rest import shift_along, with_positive_gap
+from stribeck.solver.path.interpolation import LinePoint, between, minimum_between, on
+from stribeck.solver.path.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
 EXACT_ORDER, ORDER = (18, 20), (14, 16)
@@ -217,7 +217,7 @@ class LineProblem:
         return np.append(values[:, :1].min(axis=0), np.ones(values.shape[1] - 1)) if values.size else np.empty(0)
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, see :class:`stribeck.solver.along.path.Problem`."""
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.path.Problem`."""
         groups = self.groups_at(s)
         same = self._same(s, groups)
         if same is not None:

@@ -22,8 +22,8 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA
 from stribeck.contact_laws.scaled import NAMED
 from stribeck.contacts.model import Model
-from stribeck.explorer.asked.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
-from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
+from stribeck.explorer.inputs.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
+from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.inputs import INPUT_TABLES, quantity

@@ -9,8 +9,8 @@ from urllib.parse import quote, urlencode
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, check_definition
-from stribeck.explorer.asked.carried import check_rest, contact_of, geometry_of, json_text
-from stribeck.explorer.asked.inputs import FIELDS, NAMES, Abscissa, Inputs, exact_text, read_field, with_model
+from stribeck.explorer.inputs.carried import check_rest, contact_of, geometry_of, json_text
+from stribeck.explorer.inputs.inputs import FIELDS, NAMES, Abscissa, Inputs, exact_text, read_field, with_model
 from stribeck.quantities.units import InputError, read_number, show
 from stribeck.solver.solve import check_rtol
 
@@ -36,7 +36,7 @@ class Pin:
     definition : {"balanced", "published"}
         Its friction.
     model : str
-        Its model, as in :mod:`stribeck.explorer.asked.carried`.
+        Its model, as in :mod:`stribeck.explorer.inputs.carried`.
     """
 
     name: str

@@ -11,7 +11,7 @@ the half-plane if need be, in one step if Newton's iteration converges, else dow
 
 In a fluid that thins the Newtonian part falls exponentially, as films that thin much do with it; not where roughness hinders
 the flow, whose films would lose it at once.  Films that begin anew behind a cavity come after these, see
-:mod:`stribeck.solver.cavities.opening`.
+:mod:`stribeck.solver.cavities.cavity_length`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.equations.cavities.of_exit import distance_to_flux_gap, solve_of_exit
+from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate

@@ -14,8 +14,8 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.fits.states.balls import OnState, curve_parts, kept_balls, lattice_parts
-from stribeck.fits.states.between import Between
 from stribeck.fits.states.cylinders import kept_parts, solved_parts
+from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import FrictionParts, Made, ModelChange, PartsOf
 from stribeck.quantities.units import InputError
 

@@ -13,7 +13,7 @@ from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.state import State
 from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.panels import Mesh, interpolation_error
-from stribeck.solver.along.path import Expansion, rate
+from stribeck.solver.path.path import Expansion, rate
 from stribeck.solver.refinement import RefinedState
 
 

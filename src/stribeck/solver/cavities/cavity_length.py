@@ -16,7 +16,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.cavities.of_length import solve_of_length
+from stribeck.equations.cavities.fixed_cavity_length import solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import State, mesh_for
@@ -24,7 +24,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.models.towards import (
+from stribeck.solver.homotopy import (
     MESH_TOLERANCE,
     NEWTON_TOLERANCE,
     ORDER,

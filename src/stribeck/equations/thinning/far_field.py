@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.thinning.beyond import BeyondRim, Waves
 from stribeck.equations.thinning.column import column, pull
+from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 from stribeck.quantities.lazy import cached_property

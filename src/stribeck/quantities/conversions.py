@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.given.uncertain import has_error, split_error
 from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import LINE, InputTable
+from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["CONVERSIONS", "GIVEN", "Conversion", "Given", "GivenInput", "converted", "read_given"]
@@ -172,7 +172,7 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
     ----------
     given : mapping
         Inputs by name, those of :data:`GIVEN` among them; values may carry an error, see
-        :mod:`stribeck.quantities.given.uncertain`.  None counts as not given.
+        :mod:`stribeck.quantities.uncertain`.  None counts as not given.
     table : InputTable
         The inputs of the geometry.
 

@@ -19,7 +19,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry
-from stribeck.explorer.asked.carried import contact_of, model_of_case, rest_of_case, tables_of
+from stribeck.explorer.inputs.carried import contact_of, model_of_case, rest_of_case, tables_of
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
@@ -133,7 +133,7 @@ class Inputs:
     rtol : float
         Relative tolerance of the states.
     model, rest : str
-        The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.asked.carried`.
+        The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.inputs.carried`.
     """
 
     contact: Contact
@@ -195,7 +195,7 @@ def with_model(inputs: Inputs, model: str, **numbers: float | None) -> Inputs:
     inputs : Inputs
         Those before.
     model : str
-        The model, as in :mod:`stribeck.explorer.asked.carried`.
+        The model, as in :mod:`stribeck.explorer.inputs.carried`.
     **numbers : float or None
         Inputs in SI units.
 

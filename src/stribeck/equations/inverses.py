@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.on_mesh.film import by_pressure_of, gradient_in_film, slopes_in_film
+from stribeck.equations.film import by_pressure_of, gradient_in_film, slopes_in_film
 from stribeck.numerics.newton import LU
 from stribeck.numerics.running_integral import Volterra
 

@@ -26,8 +26,8 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contacts.cut_off import FULL
-from stribeck.equations.thinning.beyond import BeyondRim, Waves
 from stribeck.equations.thinning.column import Column, column, pull
+from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.quantities.lazy import cached_property
 

@@ -15,7 +15,7 @@ from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit
-from stribeck.fits.states.ways import in_atlas
+from stribeck.fits.states.sources import in_atlas
 from stribeck.quantities.units import InputError
 
 __all__ = ["Posterior", "draw_posterior"]

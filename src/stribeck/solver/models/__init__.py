@@ -1,1 +1,0 @@
-"""Cold starts of models that are not the article's: films that end, other fluids, other solids."""
