@@ -140,13 +140,13 @@ validity: $(READY)
 # The lines that are finished are kept in build/atlas, so that an interrupted build goes on. TABLE=line-persson makes another.
 TABLE = line-exponential
 atlas: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build $(TABLE)
+	$(ONE_THREAD) $(BIN)/python -m evidence.atlas_build $(TABLE)
 
 atlas-point: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build ball-exponential ball-persson ball-exit
+	$(ONE_THREAD) $(BIN)/python -m evidence.atlas_build ball-exponential ball-persson ball-exit
 
 certificate: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate $(TABLE)
+	$(ONE_THREAD) $(BIN)/python -m evidence.atlas_certificate $(TABLE)
 
 clean:
 	rm -rf $(VENV) $(VENV)-lowest $(VENV)-newest build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from evidence.coefficients import JUDGED, RATIOS, largest_errors
+from evidence.error_maps import error_map, error_maps, kind_of
+from evidence.plot import plot_error_maps
 from stribeck.asymptotics import FORMULAS, Formula, Limit
 from stribeck.asymptotics.formula import COEFFICIENTS
 from stribeck.asymptotics.rough import load_sharing, transitions
-from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
-from stribeck.evidence.error_maps import error_map, error_maps, kind_of
-from stribeck.evidence.plot import plot_error_maps
 from stribeck.numerics.threads import one_blas_thread
 
 if TYPE_CHECKING:

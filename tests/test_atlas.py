@@ -10,6 +10,9 @@ from matplotlib.figure import Figure
 from numpy.polynomial import chebyshev as reference
 
 import stribeck as sb
+from evidence import atlas_build
+from evidence.atlas_certificate import FRICTIONS, certify, compare, quantities, solved
+from evidence.atlas_states import groups_of, speed_range
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
@@ -17,9 +20,6 @@ from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.evidence import atlas_build
-from stribeck.evidence.atlas_certificate import FRICTIONS, certify, compare, quantities, solved
-from stribeck.evidence.atlas_states import groups_of, speed_range
 from stribeck.fluids.cavitation import Cavitation
 
 DEFINITIONS = ("published", "balanced")

@@ -37,6 +37,7 @@ APART = {
     "walk",
     "explorer_latency",
     "explorer_memory",
+    "house",
     "instructions",
 }
 NO_SCRIPTS = {"textbook"}

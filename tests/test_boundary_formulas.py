@@ -10,10 +10,10 @@ from numpydoc.docscrape import get_doc_object
 from scipy.integrate import quad
 
 import stribeck as sb
+from evidence.formulas import relative_error
 from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.formula import Formula, OutOfRangeWarning
 from stribeck.asymptotics.rough import boundary, perturbation, slow_contact
-from stribeck.evidence.formulas import relative_error
 from stribeck.quantities.units import InputError
 
 MODULES = (hertz, rest, perturbation, boundary)

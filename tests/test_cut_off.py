@@ -7,10 +7,10 @@ import pytest
 from scipy.integrate import trapezoid
 
 import stribeck as sb
+from evidence import sphere_along_wall
 from stribeck.asymptotics.point.logarithm import LOGARITHM, far_integral
 from stribeck.contacts import cut_off
 from stribeck.equations.point.observables import FrictionWithin
-from stribeck.evidence import sphere_along_wall
 from stribeck.solver.point.solve import solve_cold
 
 

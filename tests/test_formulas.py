@@ -17,11 +17,11 @@ import pytest
 from numpydoc.validate import validate
 
 import stribeck as sb
+from evidence.coefficients import JUDGED, largest_errors
+from evidence.formulas import FIELDS, LOCATED, MEASURED, relative_error
 from stribeck import asymptotics
 from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
 from stribeck.asymptotics.formula import COEFFICIENTS, PARAMETERS
-from stribeck.evidence.coefficients import JUDGED, largest_errors
-from stribeck.evidence.formulas import FIELDS, LOCATED, MEASURED, relative_error
 
 SEED = 60913
 STATES = 6

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from evidence.atlas_certificate import compare, quantities, random_states, solved
+from evidence.atlas_states import groups_of
 from stribeck.atlas.tables import TABLES
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.evidence.atlas_certificate import compare, quantities, random_states, solved
-from stribeck.evidence.atlas_states import groups_of
 from stribeck.explorer.curves import curve_from_atlas, in_atlas, transition_marks
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel

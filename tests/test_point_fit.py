@@ -12,7 +12,7 @@ from stribeck.batches.lattice import Lattice
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.states import ways
+from stribeck.fits.states import sources
 from stribeck.fits.states.balls import curve_parts, lattice_parts
 from stribeck.fits.states.parts import FrictionParts
 from stribeck.fits.states.sources import Ways
@@ -127,7 +127,7 @@ def test_intervals_of_a_ball_cover_in_40_experiments(monkeypatch):
     data = measured(np.ones(5))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("boundary_friction", "roughness"), FitSettings()))
     parts = lattice_parts(*model.start(), "balanced")  # kept for all experiments
-    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(parts, parts))
+    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(parts, parts))
     exact = model.predict(np.zeros(2), parts).friction
     held, experiments = np.zeros((2, 2), dtype=int), 40
     for seed in range(experiments):
@@ -183,7 +183,7 @@ def test_units_of_a_fit_are_those_of_the_geometry(tmp_path):
 
 def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys, monkeypatch):
     parts = made_up("balanced")
-    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(parts, parts))
+    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(parts, parts))
     case = tmp_path / "ball.toml"
     case.write_text(CASE.format(load="10 mN", roughness="0.1 um", fit=""))
     contact = sb.load_case(case).contact.replace(boundary_friction=0.7, roughness=0.12e-6)

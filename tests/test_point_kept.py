@@ -14,7 +14,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.states import ways
+from stribeck.fits.states import sources
 from stribeck.fits.states.balls import kept_balls
 from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.sources import Ways
@@ -83,13 +83,13 @@ def test_curves_are_read_between_the_inputs_at_which_they_were_solved_and_fits_s
     assert (found.error > exact.error).all()
 
     solved.clear()
-    monkeypatch.setitem(ways.WAYS, "point", lambda *_: ways.between(counted))
+    monkeypatch.setitem(sources.WAYS, "point", lambda *_: sources.between(counted))
     noise = np.exp(0.02 * np.random.default_rng(1).standard_normal(8))
     rows = measured(exact.friction * noise, SPEEDS, inputs=inputs)
     fit = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     drawn = fit.band(1, np.geomspace(SPEEDS[0], SPEEDS[-1], 30))  # between the measured speeds, without a state more
     assert len(solved) <= 2 * 12
-    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(solve, solve))
+    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(solve, solve))
     alone = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     assert fit.converged
     for one, other in zip(fit.inputs, alone.inputs, strict=True):

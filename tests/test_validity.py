@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from evidence.ball import OBSERVED
+from evidence.coefficients import JUDGED, RATIOS, largest_errors
+from evidence.error_maps import AXES, error_map, error_maps, kind_of
+from evidence.formulas import LOCATED, MEASURED, OF_STATE, relative_error
 from stribeck.asymptotics import FORMULAS, Limit
 from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.rough import boundary, load_sharing, transitions, uniform
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.scaling import SCALINGS
-from stribeck.evidence.ball import OBSERVED
-from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
-from stribeck.evidence.error_maps import AXES, error_map, error_maps, kind_of
-from stribeck.evidence.formulas import LOCATED, MEASURED, OF_STATE, relative_error
 
 pytest.importorskip("xarray")
 
@@ -182,7 +182,7 @@ def test_an_unknown_quantity_is_refused_with_the_known_ones():
 
 
 def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps, tmp_path):
-    from stribeck.evidence.plot import plot_error_maps
+    from evidence.plot import plot_error_maps
 
     pairs = [(formula, maps[formula.name]) for formula in (uniform.friction, hydrodynamic.friction, rest.gap)]
     first, second = tmp_path / "a.png", tmp_path / "b.png"
@@ -198,7 +198,7 @@ def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps
 
 
 def test_what_has_no_two_points_is_not_drawn():
-    from stribeck.evidence.plot import plot_error_maps
+    from evidence.plot import plot_error_maps
 
     data = error_map(rest.gap, load=[1e-3, 0.1], relative_roughness=1e-3)
     with pytest.raises(sb.InputError, match="nothing to draw"):

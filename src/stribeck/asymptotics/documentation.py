@@ -56,24 +56,7 @@ ERRORS: dict[str, str] = {
 
 
 def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...], undefined: str) -> str:
-    """Return the docstring of a formula with the sections that it leaves to the tables here.
-
-    Parameters
-    ----------
-    function : callable
-        The formula.
-    predicts : str
-        Key of :data:`VALUES`.
-    uses : tuple of str
-        The groups on which its value depends.
-    undefined : str
-        Where it has no value and returns nan; empty if nowhere.
-
-    Returns
-    -------
-    str
-        Docstring in the form of numpydoc.
-    """
+    """Return the docstring of a formula with the sections that it leaves to the tables here."""
     names = list(inspect.signature(function).parameters)
     groups = "all three groups" if len(uses) == 3 else " and ".join(f"``{name}``" for name in uses)
     states = "Groups\n    " + (f"Uses {groups} [-]; arrays broadcast." if uses else "Any; the answer takes their shape.")

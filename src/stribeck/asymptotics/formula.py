@@ -149,7 +149,7 @@ class Formula(Generic[Arguments]):
     function : callable
         The formula without any check of its range.
     predicts : str
-        The quantity of a solved state that it predicts: a key of :data:`stribeck.evidence.formulas.MEASURED`.
+        The quantity of a solved state that it predicts: a key of :data:`evidence.formulas.MEASURED`.
     plane : {"smooth", "rest", "mixed"}
         Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
     limits : tuple of Limit

@@ -22,22 +22,11 @@ Part = tuple[Array, Array | None]
 
 
 class Drag(NamedTuple):
-    """How the tables of one geometry hold the viscous friction.
-
-    Attributes
-    ----------
-    names : callable
-        ``names(definition)`` are the tabulated functions that a definition of the viscous friction takes.
-    parts : callable
-        ``parts(logs, speed, load, film)`` are the observables that follow from those and from how the film ends far
-        away, by name, each a :data:`Part`.
-    dry_offset : float
-        Offset of the dry smooth contact [u_Hz].
-    """
+    """How the tables of one geometry hold the viscous friction."""
 
     names: Callable[[Definition], tuple[str, ...]]
     parts: Callable[[dict[str, Part], Array, Array, FarFilm], dict[str, Part]]
-    dry_offset: float
+    dry_offset: float  # Offset of the dry smooth contact [u_Hz]
 
 
 def _times(factor: Array, log: Part, powers: tuple[float, float, float]) -> Part:

@@ -14,7 +14,7 @@ begins to yield (:math:`b_1`), and where asperities carry :math:`e^{-1.1}, e^{-2
 the contact that slides the other way, and the coordinate is :math:`(\lambda/\lambda_1)^2`, with rest at its end; then the
 logarithm of the speed. Above :math:`b_5` there are no asperities left and the smooth film does not know the load.
 
-Here are maps and polynomials; the table is :mod:`stribeck.atlas.table`, how it is made :mod:`stribeck.evidence.atlas_build`.
+Here are maps and polynomials; the table is :mod:`stribeck.atlas.table`, how it is made :mod:`evidence.atlas_build`.
 """
 
 from __future__ import annotations
@@ -54,34 +54,15 @@ SEGMENTS = 6
 
 @dataclass(frozen=True)
 class Region:
-    """Relative roughnesses and loads with one coordinate in load and the same numbers of nodes.
+    """Relative roughnesses and loads with one coordinate in load and the same numbers of nodes."""
 
-    Attributes
-    ----------
-    roughness : tuple of float
-        Smallest and largest relative roughness.
-    logs : tuple of float
-        Smallest and largest L = -ln(load).
-    pieces : tuple of int
-        Pieces in roughness and load.
-    nodes : tuple of int
-        Nodes of a piece in roughness and load.
-    speeds : tuple of int
-        Nodes of each segment of speed.
-    closing : float
-        A constant delta; zero for ``2 kappa/(1 + kappa)``.
-    nested : bool
-        Whether the nodes in roughness are the ends and the extrema of a Chebyshev polynomial. Every other one belongs to that
-        of half the degree, so that a table is refined with the states it has.
-    """
-
-    roughness: tuple[float, float]
-    logs: tuple[float, float]
-    pieces: tuple[int, int]
-    nodes: tuple[int, int]
-    speeds: tuple[int, ...]
-    closing: float = 0.0
-    nested: bool = False
+    roughness: tuple[float, float]  # Smallest and largest relative roughness
+    logs: tuple[float, float]  # Smallest and largest L = -ln(load)
+    pieces: tuple[int, int]  # Pieces in roughness and load
+    nodes: tuple[int, int]  # Nodes of a piece in roughness and load
+    speeds: tuple[int, ...]  # Nodes of each segment of speed
+    closing: float = 0.0  # A constant delta; zero for `2 kappa/(1 + kappa)`
+    nested: bool = False  # Whether the nodes in roughness are the ends and the extrema of a Chebyshev polynomial
 
     @property
     def roughness_nodes(self) -> Array:
@@ -143,29 +124,13 @@ REGIONS = (
 
 @dataclass(frozen=True)
 class Grid:
-    """The coordinates and the blocks of one table.
-
-    Attributes
-    ----------
-    regions : tuple of Region
-        Its regions; where two hold a state, the one whose smallest roughness and load are larger does.
-    heaviest : float
-        Load group at which L is zero.
-    load_factor : float
-        Factor of the logarithm in L = factor ln(heaviest/load); twice that of the pressure where the law is exponential.
-    power : int
-        Power of the speed in the fluid's share at small speed.
-    films : tuple of float
-        Speeds between which smooth films are tabulated.
-    resting : float
-        Smallest L whose films at rest are held; at larger loads they are far from those of the smallest speed.
-    """
+    """The coordinates and the blocks of one table."""
 
     regions: tuple[Region, ...]
-    heaviest: float = 1.0
+    heaviest: float = 1.0  # Load group at which L is zero
     load_factor: float = 1.0
-    power: int = 2
-    films: tuple[float, float] = (MIN_SPEED, 1e6)
+    power: int = 2  # Power of the speed in the fluid's share at small speed
+    films: tuple[float, float] = (MIN_SPEED, 1e6)  # Speeds between which smooth films are tabulated
     resting: float = 0.0
 
     def log_load(self, load: Array) -> Array:

@@ -62,21 +62,11 @@ CHUNK = 1024
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """What was read off the table for many states.
+    """What was read off the table for many states."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (functions, states)
-        The wanted of :data:`TABULATED`.
-    slopes : ndarray or None, shape (1 or 3, functions, states)
-        Their derivatives by ln(speed), and by -ln(load) and ln(relative roughness), if wanted.
-    film : ndarray of bool, shape (states,)
-        Where no asperities are left: there the first function, if wanted, is infinite.
-    """
-
-    values: Array
-    slopes: Array | None
-    film: Array
+    values: Array  # The wanted of :data:`TABULATED`
+    slopes: Array | None  # Their derivatives by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
+    film: Array  # Where no asperities are left: there the first function, if wanted, is infinite
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,29 +112,13 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A whole table; :func:`load_table` reads one that comes with the package.
+    """A whole table; :func:`load_table` reads one that comes with the package."""
 
-    Attributes
-    ----------
-    grid : Grid
-        Its coordinates and blocks.
-    breaks : tuple of ndarray, each of shape (5, terms in roughness, terms in load)
-        For each region the coefficients of the logarithms of the speeds b_1 .. b_5.
-    blocks : tuple of Block or None
-        For each piece its segments; none where a region does not begin at rest.
-    film : ndarray, shape (pieces, terms, functions)
-        Smooth films along the logarithm of the speed, without the first function.
-    about : dict
-        Where the table comes from.
-    law : ndarray, shape (2, n)
-        Separations, and the logarithms of the pressures of its contact law there; empty for the exponential one.
-    """
-
-    grid: Grid
-    breaks: tuple[Array, ...]
-    blocks: tuple[Block | None, ...]
-    film: Array
-    about: dict[str, Any]
+    grid: Grid  # Its coordinates and blocks
+    breaks: tuple[Array, ...]  # For each region the coefficients of the logarithms of the speeds b_1 .. b_5
+    blocks: tuple[Block | None, ...]  # For each piece its segments; none where a region does not begin at rest
+    film: Array  # Smooth films along the logarithm of the speed, without the first function
+    about: dict[str, Any]  # Where the table comes from
     law: Array = field(default_factory=lambda: np.empty((2, 0)))
 
     def ends(self, region: int, k: Array, y: Array) -> Array:

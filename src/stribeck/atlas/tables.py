@@ -45,36 +45,16 @@ SLACK = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class TableRow:
-    """One table of the atlas: for which contacts it holds, between which groups, and how well.
+    """One table of the atlas: for which contacts it holds, between which groups, and how well."""
 
-    Attributes
-    ----------
-    name : str
-        Its name.
-    geometry : {"line", "point"}
-        A cylinder or a ball.
-    law : str
-        Name of the contact law.
-    cavitation : Cavitation
-        How the film ends.
-    box : dict of str to tuple of float
-        Smallest and largest ``speed``, ``load`` and ``relative_roughness`` [-].
-    error : float
-        Relative error of the friction that is stated, above the largest of its certificate in docs/atlas.md.
-    file : str
-        Name of the file.
-    grid : Grid
-        Its coordinates and blocks.
-    """
-
-    name: str
-    geometry: Geometry
-    law: str
-    cavitation: Cavitation
-    box: Box
-    error: float
-    file: str
-    grid: Grid
+    name: str  # Its name
+    geometry: Geometry  # A cylinder or a ball
+    law: str  # Name of the contact law
+    cavitation: Cavitation  # How the film ends
+    box: Box  # Smallest and largest `speed`, `load` and `relative_roughness` [-]
+    error: float  # Relative error of the friction that is stated, above the largest of its certificate in docs/atlas.md
+    file: str  # Name of the file
+    grid: Grid  # Its coordinates and blocks
 
     @property
     def model(self) -> Model:
@@ -210,23 +190,7 @@ def for_groups(groups: Groups) -> TableRow | None:
 
 
 def table_for(groups: Groups) -> TableRow:
-    """Return the table that holds for groups.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-].
-
-    Returns
-    -------
-    TableRow
-        The table.
-
-    Raises
-    ------
-    InputError
-        If the atlas does not hold their geometry, model or law.
-    """
+    """Return the table that holds for groups."""
     if not isinstance(groups, Groups):
         raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
     row = for_groups(groups)

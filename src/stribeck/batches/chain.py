@@ -35,24 +35,12 @@ STRAIGHT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Ended:
-    """How the solve of one state ended.
+    """How the solve of one state ended."""
 
-    Attributes
-    ----------
-    outcome : Outcome
-        The outcome; PATH_LOST where the program failed.
-    solution : Solution or None
-        The state, or what was reached of it.
-    message : str
-        What happened, in one sentence that names the groups; empty where the state converged.
-    fault : Exception or None
-        The error of the program that ended the solve.
-    """
-
-    outcome: Outcome
-    solution: Solution | None
-    message: str = ""
-    fault: Exception | None = None
+    outcome: Outcome  # The outcome; PATH_LOST where the program failed
+    solution: Solution | None  # The state, or what was reached of it
+    message: str = ""  # What happened, in one sentence that names the groups; empty where the state converged
+    fault: Exception | None = None  # The error of the program that ended the solve
 
 
 def solve_in_order(
@@ -62,26 +50,7 @@ def solve_in_order(
     on_state: Callable[[int, Ended], object],
     contact_of: Callable[[int], Contact | None] = lambda _: None,
 ) -> None:
-    """Solve the states of a chain one after the other.
-
-    Parameters
-    ----------
-    states : ndarray, shape (n, 3)
-        Speed, load and roughness group of each.
-    physics : Physics
-        Contact law, geometry and model of all; other models than the article's are those of the contacts.
-    rtol : float
-        Relative tolerance of each state.
-    on_state : callable
-        ``on_state(i, ended)`` is called as soon as the i-th state is finished, in their order.  What it raises ends the chain.
-    contact_of : callable
-        ``contact_of(i)`` returns the contact of the i-th state in SI units, if it has one.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user interrupted it.
-    """
+    """Solve the states of a chain one after the other."""
     CHAINS[physics["geometry"]](states, physics, rtol, on_state, contact_of)
 
 

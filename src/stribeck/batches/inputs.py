@@ -22,32 +22,7 @@ Contacts = np.ndarray[Any, np.dtype[np.object_]]
 def varied(
     problem: Groups | Contact, inputs: Mapping[str, Any], dims: Sequence[str] | None
 ) -> tuple[Groups, Contacts | None, tuple[str, ...]]:
-    """Return the groups of all states, their contacts if they have any, and the names of the dimensions.
-
-    Parameters
-    ----------
-    problem : Groups or LineContact or PointContact
-        What does not vary.
-    inputs : mapping
-        Inputs in place of those of the problem: numbers, text with units, quantities of pint, or arrays of these; with
-        names of dimensions as xarray.DataArray.
-    dims : sequence of str or None
-        Names of the dimensions of plain arrays.
-
-    Returns
-    -------
-    Groups
-        Arrays of one shape.
-    ndarray of Contact or None
-        Of the same shape; none where only groups are known.
-    tuple of str
-        A name for each dimension.
-
-    Raises
-    ------
-    InputError
-        If an input is unknown or impossible, or the arrays do not broadcast.
-    """
+    """Return the groups of all states, their contacts if they have any, and the names of the dimensions."""
     if isinstance(problem, Groups):
         table = {name: getattr(problem, name) for name in GROUPS} | dict(inputs)
         unknown = [name for name in table if name not in GROUPS]
@@ -71,27 +46,7 @@ def varied(
 
 
 def broadcast_inputs(inputs: Mapping[str, Any], dims: Sequence[str] | None) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Return the inputs as arrays of objects of one shape, and the name of each dimension.
-
-    Parameters
-    ----------
-    inputs : mapping
-        Numbers, text, quantities, or arrays of these.
-    dims : sequence of str or None
-        Names of the dimensions of plain arrays.
-
-    Returns
-    -------
-    dict of str to ndarray
-        The inputs.
-    tuple of str
-        Names: those given, those of the arrays; else of the only input that varies along a dimension; else ``dim_0``, ...
-
-    Raises
-    ------
-    InputError
-        If the arrays do not broadcast, or the names are too few, too many or mixed.
-    """
+    """Return the inputs as arrays of objects of one shape, and the name of each dimension."""
     named = {name: tuple(map(str, value.dims)) for name, value in inputs.items() if hasattr(value, "dims")}
     arrays = {name: _array(getattr(value, "values", value) if name in named else value) for name, value in inputs.items()}
     if any(named.values()):

@@ -42,15 +42,9 @@ def between(one: Any, other: Any, part: float) -> Any:
 
 @dataclass(eq=False)
 class KeptStates:
-    """States of balls with other fluids and bodies than those of the article.
+    """States of balls with other fluids and bodies than those of the article."""
 
-    Parameters
-    ----------
-    rtol : float
-        Relative tolerance of each.
-    """
-
-    rtol: float
+    rtol: float  # Relative tolerance of each
     kept: list[tuple[Array, PointState]] = field(default_factory=list)
     _last: tuple[Array, PointState] | None = None
 
@@ -62,33 +56,7 @@ class KeptStates:
         wetted: float,
         by: Sequence[str] = GROUPS,
     ) -> tuple[Array, Array, Array]:
-        """Return :data:`stribeck.batches.lattice.PARTS` of one state, their derivatives and their errors.
-
-        Parameters
-        ----------
-        groups : Groups
-            One state.
-        changes : mapping
-            Two models around that of the groups, and the distance of the logarithm between them, by a name for messages.
-        slope, wetted : float
-            a/R, and radius of the liquid [a]: up to there a fluid counts that thins far out.
-        by : sequence of str
-            Groups with respect to which derivatives are wanted; the others are zero.
-
-        Returns
-        -------
-        ndarray, shape (4,)
-            The parts.
-        ndarray, shape (4, 3 + changes)
-            Derivatives with respect to ln of speed, load and roughness, and along the changes.
-        ndarray, shape (4,)
-            Estimated errors as a solution states them.
-
-        Raises
-        ------
-        SolveError
-            If the state cannot be solved.
-        """
+        """Return :data:`stribeck.batches.lattice.PARTS` of one state, their derivatives and their errors."""
         state = self._solved(groups)
         values = np.array([state.values[name] for name in PARTS])
         errors = np.array([state.relative_errors[name] for name in PARTS])

@@ -51,52 +51,19 @@ Index = tuple[int, int, int]
 
 @dataclass(eq=False)
 class Lattice:
-    """States around an anchor.
-
-    Parameters
-    ----------
-    anchor : tuple of float
-        ln(speed), ln(load) and ln(relative roughness) of a node; the last is not used of smooth surfaces.
-    physics : Physics
-        Contact law, geometry and model of all states.
-    rtol : float
-        Relative tolerance of each.
-    is_smooth : bool
-        Whether the roughness is zero.
-    steps : tuple of float
-        Steps of the three.
-    """
+    """States around an anchor."""
 
     anchor: tuple[float, float, float]
-    physics: Physics
-    rtol: float
-    is_smooth: bool = False
-    steps: tuple[float, float, float] = STEPS
+    physics: Physics  # Contact law, geometry and model of all states
+    rtol: float  # Relative tolerance of each
+    is_smooth: bool = False  # Whether the roughness is zero
+    steps: tuple[float, float, float] = STEPS  # Steps of the three
     nodes: dict[Index, tuple[Array, Array]] = field(default_factory=dict)
     _starts: dict[Index, PointState] = field(default_factory=dict)
     _last: tuple[Index, PointState] | None = None
 
     def at(self, logs: Array) -> tuple[Array, Array]:
-        """Return :data:`PARTS` and their derivatives at places.
-
-        Parameters
-        ----------
-        logs : ndarray, shape (n, 3)
-            ln(speed), ln(load) and ln(relative roughness).
-
-        Returns
-        -------
-        ndarray, shape (4, n)
-            The parts.
-        ndarray, shape (4, 3, n)
-            Their derivatives with respect to ln(speed), ln(load) and ln(relative roughness); along a direction in which a
-            place is on a node, interpolated between the derivatives at nodes.
-
-        Raises
-        ------
-        SolveError
-            If a state cannot be solved.
-        """
+        """Return :data:`PARTS` and their derivatives at places."""
         place = (logs - np.array(self.anchor)) / np.array(self.steps)
         if self.is_smooth:
             place[:, 2] = 0.0

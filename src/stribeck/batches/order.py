@@ -26,18 +26,7 @@ LOAD_WEIGHT = 0.3
 
 
 def coordinates(groups: Array) -> Array:
-    """Return where states lie as neighbours: logarithms of speed, load and relative roughness, zero counting as one.
-
-    Parameters
-    ----------
-    groups : ndarray, shape (n, 3)
-        Speed, load and roughness groups.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        So scaled that equal distances change the state about equally.
-    """
+    """Return where states lie as neighbours: logarithms of speed, load and relative roughness, zero counting as one."""
     speed, load, roughness = groups.T
     z = np.stack([_log(speed), LOAD_WEIGHT * np.log(load), _log(roughness / load)], axis=1)
     return np.asarray(z)
@@ -48,21 +37,7 @@ def _log(values: Array) -> Array:
 
 
 def chains_of(groups: Array, shape: Sequence[int] = ()) -> tuple[Indices, ...]:
-    """Return the chains in which states are solved.
-
-    Parameters
-    ----------
-    groups : ndarray, shape (n, 3)
-        Speed, load and roughness group of each state.
-    shape : sequence of int
-        Points along each axis, where the states are a grid, the last axis fastest; it is followed along the axis that has
-        the most.
-
-    Returns
-    -------
-    tuple of ndarray
-        Indices of the states of each chain, in order; each state is in one of them.
-    """
+    """Return the chains in which states are solved."""
     _, first, twin, counts = np.unique(groups, axis=0, return_index=True, return_inverse=True, return_counts=True)
     kinds = 2 * (groups[:, 0] == 0) + (groups[:, 2] == 0)
     alone = np.zeros(len(groups), dtype=bool)

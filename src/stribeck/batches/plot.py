@@ -23,31 +23,7 @@ __all__ = ["plot_batch"]
 
 
 def plot_batch(batch: BatchSolution, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False) -> Figure:
-    """Draw friction over the input that varies along the longest dimension, a line for each other state.
-
-    Parameters
-    ----------
-    batch : BatchSolution
-        The states.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw into, in place of a new figure.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If nothing varies, or the file cannot be written.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
+    """Draw friction over the input that varies along the longest dimension, a line for each other state."""
     shape = batch.groups.shape
     if not shape or max(shape) < 2:
         raise InputError("nothing varies in this batch, so there is no curve to draw; give an input as an array.")

@@ -90,27 +90,7 @@ class Case:
 
 
 def curve_range(value: Any, over: str, inputs: InputTable = LINE) -> tuple[float, float]:
-    """Return the ends of a curve in SI units.
-
-    Parameters
-    ----------
-    value : object
-        A list of two values with units or in SI.
-    over : str
-        What varies.
-    inputs : InputTable
-        The inputs of the geometry.
-
-    Returns
-    -------
-    tuple of float
-        The lowest and the highest value.
-
-    Raises
-    ------
-    InputError
-        Where these are no two positive values, the lowest first.
-    """
+    """Return the ends of a curve in SI units."""
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f"range = {show(value)} must be a list of two values, the lowest and the highest {over}.")
     low, high = (_range_end(end, over, inputs) for end in value)

@@ -171,25 +171,7 @@ class FitSettings:
 
 
 def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
-    """Return the settings that a ``[fit]`` table asks for.
-
-    Parameters
-    ----------
-    table : object
-        What TOML made of it.
-    geometry : {"line", "point"}
-        The contact of the case.
-
-    Returns
-    -------
-    FitSettings
-        The settings, quantities in SI units.
-
-    Raises
-    ------
-    InputError
-        A sentence on each line for all of its problems, each with table and key.
-    """
+    """Return the settings that a ``[fit]`` table asks for."""
     if not isinstance(table, dict):
         raise InputError(f"fit = {show(table)} must be a table, [fit].")
     problems: list[str] = []
@@ -230,25 +212,7 @@ def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
 
 
 def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
-    """Return names of inputs to fit, checked, in the order of :data:`FREE`.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Names or the symbols of the paper, such as ``h_rms``.
-    where : str
-        Where they stand, for sentences.
-
-    Returns
-    -------
-    tuple of str
-        The names.
-
-    Raises
-    ------
-    InputError
-        If one is unknown, not to be fitted, or there twice.
-    """
+    """Return names of inputs to fit, checked, in the order of :data:`FREE`."""
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise InputError(f"{where} = {show(names)} must be a list of inputs, such as ['boundary_friction', 'roughness'].")
     found = []

@@ -89,29 +89,7 @@ class LawOfFile:
 
 
 def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, Any] | None], folder: Path) -> LawOfFile:
-    """Return the contact law of a file.
-
-    Parameters
-    ----------
-    law : str
-        Its name.
-    contact : dict
-        The quantities of the table ``[contact]``, in SI units; None where not given.
-    tables : dict
-        By name, the tables ``surface``, ``asperities`` and ``table``; None where the file has none.
-    folder : pathlib.Path
-        Where files that it names lie.
-
-    Returns
-    -------
-    LawOfFile
-        The law.
-
-    Raises
-    ------
-    InputError
-        Where a table is missing, is one that the law does not use, has a wrong entry, or says what ``[contact]`` says too.
-    """
+    """Return the contact law of a file."""
     given = {
         name: {k: v for k, v in entries.items() if v is not None} for name, entries in tables.items() if entries is not None
     }
@@ -144,29 +122,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
 
 
 def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: AsperityLaw | None) -> dict[str, Any]:
-    """Return the table of a contact law with the numbers of the file that it names in the place of the name.
-
-    Parameters
-    ----------
-    law : str
-        Its name.
-    tables : dict
-        The tables of the file, by name.
-    folder : pathlib.Path
-        Where files that they name lie.
-    shape : AsperityLaw or None
-        The law that :func:`law_of_file` made of them.
-
-    Returns
-    -------
-    dict
-        The table by its name; empty where the law needs none beside alpha, beta and roughness.
-
-    Raises
-    ------
-    InputError
-        If the file of a spectrum cannot be read.
-    """
+    """Return the table of a contact law with the numbers of the file that it names in the place of the name."""
     if law == "table":
         assert isinstance(shape, TableLaw)
         return {"table": {"separation": list(shape.separation), "pressure": list(shape.pressure)}}

@@ -27,21 +27,11 @@ __all__ = ["KEYS", "in_file", "preset_facts", "preset_said", "take_parts"]
 
 
 class Part(NamedTuple):
-    """A law that a case may name.
+    """A law that a case may name."""
 
-    Attributes
-    ----------
-    law : callable
-        ``law(*needed, **optional)``; None for the one that does nothing.
-    needed : dict
-        Key that it must have -> an example.
-    optional : tuple of str
-        Keys that it may have.
-    """
-
-    law: Callable[..., Any] | None = None
-    needed: dict[str, str] = {}
-    optional: tuple[str, ...] = ()
+    law: Callable[..., Any] | None = None  # `law(*needed, **optional)`; None for the one that does nothing
+    needed: dict[str, str] = {}  # Key that it must have -> an example
+    optional: tuple[str, ...] = ()  # Keys that it may have
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -121,24 +111,7 @@ def in_file(problem: str, table: str) -> str:
 
 
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
-    """Return the tables without those of the model, what these say, and what is wrong with them.
-
-    Parameters
-    ----------
-    tables : dict
-        The tables of a file as written.
-    geometry : {"line", "point"}
-        The geometry of the contact.
-
-    Returns
-    -------
-    dict
-        The other tables; ``[contact]`` has the viscosity of a preset and, of a ball, the slide-to-roll ratio.
-    dict
-        Arguments of the contact.
-    list of str
-        A sentence for each problem, with its table.
-    """
+    """Return the tables without those of the model, what these say, and what is wrong with them."""
     rest = {name: value for name, value in tables.items() if name not in KEYS}
     parts: dict[str, Any] = {}
     problems: list[str] = []
@@ -245,38 +218,14 @@ def _liquid(table: dict[str, Any]) -> Liquid:
 
 
 def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
-    """Return the facts for checks that a preset holds, in SI units.
-
-    Parameters
-    ----------
-    tables : dict
-        The tables of a file as written.
-
-    Returns
-    -------
-    dict of str to float
-        By the names of :data:`stribeck.quantities.facts.FACTS`.
-    """
+    """Return the facts for checks that a preset holds, in SI units."""
     table = tables.get("fluid")
     rate = _liquid(table).thinning_rate if isinstance(table, dict) and "preset" in table else None
     return {} if rate is None else {"thinning_rate": rate}
 
 
 def preset_said(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:
-    """Return where the viscosity of a preset is from, in a sentence; nothing where no liquid is named.
-
-    Parameters
-    ----------
-    tables : dict
-        The tables of a file as written.
-    viscosity : float
-        Viscosity of the contact [Pa s].
-
-    Returns
-    -------
-    tuple of str
-        At most one sentence.
-    """
+    """Return where the viscosity of a preset is from, in a sentence; nothing where no liquid is named."""
     table = tables.get("fluid")
     if not isinstance(table, dict) or "preset" not in table:
         return ()

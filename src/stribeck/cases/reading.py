@@ -58,25 +58,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
 
 
 def check_case(tables: dict[str, Any], path: Path) -> Case:
-    """Return the case of tables that were read.
-
-    Parameters
-    ----------
-    tables : dict
-        The tables of a case file, as TOML gives them.
-    path : pathlib.Path
-        Where they come from, for sentences; files that they name lie beside it.
-
-    Returns
-    -------
-    Case
-        The checked case.
-
-    Raises
-    ------
-    InputError
-        As in :func:`load_case`.
-    """
+    """Return the case of tables that were read."""
     import pydantic
 
     problems = []
@@ -150,25 +132,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
 
 
 def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
-    """Return the geometry of the contact in a file, and the tables without it.
-
-    Parameters
-    ----------
-    tables : dict
-        The tables as written in the file.
-
-    Returns
-    -------
-    str
-        ``"line"`` unless ``[contact]`` or ``[groups]`` says otherwise.
-    dict
-        The tables, without that key.
-
-    Raises
-    ------
-    InputError
-        Where it is no geometry.
-    """
+    """Return the geometry of the contact in a file, and the tables without it."""
     found = dict(tables)
     geometry: Geometry = "line"
     for name in ("contact", "groups"):
@@ -219,25 +183,7 @@ def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> 
 
 
 def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the arguments of the contact in a checked file, with the contact law made of its tables.
-
-    Parameters
-    ----------
-    checked : dict
-        The tables ``contact``, ``surface``, ``asperities`` and ``table``.
-    folder : pathlib.Path
-        Where files that they name lie.
-
-    Returns
-    -------
-    dict
-        The arguments that are given, and ``law``.
-
-    Raises
-    ------
-    InputError
-        Where the law or its tables are wrong, or an input is missing that they do not give.
-    """
+    """Return the arguments of the contact in a checked file, with the contact law made of its tables."""
     inputs = dict(checked["contact"])
     tables = {name: checked[name] for name in ("surface", "asperities", "table")}
     found = law_of_file(inputs.pop("law"), inputs, tables, folder)

@@ -286,38 +286,14 @@ class Checks(Exported):
 
 
 def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:
-    """Return the verdict on a value that is fine up to one bound and outside beyond another.
-
-    Parameters
-    ----------
-    value, fine, outside : float
-        The value and the two bounds, in one unit.
-
-    Returns
-    -------
-    {"fine", "doubtful", "outside"}
-        The verdict; "outside" where the value is nan.
-    """
+    """Return the verdict on a value that is fine up to one bound and outside beyond another."""
     if value <= fine:
         return "fine"
     return "doubtful" if value <= outside else "outside"
 
 
 def number_text(value: float, unit: str) -> str:
-    """Return a number with three digits, and its unit with a fitting prefix.
-
-    Parameters
-    ----------
-    value : float
-        The number, in ``unit``.
-    unit : str
-        ``"Pa"``, ``"m"``, ``"1/s"`` ... ; empty for a bare number.
-
-    Returns
-    -------
-    str
-        The text.
-    """
+    """Return a number with three digits, and its unit with a fitting prefix."""
     from stribeck.quantities.formats import format_si
     from stribeck.quantities.units import DIMENSIONS
 

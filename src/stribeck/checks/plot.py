@@ -62,18 +62,7 @@ def plot_checks(
 
 
 def used_part(check: Check) -> float:
-    """Return the part of its limit that a check takes, within what is drawn; the largest if its value is nan.
-
-    Parameters
-    ----------
-    check : Check
-        The check.
-
-    Returns
-    -------
-    float
-        Value over limit, or limit over value if larger values are the fine ones [-].
-    """
+    """Return the part of its limit that a check takes, within what is drawn; the largest if its value is nan."""
     value, limit = (check.limit, check.value) if check.at_least else (check.value, check.limit)
     if math.isnan(check.value):
         return FARTHEST

@@ -35,20 +35,10 @@ FIXED_POINT_STEPS = 60
 
 
 class Tracing(NamedTuple):
-    """How the curve of one geometry is traced, on which the minimum and the transitions are looked for and then located.
+    """How the curve of one geometry is traced, on which the minimum and the transitions are looked for and then located."""
 
-    Attributes
-    ----------
-    points : int
-        Its points.
-    rtol : float
-        Tolerance of its states.
-    films : tuple of float or None
-        Film of the smooth contact over h_rms at its slowest and fastest point; None for a curve that finds its ends itself.
-    """
-
-    points: int
-    rtol: float
+    points: int  # Its points
+    rtol: float  # Tolerance of its states
     films: tuple[float, float] | None
 
 
@@ -58,29 +48,13 @@ TRACES = {"line": Tracing(21, RTOL, None), "point": Tracing(8, 3e-3, (0.3, 16.0)
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A contact under examination.
+    """A contact under examination."""
 
-    Attributes
-    ----------
-    contact : Contact
-        The contact.
-    facts : mapping
-        Facts of :data:`stribeck.quantities.facts.ROWS` in SI units.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    solved : Solution, optional
-        Its state, if that is known already.
-    traced : StribeckCurve, optional
-        Its curve over the speed, likewise.
-    on_point : callable, optional
-        Is called after each state of a curve with their number and that of all; an exception that it raises ends the checks.
-    """
-
-    contact: Contact
-    facts: Mapping[str, float] = field(default_factory=dict)
-    definition: Definition = "balanced"
-    solved: Solution | None = None
-    traced: StribeckCurve | None = None
+    contact: Contact  # The contact
+    facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.quantities.facts.ROWS` in SI units
+    definition: Definition = "balanced"  # Definition of the viscous friction
+    solved: Solution | None = None  # Its state, if that is known already
+    traced: StribeckCurve | None = None  # Its curve over the speed, likewise
     on_point: Callable[[int, int], object] | None = None
 
     @cached_property
@@ -150,20 +124,7 @@ class Subject:
 
 
 def speed_of_film(contact: Contact, film: float) -> float:
-    """Return the speed at which the central film of the smooth ball is a multiple of its roughness [m/s].
-
-    Parameters
-    ----------
-    contact : PointContact
-        The contact.
-    film : float
-        Film over h_rms [-].
-
-    Returns
-    -------
-    float
-        By the leading law of slow speed, h(0) = 0.42480 u lambda^0.6, with the viscosity that the fluid has at the rate U/h.
-    """
+    """Return the speed at which the central film of the smooth ball is a multiple of its roughness [m/s]."""
     groups, gap = contact.replace(speed=1.0).groups, film * contact.roughness / contact.hertz.indentation
     newtonian = speed = float((gap / 0.42480) ** (1 / 0.6) / groups.speed)
     fluid = groups.model.film

@@ -30,24 +30,12 @@ EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")
 
 @dataclass(frozen=True)
 class Row:
-    """One check.
+    """One check."""
 
-    Attributes
-    ----------
-    name : str
-        What is checked.
-    check : callable
-        Returns the :class:`Check` of a :class:`Subject`, or None if it does not apply.
-    effort : {"contact", "state", "curve", "tail"}
-        What must be solved for it.
-    missing : str
-        The fact that it needs; empty if none.
-    """
-
-    name: str
-    check: Callable[[Subject], Check | None]
-    effort: Effort
-    missing: str = ""
+    name: str  # What is checked
+    check: Callable[[Subject], Check | None]  # Returns the :class:`Check` of a :class:`Subject`, or None if it does not apply
+    effort: Effort  # What must be solved for it
+    missing: str = ""  # The fact that it needs; empty if none
 
 
 ROWS = (
@@ -112,20 +100,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
 
 
 def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
-    """Return the checks of a subject up to a given effort.
-
-    Parameters
-    ----------
-    subject : Subject
-        The contact, with what is solved already.
-    effort : {"contact", "state", "curve", "tail"}
-        What may be solved.
-
-    Returns
-    -------
-    Checks
-        The checks.
-    """
+    """Return the checks of a subject up to a given effort."""
     found, unsolved, missing = [], [], {}
     for row in ROWS:
         if EFFORTS.index(row.effort) > EFFORTS.index(effort):
@@ -145,20 +120,7 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
 
 
 def checks_of_solution(solution: Solution, facts: dict[str, float] | None = None) -> Checks | None:
-    """Return the checks of a solved state; None of groups alone.
-
-    Parameters
-    ----------
-    solution : Solution
-        The state.
-    facts : dict, optional
-        Facts in SI units.
-
-    Returns
-    -------
-    Checks or None
-        Those that need no other state.
-    """
+    """Return the checks of a solved state; None of groups alone."""
     if solution.contact is None:
         return None
     return checks_of(Subject(solution.contact, facts or {}, solved=solution), "state")
@@ -172,26 +134,7 @@ def checks_of_curve(
     is_whole: bool = False,
     on_point: Callable[[int, int], object] | None = None,
 ) -> Checks | None:
-    """Return the checks of a solved curve, at the last of its points over a load; None of groups alone.
-
-    Parameters
-    ----------
-    curve : StribeckCurve
-        The curve.
-    facts : dict, optional
-        Facts in SI units.
-    solution : Solution, optional
-        The state of its contact, which is then checked too.
-    is_whole : bool
-        Whether what all checks need is solved, as :func:`check` does.
-    on_point : callable, optional
-        As in :class:`Subject`.
-
-    Returns
-    -------
-    Checks or None
-        All, or those that need no other state.
-    """
+    """Return the checks of a solved curve, at the last of its points over a load; None of groups alone."""
     if curve.contact is None or not len(curve):
         return None
     over_speed = curve.over == "speed"

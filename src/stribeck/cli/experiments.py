@@ -34,27 +34,6 @@ def next_command(
     Example: stribeck next examples/pdms_measured.csv examples/pdms_fit.toml --count 5 --plot next.png
 
     Example: stribeck next measured.csv case.toml --loads "10 N/m" "100 N/m"
-
-    Parameters
-    ----------
-    data
-        Measured friction.
-    case
-        Case file (TOML) with the table [fit].
-    count
-        Number of runs; default 3.
-    speeds
-        Speeds that can be set, with units or in SI; default from a third of the slowest to three times the fastest.
-    loads
-        Loads that can be set, with units or in SI; default a third, once and three times that of the first curve.
-    viscosities
-        Viscosities at hand, with units or in SI; default those of the curves.
-    plot
-        Draw the gain over the speed to this file (.png, .svg or .pdf).
-    json
-        Print JSON.
-    force
-        Replace an existing file.
     """
     data, loaded = data_and_case("next", data, case)
     number = 3 if count is None else as_whole("count", count)
@@ -83,17 +62,6 @@ def compare_command(data: DataFile = None, case: CaseFile = None, /, *, models: 
     Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
 
     Example: stribeck compare measured.csv case.toml --models cavitation
-
-    Parameters
-    ----------
-    data
-        Measured friction.
-    case
-        Case file (TOML) with the table [fit].
-    models
-        What is compared: contact laws (default), cavitation (full film, free exit) or fluid (Newtonian, Carreau, Eyring).
-    json
-        Print JSON.
     """
     data, loaded = data_and_case("compare", data, case)
     with interruptible() as progress:

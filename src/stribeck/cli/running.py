@@ -47,19 +47,7 @@ MOST_DIGITS = 4
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code; errors become sentences on stderr.
-
-    Parameters
-    ----------
-    tokens : sequence of str, optional
-        Arguments; those of the process by default.
-
-    Returns
-    -------
-    int
-        0 success, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted, 141 nobody reads the
-        output any more.
-    """
+    """Run the command and return its exit code; errors become sentences on stderr."""
     if tokens is None:
         tokens = sys.argv[1:]
         _adapt_process()

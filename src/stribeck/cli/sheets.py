@@ -27,15 +27,6 @@ def new_command(
     Example: stribeck new case.toml
 
     Example: stribeck new ball.toml --geometry point
-
-    Parameters
-    ----------
-    output
-        File to write (.toml); without one the case is printed.
-    geometry
-        line (a cylinder, default) or point (a ball).
-    force
-        Replace an existing file.
     """
     from stribeck.contacts.geometries import check_geometry
 
@@ -67,17 +58,6 @@ def report_command(
 
     Sources of the inputs are the comments of the case file. Where inputs have errors ("1.0 +- 0.2 um"), the page has
     intervals and the probability of each regime.
-
-    Parameters
-    ----------
-    case
-        Case file (TOML).
-    data
-        Measured friction, drawn over the curve.
-    output
-        The page (.html or .pdf).
-    force
-        Replace an existing file.
     """
     from stribeck.data_sheet.report import ENDINGS
 

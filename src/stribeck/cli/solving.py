@@ -73,23 +73,6 @@ def solve_command(
     Example: stribeck solve --groups 1e-5 0.1 1e-4 --json
 
     Example: stribeck solve examples/pdms_cylinder.toml --cavitation exit --slide-to-roll 0.5
-
-    Parameters
-    ----------
-    case
-        Case file (TOML); its speed is the sum of the surface speeds, which is twice the mean (entrainment) speed.
-    groups
-        Dimensionless groups instead of a case: SPEED LOAD ROUGHNESS.
-    rtol
-        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6 (1e-4 of a ball).
-    plot
-        Draw gap and pressure to this file (.png, .svg or .pdf).
-    no_notes
-        Leave the notes out of the picture; they are printed.
-    json
-        Print JSON: every observable under its name, both friction coefficients and, with a case, SI values.
-    force
-        Replace an existing file.
     """
     loaded = read_case(case, groups, boundary_friction, beta, law)
     tolerance = as_rtol(rtol, loaded)
@@ -163,37 +146,6 @@ def curve_command(
     Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
 
     Ctrl-C, SIGTERM or the end of --time-limit writes the finished points, marked as incomplete, and exits with code 130.
-
-    Parameters
-    ----------
-    case
-        Case file (TOML); options override its tables [curve] and [solver].
-    output
-        Write the data to this file (.nc or .csv); may be given several times.
-    plot
-        Draw the curve to this file (.png, .svg or .pdf), with the verdict of stribeck check and, where the case has errors of
-        inputs, the 95 % interval of friction along it.
-    no_notes
-        Leave verdict and notes out of the picture; they are printed.
-    over
-        What varies: speed, load or roughness; defaults to the value in the case, or speed.
-    range
-        Lowest and highest value of what varies, with units for a case; for speed, the sum of the surface speeds, found if not
-        given.
-    points
-        Number of points, 2 to 100000; defaults to the value in the case, or 101 (31 of a ball).
-    rtol
-        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6 (1e-4 of a ball).
-    groups
-        Dimensionless groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
-    definition
-        Viscous friction: balanced (default) or published; defaults to the value in the case.
-    time_limit
-        Stop solving after this time, such as '60 s'.
-    json
-        Print the curve as JSON.
-    force
-        Replace existing files.
     """
     loaded = read_case(case, groups, boundary_friction, beta, law)
     outputs, pictures = check_outputs(output or [], plot, force)
@@ -291,13 +243,6 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     """Report the lubrication regime of a contact, the distance to its neighbours and the sensitivity of friction.
 
     Example: stribeck regimes examples/pdms_cylinder.toml
-
-    Parameters
-    ----------
-    case
-        Case file (TOML).
-    json
-        Print JSON.
     """
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
@@ -327,13 +272,6 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
 
     The exit code is 0 whatever the verdict.
-
-    Parameters
-    ----------
-    case
-        Case file (TOML).
-    json
-        Print JSON.
     """
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck check case.toml.")
@@ -371,15 +309,6 @@ def figures_command(
     Data already in the folder are reused unless the source code behind them has changed.
 
     Ctrl-C keeps the finished figures and exits with code 130.
-
-    Parameters
-    ----------
-    names
-        Figures: 3 to 11 and S1; all of them by default.
-    out
-        Folder to write to; created if its parent folder exists.
-    force
-        Solve again even if the folder has the data, and replace files that another program wrote.
     """
     from stribeck.figures import make_figures
 

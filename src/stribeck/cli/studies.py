@@ -54,23 +54,6 @@ def sweep_command(
 
     After Ctrl-C the finished states are in the store; the exit code is then 130.  It is 1 where states failed; they are in the
     store too, with their outcome.
-
-    Parameters
-    ----------
-    design
-        Sweep file (TOML): what stays fixed, what varies and how.
-    out
-        Folder of the store; created if it does not exist.
-    workers
-        Number of processes on this machine; default 1.
-    scheduler
-        Address of a Dask scheduler; its workers then solve the states.
-    export
-        Write all states to this file (.nc) at the end.
-    json
-        Print JSON.
-    force
-        Replace an existing file of --export; a store is never replaced.
     """
     from stribeck.cli.reports import sweep as report_sweep
     from stribeck.files.datasets import NETCDF
@@ -151,30 +134,6 @@ def fit_command(
     Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
 
     Example: stribeck fit measured.csv case.toml --free boundary_friction h_rms modulus --robust
-
-    Parameters
-    ----------
-    data
-        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header;
-        the speed is the sum of the surface speeds, twice a mean (entrainment) speed.
-    case
-        Case file (TOML) with the starting values of the contact and, in its table [fit], the settings of the fit.
-    free
-        Inputs to fit; defaults to the list in the case, or boundary_friction and roughness.
-    out
-        Write the case with the fitted values to this file (.toml).
-    plot
-        Draw data, fit and residuals to this file (.png, .svg or .pdf).
-    no_notes
-        Leave the notes out of the picture; they are printed.
-    robust
-        Limit the influence of outliers.
-    posterior
-        Sample the posterior with this many steps of emcee, such as 2000.
-    json
-        Print JSON.
-    force
-        Replace existing files.
     """
     data, loaded = data_and_case("fit", data, case)
     pictures = check_pictures(plot, force)
@@ -243,39 +202,6 @@ def surface_command(
 
     Text files (.csv, .tsv, .txt, .dat, .xyz) are read directly; .x3p, .sur, .opd, .sdf, .plux and some forty other formats
     through SurfaceTopography (pip install 'stribeck[surface]').
-
-    Parameters
-    ----------
-    file
-        File of heights: a profile or a map.
-    unit
-        Unit of length if the file does not declare it, such as um.
-    height_unit
-        Unit of height, if different.
-    spacing
-        Distance between points, such as '0.5 um' or '1 um x 0.5 um' along x and y, if the file does not hold it.
-    channel
-        Name of the channel, if the file has several.
-    trend
-        Form to remove: none, mean, tilt or curvature (default).
-    window
-        Window of the spectrum: hann (default), or none for periodic heights.
-    resolution
-        Shortest wavelength that the instrument resolves; defaults to the value in the file, or four points.
-    gamma
-        Reduction of the elastic energy in Persson's theory, 0 to 1; default 0.45.
-    keep_spikes
-        Keep spikes (single points far above or below all neighbours) instead of replacing them.
-    plot
-        Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
-    no_notes
-        Leave the notes out of the picture; they are printed.
-    out
-        Write the table [surface] of a case file to this file (.toml).
-    json
-        Print JSON in SI units.
-    force
-        Replace existing files.
     """
     from stribeck import surfaces
     from stribeck.cli.reports import surface as report_surface
@@ -319,17 +245,6 @@ def explore_command(
 
     The page is served on this machine only, works offline and sends no data.  It opens only with the token in its
     address.  Ctrl-C ends it.
-
-    Parameters
-    ----------
-    case
-        Case file (TOML) to start with; defaults to a soft cylinder.
-    port
-        Port of the page; defaults to a free one.
-    host
-        Address to listen on: 127.0.0.1 (default), ::1 or localhost.
-    browser
-        Open the page in the browser, or only print its address.
     """
     from stribeck.explorer.server import serve
 

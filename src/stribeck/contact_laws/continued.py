@@ -32,25 +32,13 @@ LOOKED_AT = np.concatenate([np.linspace(-3.0, 0.0, 16), np.geomspace(1e-3, 50.0,
 
 @dataclass(frozen=True, eq=False)
 class ContinuedLaw:
-    """The shape of a contact law near separations, one a column.
+    """The shape of a contact law near separations, one a column."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the shape.
-    logarithmic : bool
-        Whether polynomials are in the logarithm of the separation.
-    centre, reach : ndarray, shape (n,)
-        Where they are centred, and their unit.
-    coefficients : ndarray, shape (DEGREE + 1, n)
-        Of ln(Phi), ascending.
-    """
-
-    name: str
-    logarithmic: bool
-    centre: Array
-    reach: Array
-    coefficients: Array
+    name: str  # Name of the shape
+    logarithmic: bool  # Whether polynomials are in the logarithm of the separation
+    centre: Array  # Where they are centred, and their unit
+    reach: Array  # Where they are centred, and their unit
+    coefficients: Array  # Of ln(Phi), ascending
 
     @classmethod
     def of(cls, shape: AsperityLaw, separation: Array) -> ContinuedLaw:

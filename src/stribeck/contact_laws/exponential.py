@@ -48,26 +48,11 @@ class ExponentialLaw:
     .. math:: p_c = \bar F_N^{-e} \exp(-h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N^{2e}
 
     with e = 1/2 on the line and 1/3 on the ball.
-
-    Parameters
-    ----------
-    load : float or ndarray
-        Load group [-]; for stacked states a column of them.
-    decay_length : float or ndarray
-        Relative roughness kappa, the length of the decay [u_Hz], likewise.
-    pressure_exponent : float
-        e.
-
-    Notes
-    -----
-    The small-pressure limit of Persson's contact mechanics: good for gaps above about 0.4 h_rms; it lets the gap become
-    negative instead of stiffening towards full contact.
-    Source: [BP] Eq. (contact_pressure_dl).
     """
 
-    load: Numbers
-    decay_length: Numbers
-    pressure_exponent: float = 0.5
+    load: Numbers  # Load group [-]; for stacked states a column of them
+    decay_length: Numbers  # Relative roughness kappa, the length of the decay [u_Hz], likewise
+    pressure_exponent: float = 0.5  # e
     name: str = "exponential"
     constant_decay: bool = True
 
@@ -101,14 +86,9 @@ class SpectralExponential:
     r"""The exponential law of a surface of which the spectrum is known, so that the real area of contact is too.
 
     .. math:: \Phi(s) = e^{-s}, \qquad A/A_0 = \operatorname{erf}(k \Phi)
-
-    Parameters
-    ----------
-    area_slope : float
-        k: beta times the square root of 2 over the rms slope of the surface [-].
     """
 
-    area_slope: float
+    area_slope: float  # k: beta times the square root of 2 over the rms slope of the surface [-]
     name: str = "exponential"
     lowest: float = -np.inf
 

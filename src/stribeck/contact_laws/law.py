@@ -165,20 +165,7 @@ def check_law(law: Any) -> AsperityLaw | None:
 
 
 def law_attributes(law: AsperityLaw | None, smooth: bool = False) -> dict[str, Any]:
-    """Return name and parameters of a contact law as attributes of a dataset.
-
-    Parameters
-    ----------
-    law : AsperityLaw or None
-        The law; None is the exponential one.
-    smooth : bool
-        Whether the surfaces are smooth and have none.
-
-    Returns
-    -------
-    dict
-        ``contact_law``, and its parameters by their names after ``contact_law_``.
-    """
+    """Return name and parameters of a contact law as attributes of a dataset."""
     if smooth or law is None:
         return {"contact_law": "smooth" if smooth else "exponential"}
     return {"contact_law": law.name} | {f"contact_law_{name}": value for name, value in law.parameters.items()}

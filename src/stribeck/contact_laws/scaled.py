@@ -32,27 +32,12 @@ class ScaledLaw:
     .. math:: p_c = \bar F_N^{-e} \, \Phi(h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N^{2e}
 
     with e = 1/2 on the line and 1/3 on the ball.
-
-    Parameters
-    ----------
-    shape : AsperityLaw
-        Phi of the separation ``s = h/kappa``, which is alpha h/h_rms.
-    load : float or ndarray
-        Load group [-]; for stacked states a column of them.
-    decay_length : float or ndarray
-        Relative roughness kappa, the unit of separations [u_Hz], likewise.
-    pressure_exponent : float
-        e.
-
-    Notes
-    -----
-    With ``Phi = exp(-s)`` this is the exponential law.  Source: theory.md, section 8.
     """
 
-    shape: AsperityLaw
-    load: Numbers
-    decay_length: Numbers
-    pressure_exponent: float = 0.5
+    shape: AsperityLaw  # Phi of the separation `s = h/kappa`, which is alpha h/h_rms
+    load: Numbers  # Load group [-]; for stacked states a column of them
+    decay_length: Numbers  # Relative roughness kappa, the unit of separations [u_Hz], likewise
+    pressure_exponent: float = 0.5  # e
     constant_decay: bool = False
 
     @property

@@ -66,21 +66,11 @@ COUETTE, POISEUILLE = 2 / 3 * math.pi, 2 / 5 * math.pi
 
 @dataclass(frozen=True)
 class FarFilm:
-    r"""How a film far from the contact ends, and the logarithms of its friction.
+    r"""How a film far from the contact ends, and the logarithms of its friction."""
 
-    Attributes
-    ----------
-    pressure : float
-        The factor of :math:`-\lambda \cos\theta/r^3` in the film pressure [-].
-    couette, poiseuille : float
-        Coefficients of :math:`\lambda \ln X` in the two parts of the friction integral [-].
-    rise : float
-        :math:`-J^\mathrm{poiseuille}/(c' \lambda) - \ln X_0` of the rigid parabola: the part within a small disc vanishes [-].
-    """
-
-    pressure: float
-    couette: float
-    poiseuille: float
+    pressure: float  # The factor of `-\lambda \cos\theta/r^3` in the film pressure [-]
+    couette: float  # Coefficients of `\lambda \ln X` in the two parts of the friction integral [-]
+    poiseuille: float  # Coefficients of `\lambda \ln X` in the two parts of the friction integral [-]
     rise: float
 
 
@@ -113,20 +103,7 @@ _POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))
 
 
 def log_cut_offs(slope: Any, wetted_radius: Any = math.inf) -> tuple[Any, Any]:
-    """Return ln X of the Couette and of the Poiseuille part [ln a].
-
-    Parameters
-    ----------
-    slope : float or ndarray
-        a/R [-].
-    wetted_radius : float or ndarray
-        Radius of the disc of liquid [a]; infinite for a whole ball in liquid without bounds.
-
-    Returns
-    -------
-    tuple of float or ndarray
-        Both logarithms; the same for a disc of liquid.
-    """
+    """Return ln X of the Couette and of the Poiseuille part [ln a]."""
     is_disc = np.isfinite(wetted_radius)
     at_rim, at_ball = np.log(np.where(is_disc, wetted_radius, 1.0)), -np.log(slope)
     couette, poiseuille = (np.where(is_disc, at_rim, own + at_ball) for own in (_COUETTE_RADIUS, _POISEUILLE_RADIUS))
@@ -147,28 +124,6 @@ def friction_integral(
     .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
 
     each with its logarithm: the force on the flat; published, that on the ball without the contact pressure along x.
-
-    Parameters
-    ----------
-    parts : mapping
-        Finite parts ``J_couette``, ``J_poiseuille`` and, for the published one, ``J_pcx`` [-].
-    speed : float or ndarray
-        Speed group; zero gives zero [-].
-    slope : float or ndarray
-        a/R [-].
-    slide_to_roll : float or ndarray
-        S [-].
-    wetted_radius : float or ndarray
-        Radius of the disc of liquid [a]; infinite for a whole ball.
-    definition : {"balanced", "published"}
-        Which force.
-    far : FarFilm
-        How the film ends far away.
-
-    Returns
-    -------
-    float or ndarray
-        J [-].
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
     moves = np.real(speed) > 0
@@ -187,24 +142,6 @@ def far_error(parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_r
     r"""Return by how much :func:`friction_integral` may miss that of the film up to where a disc of liquid ends.
 
     It leaves out the offset of thin films, which is at least minus one indentation.
-
-    Parameters
-    ----------
-    parts : mapping
-        The finite part ``J_couette`` [-].
-    speed : float or ndarray
-        Speed group [-].
-    slide_to_roll : float or ndarray
-        S [-].
-    wetted_radius : float or ndarray
-        Radius of the disc of liquid [a]; infinite for a whole ball, of which none is missed.
-    far : FarFilm
-        How the film ends far away.
-
-    Returns
-    -------
-    float or ndarray
-        :math:`\lambda (|S| c/2 + 3 c')/(X^2 + X_0^2)` with the coefficients of both logarithms [-].
     """
     from_there = wetted_radius**2 + np.exp(-2.0 * _rise(parts, speed, far))
     return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed / from_there

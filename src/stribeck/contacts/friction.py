@@ -117,17 +117,11 @@ class Friction(float):
 
 
 class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
-    """Friction coefficients of many states, an array with its parts; called, those for other coefficients.
+    """Friction coefficients of many states, an array with its parts; called, those for other coefficients."""
 
-    Attributes
-    ----------
-    contact, viscous, error : ndarray
-        Parts from asperities and fluid, and estimated absolute error of their sum [-].
-    """
-
-    contact: Array
-    viscous: Array
-    error: Array
+    contact: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
+    viscous: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
+    error: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
     _other: Callable[..., FrictionArray]
 
     def __new__(cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]) -> Self:
@@ -168,21 +162,6 @@ def sliding_part(slide_to_roll: float) -> float:
     r"""Return the part of the sliding friction of asperities that acts, with its sign.
 
     .. math:: f = \tfrac12 t (3 - t^2), \quad t = \mathrm{SRR}/0.01 \text{ between } -1 \text{ and } 1
-
-    Parameters
-    ----------
-    slide_to_roll : float
-        Slide-to-roll ratio [-].
-
-    Returns
-    -------
-    float
-        One from a ratio of 1 % on, zero at pure rolling, and minus one below -1 %.
-
-    Notes
-    -----
-    Asperities stick before they slide; how far depends on their stiffness, which the model does not have.  The ratio of 1 % is
-    a choice that makes friction smooth through pure rolling.
     """
     t = min(1.0, max(-1.0, slide_to_roll / STICKING))
     return 0.5 * t * (3 - t * t)

@@ -36,48 +36,20 @@ IMAGINARY = 1e-30
 
 
 class FrictionRule(NamedTuple):
-    """What the friction of one geometry is made of.
-
-    Attributes
-    ----------
-    inputs : dict of str to callable
-        What it takes of a contact beside groups and boundary_friction, by name; of none its usual value.
-    exponents : dict of str to dict
-        Exponents of inputs of the contact in those of them that are ratios.
-    parts : callable
-        ``parts(definition)`` names the observables that the viscous friction takes.
-    is_enough : callable
-        ``is_enough(model, inputs)`` is whether these give the viscous friction of contacts, by each of their inputs.
-    viscous : callable
-        ``viscous(parts, speed, load, inputs, definition)`` is the viscous friction coefficient.
-    missed : callable
-        ``missed(parts, speed, load, inputs)`` is by how much it misses that of the film for exact parts.
-    scale : callable
-        ``scale(parts, speed)`` is what the stated errors of these observables are relative to, by name.
-    rubbing : callable
-        ``rubbing(groups, inputs)`` is the part of boundary_friction that acts.
-    hersey : callable
-        ``hersey(contact)`` is the speed at the Hersey number one [m/s].
-    hersey_exponents : dict of str to float
-        Exponents of the inputs in it.
-    hersey_symbol : str
-        The Hersey number in symbols.
-    hersey_name : str
-        The same in words, for files.
-    """
+    """What the friction of one geometry is made of."""
 
     inputs: Mapping[str, Callable[[Contact | None], float]]
-    exponents: Mapping[str, Mapping[str, float]]
-    parts: Callable[[Definition], tuple[str, ...]]
+    exponents: Mapping[str, Mapping[str, float]]  # Exponents of inputs of the contact in those of them that are ratios
+    parts: Callable[[Definition], tuple[str, ...]]  # `parts(definition)` names the observables that the viscous friction takes
     is_enough: Callable[[Model, Sequence[Values]], bool]
     viscous: Callable[[Values, Any, Any, Values, Definition], Any]
     missed: Callable[[Values, Any, Any, Values], Any]
     scale: Callable[[Values, Any], dict[str, Any]]
-    rubbing: Callable[[Groups, Values], Any]
-    hersey: Callable[[Contact], float]
-    hersey_exponents: Mapping[str, float]
-    hersey_symbol: str
-    hersey_name: str
+    rubbing: Callable[[Groups, Values], Any]  # `rubbing(groups, inputs)` is the part of boundary_friction that acts
+    hersey: Callable[[Contact], float]  # `hersey(contact)` is the speed at the Hersey number one [m/s]
+    hersey_exponents: Mapping[str, float]  # Exponents of the inputs in it
+    hersey_symbol: str  # The Hersey number in symbols
+    hersey_name: str  # The same in words, for files
 
     def speed_per(self, abscissa: str, contact: Contact) -> float:
         """Return the speed [m/s] at the value one [SI] of what friction may be measured against."""
@@ -106,24 +78,7 @@ class FrictionRule(NamedTuple):
     def viscous_error(
         self, parts: Values, errors: Values, speed: Any, load: Any, inputs: Values, definition: Definition
     ) -> Any:
-        """Return the absolute error of the viscous friction by the stated errors of its observables.
-
-        Parameters
-        ----------
-        parts, errors : mapping
-            Observables and their stated relative errors, by name.
-        speed, load : float or ndarray
-            Groups [-].
-        inputs : mapping
-            Those of the contact.
-        definition : {"balanced", "published"}
-            Definition of the viscous friction.
-
-        Returns
-        -------
-        float or ndarray
-            The sum of what each contributes, and of what is missed [-].
-        """
+        """Return the absolute error of the viscous friction by the stated errors of its observables."""
         scales = self.scale(parts, speed)
         here = self.viscous(parts, speed, load, inputs, definition)
         total = self.missed(parts, speed, load, inputs)

@@ -16,24 +16,12 @@ __all__ = ["ARTICLE", "Model"]
 
 @dataclass(frozen=True)
 class Model:
-    """What the film and the bodies are; by default those of the article.
+    """What the film and the bodies are; by default those of the article."""
 
-    Attributes
-    ----------
-    film : Film
-        The fluid, in Hertz units.
-    cavitation : Cavitation
-        How the film ends behind the contact.
-    cavity_pressure : float
-        Pressure above the ambient at which a film that forms anew ruptures, at most zero [p_Hz].
-    solid : Solid
-        The soft body, in Hertz units.
-    """
-
-    film: Film = Newtonian()
-    cavitation: Cavitation = Cavitation.NONE
-    solid: Solid = HalfPlane()
-    cavity_pressure: float = 0.0
+    film: Film = Newtonian()  # The fluid, in Hertz units
+    cavitation: Cavitation = Cavitation.NONE  # How the film ends behind the contact
+    solid: Solid = HalfPlane()  # The soft body, in Hertz units
+    cavity_pressure: float = 0.0  # Pressure above the ambient at which a film that forms anew ruptures, at most zero [p_Hz]
 
     def __post_init__(self) -> None:
         """Refuse films and endings of somebody else, and bodies that contradict themselves."""

@@ -34,35 +34,13 @@ LEAST_SUCTION = 1e-20
 
 @dataclass(frozen=True, init=False)
 class Parts:
-    r"""Fluid, cavitation, flow factors, solid and motion of a contact.
+    r"""Fluid, cavitation, flow factors, solid and motion of a contact."""
 
-    Parameters
-    ----------
-    fluid : Fluid or law of sb.fluids, optional
-        The fluid; Newtonian, of constant viscosity and density, without it.
-    cavitation : {"none", "exit", "reform"}
-        How the film ends behind the contact.
-    cavity_pressure : str or float
-        Pressure at which a film that forms anew ruptures, above the ambient one, :math:`\le 0` [Pa], with groups [p_Hz].
-    flow_factors : {"none", "effective-medium", "patir-cheng"} or law of sb.fluids, optional
-        What roughness does to the flow.
-    solid : solid of sb.solids, optional
-        The soft body; a half-space without it.
-    slide_to_roll : float
-        Ratio of the sliding speed to the mean of the surface speeds, :math:`2 (u_1 - u_2)/(u_1 + u_2)` [-]; 2 is pure sliding
-        with the cylinder at rest, 0 pure rolling.
-
-    Raises
-    ------
-    InputError
-        Where an argument is impossible.
-    """
-
-    fluid: Fluid
-    cavitation: Cavitation
+    fluid: Fluid  # The fluid; Newtonian, of constant viscosity and density, without it
+    cavitation: Cavitation  # How the film ends behind the contact
     cavity_pressure: float
-    flow_factors: FlowFactors | None
-    solid: Solid | None
+    flow_factors: FlowFactors | None  # What roughness does to the flow
+    solid: Solid | None  # The soft body; a half-space without it
     slide_to_roll: float
 
     def __init__(
@@ -112,28 +90,7 @@ class Parts:
         return 0.5 * self.slide_to_roll
 
     def model(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
-        """Return the model in Hertz units.
-
-        Parameters
-        ----------
-        units : FilmUnits
-            Of the film.
-        length : float
-            The Hertz half-width a, in the unit of the lengths of the solid.
-        speed : float, optional
-            Sum of the surface speeds, in the unit of that length over the times of the solid; left out, these times are
-            Deborah numbers, those of the substrate.
-
-        Returns
-        -------
-        Model
-            What the equations see; that of the article itself if nothing differs from it.
-
-        Raises
-        ------
-        InputError
-            Where a number of these is out of range in Hertz units, or parts do not go together.
-        """
+        """Return the model in Hertz units."""
         if self is DEFAULT or self == DEFAULT:
             return ARTICLE
         if self.solid is not None and self.slide < -1 and getattr(self.solid, "uses_speed", False):

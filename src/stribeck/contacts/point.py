@@ -27,18 +27,10 @@ __all__ = ["HamrockDowsonNumbers", "PointContact"]
 
 
 class HamrockDowsonNumbers(NamedTuple):
-    """The numbers of B. J. Hamrock and D. Dowson, with the mean speed and E' = 2 E*.
+    """The numbers of B. J. Hamrock and D. Dowson, with the mean speed and E' = 2 E*."""
 
-    Attributes
-    ----------
-    speed : float
-        Viscosity times mean speed over E' R [-].
-    load : float
-        Load over E' R**2 [-].
-    """
-
-    speed: float
-    load: float
+    speed: float  # Viscosity times mean speed over E' R [-]
+    load: float  # Load over E' R**2 [-]
 
 
 @dataclass(frozen=True, init=False, repr=False)

@@ -74,17 +74,6 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
 
 
 def regime_numbers(fluid_load_share: Array, contact_friction_share: Array) -> Indices:
-    """Return the places in :data:`REGIMES` of the regimes of many states, by the rule of :func:`regime_of`.
-
-    Parameters
-    ----------
-    fluid_load_share, contact_friction_share : ndarray
-        Parts of the load and of the friction [-].
-
-    Returns
-    -------
-    ndarray of int
-        Of their shape.
-    """
+    """Return the places in :data:`REGIMES` of the regimes of many states, by the rule of :func:`regime_of`."""
     slow = np.where(fluid_load_share <= BOUNDARY_FLUID_SHARE, REGIMES.index("boundary"), REGIMES.index("mixed"))
     return np.where(contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE, REGIMES.index("hydrodynamic"), slow)

@@ -27,28 +27,14 @@ Geometry = Literal["line", "point"]
 
 @dataclass(frozen=True)
 class Scaling:
-    """How the groups of one geometry scale.
+    """How the groups of one geometry scale."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the geometry.
-    pressure_exponent, roughness_exponent : float
-        e and 2e.
-    slope_factor : float
-        c.
-    hersey_power : int
-        Power of a/R in the Hersey number over the speed group.
-    hersey_divisor : float
-        What that is divided by.
-    """
-
-    name: str
-    pressure_exponent: float
-    roughness_exponent: float
-    slope_factor: float
-    hersey_power: int
-    hersey_divisor: float
+    name: str  # Name of the geometry
+    pressure_exponent: float  # e and 2e
+    roughness_exponent: float  # e and 2e
+    slope_factor: float  # c
+    hersey_power: int  # Power of a/R in the Hersey number over the speed group
+    hersey_divisor: float  # What that is divided by
 
 
 SCALINGS: dict[Geometry, Scaling] = {

@@ -50,27 +50,7 @@ Problem = TypeVar("Problem")
 
 
 def with_parts(problem: Problem, **given: Any) -> Problem:
-    """Return a contact or groups with the parts that are given.
-
-    Parameters
-    ----------
-    problem : LineContact, PointContact or Groups
-        The contact, with numbers of laws in SI units, or groups, with these in Hertz units.
-    **given
-        Arguments of :class:`stribeck.contacts.parts.Parts`; None counts as not given.
-
-    Returns
-    -------
-    LineContact, PointContact or Groups
-        The contact with these parts in the place of its own, the groups with these and else those of the article.
-
-    Raises
-    ------
-    InputError
-        Where one is impossible.
-    TypeError
-        Where a name is no part.
-    """
+    """Return a contact or groups with the parts that are given."""
     unknown = next((name for name in given if name not in NAMES), None)
     if unknown is not None:
         near = difflib.get_close_matches(unknown, NAMES, n=1)
@@ -106,13 +86,7 @@ def models_beside(contact: Contact, name: str) -> tuple[Model, Model, float] | N
 
 
 def steps_beside(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
-    """Return steps of the logarithm of an input to both sides; to one of them, by ``alone``, where the other is refused.
-
-    Raises
-    ------
-    InputError
-        If both are.
-    """
+    """Return steps of the logarithm of an input to both sides; to one of them, by ``alone``, where the other is refused."""
     try:
         for each in (-step, step):
             model_at(contact, name, each)
@@ -127,20 +101,7 @@ def steps_beside(contact: Contact, name: str, step: float, alone: float) -> tupl
 
 
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
-    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's.
-
-    Parameters
-    ----------
-    groups : Groups
-        The groups, whose model has its numbers in Hertz units.
-    contact : LineContact or PointContact, optional
-        Their contact, where there is one, whose numbers are in SI units.
-
-    Returns
-    -------
-    dict
-        By name, the numbers of a law after the name of what it is, as ``fluid_exponent``.
-    """
+    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's."""
     model, parts = groups.model, getattr(contact, "parts", None)
     if model == ARTICLE:
         return {}
@@ -161,20 +122,7 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
 
 
 def model_words(groups: Groups, contact: Contact | None) -> str:
-    """Return those parts of a model that are neither the article's nor among the inputs; empty if there are none.
-
-    Parameters
-    ----------
-    groups : Groups
-        The groups.
-    contact : LineContact or PointContact, optional
-        Their contact, whose numbers are said in SI units; without it they are in Hertz units, and said to be.
-
-    Returns
-    -------
-    str
-        Such as ``"fluid carreau, relaxation time 1 ms, exponent 0.5, infinite viscosity 0 Pa*s, cavitation exit"``.
-    """
+    """Return those parts of a model that are neither the article's nor among the inputs; empty if there are none."""
     inputs = () if contact is None else contact.INPUTS.names
     found: dict[str, float | str] = {}
     for name, value in part_attributes(groups, contact).items():
@@ -208,11 +156,6 @@ def hertz_units(groups: Groups) -> FilmUnits:
     Pressures are in :math:`p_\mathrm{Hz}`, lengths in a and gaps in :math:`u_\mathrm{Hz}`; relaxation times in
     :math:`u_\mathrm{Hz}/U` and shear stresses in :math:`\eta_0 U/u_\mathrm{Hz}` at the speed group of these groups, and
     viscosities in :math:`\eta_0`.
-
-    Raises
-    ------
-    InputError
-        Where the groups hold many states with different speeds or roughnesses.
     """
     values = []
     for name in ("speed", "relative_roughness"):

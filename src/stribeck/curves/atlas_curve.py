@@ -41,50 +41,24 @@ ROUNDS = 4
 
 @dataclass(frozen=True)
 class Mark:
-    """Where a curve on the atlas has its minimum or a transition.
+    """Where a curve on the atlas has its minimum or a transition."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, as on a solved curve.
-    value : float
-        Where along the curve: group [-], or SI where the curve has a contact.
-    friction : float
-        Friction coefficient there [-].
-    """
-
-    name: str
-    value: float
-    friction: float
+    name: str  # Its name, as on a solved curve
+    value: float  # Where along the curve: group [-], or SI where the curve has a contact
+    friction: float  # Friction coefficient there [-]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AtlasCurve(Drawn, Shown):
-    """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields.
+    """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields."""
 
-    Attributes
-    ----------
-    over : str
-        What varies.
-    values : ndarray, shape (n,)
-        Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
-    groups_at : callable
-        The groups at an array of such values.
-    contact : Contact or None
-        The contact.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    """
-
-    over: str
-    values: Array
-    groups_at: Callable[[Array], Groups]
-    contact: Contact | None
-    boundary_friction: float
-    beta: float
-    definition: Definition
+    over: str  # What varies
+    values: Array  # Where the points lie, ascending: the group [-], or SI units where the curve has a contact
+    groups_at: Callable[[Array], Groups]  # The groups at an array of such values
+    contact: Contact | None  # The contact
+    boundary_friction: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
+    beta: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
+    definition: Definition  # Definition of the viscous friction
 
     def __post_init__(self) -> None:
         """Refuse a geometry, model or law that the atlas does not hold."""
@@ -105,23 +79,7 @@ class AtlasCurve(Drawn, Shown):
         return self.groups_at(self.values)
 
     def observable(self, name: str) -> Array:
-        """Return a load share, a gap or the offset of every point.
-
-        Parameters
-        ----------
-        name : str
-            One of :data:`OBSERVABLES`.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Its values, in the order of :attr:`values`.
-
-        Raises
-        ------
-        InputError
-            If the atlas has no such function.
-        """
+        """Return a load share, a gap or the offset of every point."""
         known = [each for each in OBSERVABLES if each != "flux_gap" or each in self.table.functions]
         if name not in known:
             raise InputError(f"name = {show(name)}; the atlas has {', '.join(known)}.")
@@ -289,24 +247,7 @@ class _Read:
 def where_law_is_in_doubt(
     along: Groups, contact: Contact | None, viscous: Array, given: tuple[float, float] | None = None
 ) -> Array:
-    """Return where the contact law is outside its range along groups off the atlas, as notes of states say it.
-
-    Parameters
-    ----------
-    along : Groups
-        Groups, as arrays.
-    contact : Contact or None
-        The contact.
-    viscous : ndarray, shape (n,)
-        Balanced viscous friction there [-].
-    given : tuple of float, optional
-        Boundary friction and beta of groups without a contact.
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        Where.
-    """
+    """Return where the contact law is outside its range along groups off the atlas, as notes of states say it."""
     axes = np.broadcast_arrays(along.speed, along.load, along.roughness)
     read = [atlas.contact_load_share(along), atlas.central_gap(along), atlas.minimum_gap(along), viscous]
     found = []

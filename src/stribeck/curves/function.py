@@ -146,57 +146,22 @@ class CurvePoint(Solution):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveValues(Shown, ByValue):
-    """Observables and friction of a curve at one value, or at many.
+    """Observables and friction of a curve at one value, or at many."""
 
-    Attributes
-    ----------
-    value : float or ndarray
-        What the curve runs over: the group [-], or SI units where the curve has a contact.
-    values : dict
-        Observables by name, such as ``central_gap``; they are attributes too, in Hertz units and for beta = 1.
-    relative_errors : ndarray
-        Estimated relative errors of the observables, by name in :attr:`errors`.
-    minimum_position_error : float or ndarray
-        Estimated absolute error of the position of the minimum gap [a].
-    friction_contact, friction_viscous, friction : float or ndarray
-        Friction coefficient and its two parts [-].
-    friction_error : float or ndarray
-        Estimated absolute error of the friction coefficient [-].
-    names : tuple of str
-        Of the observables that have errors, in their order.
-    """
-
-    value: Any
+    value: Any  # What the curve runs over: the group [-], or SI units where the curve has a contact
     values: dict[str, Any]
-    relative_errors: Array = field(repr=False)
-    minimum_position_error: Any = field(repr=False)
-    friction_contact: Any
-    friction_viscous: Any
-    friction: Any
-    friction_error: Any
+    relative_errors: Array = field(repr=False)  # Estimated relative errors of the observables, by name in :attr:`errors`
+    minimum_position_error: Any = field(repr=False)  # Estimated absolute error of the position of the minimum gap [a]
+    friction_contact: Any  # Friction coefficient and its two parts [-]
+    friction_viscous: Any  # Friction coefficient and its two parts [-]
+    friction: Any  # Friction coefficient and its two parts [-]
+    friction_error: Any  # Estimated absolute error of the friction coefficient [-]
     _sliding: float = field(repr=False, default=1.0)
-    names: tuple[str, ...] = field(repr=False, default=ALL_NAMES)
+    names: tuple[str, ...] = field(repr=False, default=ALL_NAMES)  # Of the observables that have errors, in their order
 
     @classmethod
     def of(cls, value: Array, found: Array, errors: Array, sliding: float, least: float) -> CurveValues:
-        """Return the values held in rows of a path, without friction; numbers if ``value`` is a number.
-
-        Parameters
-        ----------
-        value : ndarray
-            What the curve runs over.
-        found, errors : ndarray, shape (n, observables)
-            Of a path.
-        sliding : float
-            Fraction of the sliding friction of asperities that acts, with its sign.
-        least : float
-            Smallest error that is stated.
-
-        Returns
-        -------
-        CurveValues
-            The values.
-        """
+        """Return the values held in rows of a path, without friction; numbers if ``value`` is a number."""
         relative = np.maximum(errors[:, :POSITION], least) / drag_parts(found[:, :POSITION])
         shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
         values = dict(zip(COLUMNS, found.T if np.ndim(value) else found[0].tolist(), strict=True))
@@ -211,20 +176,7 @@ class CurveValues(Shown, ByValue):
         )
 
     def with_friction(self, boundary_friction: float, beta: float, definition: Definition) -> CurveValues:
-        """Return the values with friction for other coefficients.
-
-        Parameters
-        ----------
-        boundary_friction, beta : float
-            Coefficients of the friction.
-        definition : {"balanced", "published"}
-            Of the viscous friction.
-
-        Returns
-        -------
-        CurveValues
-            The values.
-        """
+        """Return the values with friction for other coefficients."""
         name = f"viscous_{definition}"
         rubbing = self._sliding * boundary_friction
         contact, viscous = rubbing * self.values["contact_load_share"], beta * self.values[name]

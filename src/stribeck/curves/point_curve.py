@@ -309,33 +309,7 @@ def point_curve(
     like: StribeckCurve | None = None,
     **settings: Any,
 ) -> PointCurve:
-    """Return the curve of a ball.
-
-    Parameters
-    ----------
-    coordinate : Coordinate
-        What varies.
-    values : ndarray
-        Its values, ascending.
-    rtol : float
-        Relative tolerance of each state, at least 1e-8.
-    on_point : callable, optional
-        ``on_point(done, points)`` is called as points are known.
-    like : StribeckCurve, optional
-        A curve through states near the fastest one, which then does not start from cold.
-    **settings : object
-        ``boundary_friction``, ``beta`` and ``definition``.
-
-    Returns
-    -------
-    PointCurve
-        All points that converged; after Ctrl-C those that were finished.
-
-    Raises
-    ------
-    SolveError
-        If no state can be solved.
-    """
+    """Return the curve of a ball."""
     start, rule = coordinate.groups_at(math.log(values[-1])), RULES["point"]
     is_function = (
         start.speed > 0

@@ -36,24 +36,7 @@ WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
 
 
 def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -> tuple[PointSolution, dict[str, float]]:
-    """Return the state of a ball and the logarithmic derivatives of its friction by each input.
-
-    Parameters
-    ----------
-    contact : PointContact
-        The contact.
-    rtol : float
-        Relative tolerance of the state.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-
-    Returns
-    -------
-    PointSolution
-        The state.
-    dict of str to float
-        By name of the input, numbers of the fluid and the solid among them; nan where there is no friction.
-    """
+    """Return the state of a ball and the logarithmic derivatives of its friction by each input."""
     groups, beta, mu0 = contact.groups, contact.beta, contact.boundary_friction
     state = next_state(None, groups, rtol)
     solution = finish_point(state, contact)

@@ -57,35 +57,6 @@ def friction_sensitivities(
     with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`. The last term is the
     contact part of the friction for the friction coefficient and the viscous part for beta, and what changes through the
     fluid and the solid, whose numbers in Hertz units depend on inputs of the contact.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    rtol : float
-        Relative tolerance of the state.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    method : {"solver", "atlas"}
-        Whether the state is solved, or read off :mod:`stribeck.atlas`, which returns the sensitivities alone.
-
-    Returns
-    -------
-    Solution or None
-        The state; None from the atlas.
-    dict of str to float
-        Logarithmic sensitivity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
-        there is no friction.  Numbers of the fluid and the solid, such as ``relaxation_time``, are among them.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range, or the contact outside that of the atlas.
-
-    Notes
-    -----
-    At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero,
-    both exactly.
     """
     rtol = check_rtol(rtol)
     definition = check_definition(definition)
@@ -117,31 +88,7 @@ def friction_sensitivities(
 def sensitivities_if_known(
     contact: Contact, *, rtol: float = 1e-6, definition: Definition = "balanced"
 ) -> tuple[Solution, dict[str, float], str]:
-    """Return the state of a contact with its sensitivities, or with none and the reason if they cannot be computed.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    rtol : float
-        Relative tolerance of the state.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-
-    Returns
-    -------
-    Solution
-        The state.
-    dict of str to float
-        As :func:`friction_sensitivities` returns them; empty where a part of the model has no derivatives.
-    str
-        Why it is empty, a sentence.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range.
-    """
+    """Return the state of a contact with its sensitivities, or with none and the reason if they cannot be computed."""
     try:
         return *friction_sensitivities(contact, rtol=rtol, definition=definition), ""
     except InputError as refusal:

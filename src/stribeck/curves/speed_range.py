@@ -86,24 +86,7 @@ def grown(
     contact_part: Callable[[Array], float],
     on_interval: Callable[[float, float], object] | None = None,
 ) -> tuple[SolvedPath, float]:
-    """Return a path from the hydrodynamic branch down to the boundary plateau, and its lower end, found on the way.
-
-    Parameters
-    ----------
-    problem : LineProblem
-        The contact, followed along the logarithm of the speed.
-    start, bottom : float
-        Where to begin, by :func:`fastest`, and the lowest place.
-    contact_part : callable
-        Part of the friction caused by asperities, from a row of observables.
-    on_interval : callable, optional
-        As of :func:`stribeck.solver.path.path.follow`.
-
-    Returns
-    -------
-    tuple of SolvedPath and float
-        The path as far as it was reached; the lower end lies a decade below the start of the plateau.
-    """
+    """Return a path from the hydrodynamic branch down to the boundary plateau, and its lower end, found on the way."""
 
     def is_level(slope: float, row: Array) -> bool:
         return abs(slope) * math.log(10) < PLATEAU and contact_part(row) > 1 - 10 * BRANCH

@@ -229,33 +229,7 @@ def continued(
     begin: float | None = None,
     span: float = math.inf,
 ) -> StribeckCurve:
-    """Continue a curve from its nearer end towards ``end``, without a cold start.
-
-    Parameters
-    ----------
-    curve : StribeckCurve
-        The curve to continue, of a line contact or its groups.
-    end : float
-        Value at which the continuation ends, outside ``curve``.
-    points : int
-        Number of points.
-    on_point : callable, optional
-        ``on_point(done, points)`` is called for progress.
-    begin : float, optional
-        Where a curve that is known at its points only begins instead.
-    span : float
-        Factor of the value from which on a curve that is a function ends, at the state that it has there anyhow.
-
-    Returns
-    -------
-    StribeckCurve
-        As of :func:`stribeck_curve`; as far as it was reached.
-
-    Raises
-    ------
-    SolveError
-        If it is known at its points only, and no further state can be solved.
-    """
+    """Continue a curve from its nearer end towards ``end``, without a cold start."""
     if not curve.is_function:
         nearer: float = min(curve.values[[0, -1]].tolist(), key=lambda value: abs(math.log(value / end)))
         low, high = sorted((nearer if begin is None else begin, end))

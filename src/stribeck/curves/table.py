@@ -25,28 +25,7 @@ __all__ = ["curve_dataset"]
 
 
 def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
-    """Return a Stribeck curve as an xarray Dataset.
-
-    Parameters
-    ----------
-    curve : StribeckCurve
-        The curve.
-    title : str
-        Headline, kept as an attribute.
-
-    Returns
-    -------
-    xarray.Dataset
-        Along one coordinate, which has the name of what varies: the groups, the observables, friction by both
-        definitions with its parts and errors, the regime and the outcome of each point; films and Hertz
-        scales in SI units where the curve has a contact. Each variable has the attributes ``units`` and
-        ``long_name``; those of the dataset hold the inputs, settings, landmarks, notes and the outcome.
-
-    Raises
-    ------
-    MissingExtraError
-        If xarray is not installed.
-    """
+    """Return a Stribeck curve as an xarray Dataset."""
     over = curve.over
     unit, what = ("1", f"{over} group") if curve.contact is None else (unit_of(over, curve.contact.INPUTS), over)
     columns: dict[str, Column] = {name: (over, *column) for name, column in _columns(curve).items()}

@@ -73,83 +73,29 @@ class Lever:
 
 @dataclass(frozen=True)
 class Content:
-    """Content of a report.
+    """Content of a report."""
 
-    Attributes
-    ----------
-    title, headline : str
-        Headline, and whether the model applies.
-    inputs : tuple of InputLine
-        The inputs.
-    conversions : tuple of str
-        Conversions of data-sheet inputs.
-    checks : Checks
-        The checks.
-    sentences : tuple of str
-        Regime, friction and load share.
-    films : tuple of tuple of str
-        Name, value and 95 % interval of films, friction and transitions; no interval without errors.
-    uncertainty : Uncertainty or None
-        The propagated errors of the inputs.
-    margins : tuple of str
-        Margins to the next regimes.
-    levers : tuple of Lever
-        The two inputs that lower friction by a fifth with the smallest change.
-    notes : tuple of str
-        Notes on the validity of the numbers.
-    versions : str
-        Program and libraries.
-    curve : StribeckCurve
-        Friction over the speed.
-    solution : Solution
-        The state.
-    data : Measurements or None
-        Measured friction.
-    """
-
-    title: str
-    headline: str
-    inputs: tuple[InputLine, ...]
-    conversions: tuple[str, ...]
-    checks: Checks
-    sentences: tuple[str, ...]
+    title: str  # Headline, and whether the model applies
+    headline: str  # Headline, and whether the model applies
+    inputs: tuple[InputLine, ...]  # The inputs
+    conversions: tuple[str, ...]  # Conversions of data-sheet inputs
+    checks: Checks  # The checks
+    sentences: tuple[str, ...]  # Regime, friction and load share
     films: tuple[tuple[str, str, str], ...]
-    uncertainty: Uncertainty | None
-    margins: tuple[str, ...]
-    levers: tuple[Lever, ...]
-    notes: tuple[str, ...]
-    versions: str
-    curve: StribeckCurve
-    solution: Solution
-    data: Measurements | None = None
+    uncertainty: Uncertainty | None  # The propagated errors of the inputs
+    margins: tuple[str, ...]  # Margins to the next regimes
+    levers: tuple[Lever, ...]  # The two inputs that lower friction by a fifth with the smallest change
+    notes: tuple[str, ...]  # Notes on the validity of the numbers
+    versions: str  # Program and libraries
+    curve: StribeckCurve  # Friction over the speed
+    solution: Solution  # The state
+    data: Measurements | None = None  # Measured friction
 
 
 def content_of(
     case: Case, data: str | Path | Measurements | None = None, on_step: Callable[[int, int], object] | None = None
 ) -> Content:
-    """Solve the content of a report.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    data : path-like or Measurements, optional
-        Measured friction, drawn over the curve.
-    on_step : callable, optional
-        ``on_step(done, total)`` is called as the work goes on.
-
-    Returns
-    -------
-    Content
-        What it says.
-
-    Raises
-    ------
-    InputError
-        If the data cannot be used.
-    SolveError
-        If the contact cannot be solved.
-    """
+    """Solve the content of a report."""
     step = on_step or (lambda done, total: None)
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
     contact, definition = case.contact, case.definition

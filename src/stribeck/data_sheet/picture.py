@@ -22,18 +22,7 @@ __all__ = ["draw_report"]
 
 
 def draw_report(content: Content) -> Figure:
-    """Draw friction and films against speed, with the contact's own speed marked.
-
-    Parameters
-    ----------
-    content : Content
-        What the report says.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure; needs the extra ``plot``.
-    """
+    """Draw friction and films against speed, with the contact's own speed marked."""
     curve = content.curve
     figure, (left, right) = new_figure((10.5, 4.4), [], columns=2, top=0.6, title="Friction and film over the speed")
     speed = curve.values

@@ -82,18 +82,7 @@ def write_report(
 
 
 def page_of(content: Content) -> str:
-    """Return the page as HTML, its picture inside.
-
-    Parameters
-    ----------
-    content : Content
-        What it says.
-
-    Returns
-    -------
-    str
-        The text of the file.
-    """
+    """Return the page as HTML, its picture inside."""
     from jinja2 import Environment
     from markupsafe import Markup
 

@@ -57,19 +57,7 @@ def friction_scale(load: Numbers, speed: Numbers) -> Array:
 
 
 def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal) -> Array:
-    """Return the viscous friction for beta = 1: published, balanced and upper, shape (3, rows).
-
-    Parameters
-    ----------
-    equations : Equations
-        Of the states.
-    y : ndarray, shape (rows, unknowns)
-        The states, for their numbers.
-    load : float or ndarray
-        Load group, a column of stacked states.
-    nodal : Nodal
-        Gap and fluid pressure.
-    """
+    """Return the viscous friction for beta = 1: published, balanced and upper, shape (3, rows)."""
     op, at, film = equations.operators, equations.layout, equations.film
     mesh, d, h_star = nodal.integral.mesh, equations.dilation(y), y[..., at.flux_gap]
     far, last = equations.far_gap(y), slice(-mesh.order, None)

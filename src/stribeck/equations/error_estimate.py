@@ -76,23 +76,13 @@ POSITIONS = [ROW[row.name] for row in ENDS]
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Estimated errors of the observables, each an array over NAMES, for other films than the article's over ALL_NAMES.
-
-    Attributes
-    ----------
-    discretisation, interpolation, rounding : ndarray
-        Absolute errors by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
-    scales : ndarray
-        Scale of each relative error: one for the load shares, the observable itself for the others.
-    minimum_position : float
-        Absolute error of the position of the minimum gap [a].
-    """
+    """Estimated errors of the observables, each an array over NAMES, for other films than the article's over ALL_NAMES."""
 
     discretisation: Array = field(repr=False)
     interpolation: Array = field(repr=False)
     rounding: Array = field(repr=False)
     scales: Array = field(repr=False)
-    minimum_position: float = math.nan
+    minimum_position: float = math.nan  # Absolute error of the position of the minimum gap [a]
 
     def at_most(self, difference: Array) -> ErrorEstimate:
         """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.

@@ -101,22 +101,7 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
 
 
 def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Array, Array, Indices]:
-    """Return the minimum gap of many states, the logarithms of their gaps in rows.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The discretisation.
-    log_gap : ndarray, shape (rows, nodes)
-        Logarithm of the gap at the nodes of panels side by side, the one through infinity not among them.
-    first : int
-        Index of the first of these panels.
-
-    Returns
-    -------
-    tuple of ndarray, shape (rows,)
-        Position, gap, the relative error of its interpolation, and the panel it is on.
-    """
+    """Return the minimum gap of many states, the logarithms of their gaps in rows."""
     order, rule, count = mesh.order, reference(mesh.order), len(log_gap)
     panels, powers = log_gap.shape[1] // order, np.arange(order)
     shape = log_gap - np.log(mesh.far[first * order : (first + panels) * order])

@@ -54,29 +54,12 @@ there is taken."""
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """The discretised problem for one speed and one contact law.
+    """The discretised problem for one speed and one contact law."""
 
-    Parameters
-    ----------
-    operators : Operators
-        Of the mesh and the model.
-    speed : float or ndarray
-        Speed group lambda [-].
-    law : ContactLaw
-        Contact pressure from the gap.
-    flux_scale : float
-        Factor of the rows of the gradient.
-
-    Notes
-    -----
-    All but the Jacobian also takes many stacked states at once, the unknowns of each in a row; speed and law then hold
-    columns.
-    """
-
-    operators: Operators
-    speed: Numbers
-    law: ContactLaw
-    flux_scale: Numbers = 1.0
+    operators: Operators  # Of the mesh and the model
+    speed: Numbers  # Speed group lambda [-]
+    law: ContactLaw  # Contact pressure from the gap
+    flux_scale: Numbers = 1.0  # Factor of the rows of the gradient
 
     @cached_property
     def layout(self) -> Layout:
@@ -329,15 +312,7 @@ class Equations:
         return np.asarray(Volterra(integral, self.speed * d * by_pressure)(self.speed * g))
 
     def parameter_derivative(self, y: Array, name: str) -> Array:
-        """Return the derivative of the residual with respect to the logarithm of one group, in the layout of ``y``.
-
-        Parameters
-        ----------
-        y : ndarray
-            Unknowns.
-        name : {"speed", "load", "roughness"}
-            The group; the other two are held.
-        """
+        """Return the derivative of the residual with respect to the logarithm of one group, in the layout of ``y``."""
         op, at, film, dilation = self.operators, self.layout, self.film, self.dilation(y)
         h, found = y[at.gap], np.zeros_like(y)
         d = None if dilation is None else float(dilation[0])

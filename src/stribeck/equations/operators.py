@@ -236,15 +236,9 @@ class Operators:
 
 @dataclass(frozen=True, eq=False)
 class OperatorsOfRows(Operators):
-    """Operators of rows of states, each with a solid of its own, in a frame without dilation.
+    """Operators of rows of states, each with a solid of its own, in a frame without dilation."""
 
-    Attributes
-    ----------
-    solids : tuple of Solid
-        Of each row.
-    """
-
-    solids: tuple[Solid, ...] = ()
+    solids: tuple[Solid, ...] = ()  # Of each row
 
     @cached_property
     def _deflecting(self) -> Callable[[Array], Array]:

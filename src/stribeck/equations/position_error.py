@@ -25,26 +25,7 @@ NODAL_ROUNDING = 16 * 2.0**-52
 
 
 def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, depth: Array) -> Array:
-    """Return the absolute errors of the positions of the minimum gap [a], shape (rows,).
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The discretisation.
-    gap : ndarray, shape (rows, nodes)
-        Nodal gaps [u_Hz].
-    changes : ndarray, shape (n, rows, nodes)
-        Possible errors of the nodal gaps [u_Hz], the defect first, then patterns of rounding.
-    positions : ndarray, shape (rows,)
-        Positions of the minimum gap [a].
-    depth : ndarray, shape (rows,)
-        Relative errors of the minimum gap [-].
-
-    Returns
-    -------
-    ndarray, shape (rows,)
-        Absolute errors [a].
-    """
+    """Return the absolute errors of the positions of the minimum gap [a], shape (rows,)."""
     rule, order = reference(mesh.order), mesh.order
     panel = np.clip(np.searchsorted(mesh.edges, positions) - 1, 0, mesh.panels - 2)
     width = mesh.half_widths[panel]

@@ -169,28 +169,14 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
 
 @dataclass(frozen=True, eq=False)
 class SeenFrom:
-    """A state seen from another origin: the guess of a film that ends at a free exit there.
+    """A state seen from another origin: the guess of a film that ends at a free exit there."""
 
-    Attributes
-    ----------
-    state : State
-        The state, of a film with another end or none.
-    exit : float
-        The guessed exit [a], the new origin.
-    restart : float
-        The guessed length of the cavity [a]; infinite if the film does not begin anew.
-    cavity_pressure : float
-        The pressure there [p_Hz].
-    flux : float or None
-        The guessed flux gap [u_Hz]; that of the state if None.
-    """
-
-    state: State
-    exit: float
-    restart: float = math.inf
-    cavity_pressure: float = 0.0
+    state: State  # The state, of a film with another end or none
+    exit: float  # The guessed exit [a], the new origin
+    restart: float = math.inf  # The guessed length of the cavity [a]; infinite if the film does not begin anew
+    cavity_pressure: float = 0.0  # The pressure there [p_Hz]
     dilation: float = 1.0
-    flux: float | None = None
+    flux: float | None = None  # The guessed flux gap [u_Hz]; that of the state if None
 
     @property
     def flux_gap(self) -> float:

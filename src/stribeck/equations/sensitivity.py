@@ -35,25 +35,7 @@ Change = tuple[Model, Model, float]
 
 
 def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
-    """Return the derivatives of contact share and both viscous frictions with respect to ln(group).
-
-    Parameters
-    ----------
-    state : State
-        A converged state with positive speed.
-    changes : sequence of tuple
-        Models below and above that of the state, and their distance.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (3 + changes,)
-        Those of ``contact_load_share`` and of the two viscous frictions for beta = 1, by name, with respect to speed, load and
-        roughness, the other two groups held, and along the changes of the model.
-
-    Notes
-    -----
-    Those of the friction are the differences of solved states within 1e-6 (``test_regimes.py``).
-    """
+    """Return the derivatives of contact share and both viscous frictions with respect to ln(group)."""
     equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)
     names = ("contact_load_share", *FRICTIONS)

@@ -121,23 +121,11 @@ PREDICTION_GOAL = 0.5
 
 @dataclass(frozen=True, eq=False)
 class StackedStates:
-    """States that share a mesh, as observables and error estimates take them.
+    """States that share a mesh, as observables and error estimates take them."""
 
-    Attributes
-    ----------
-    equations : Equations
-        Theirs; speed and law hold columns where there are several states.
-    y : ndarray, shape (rows, N + 2)
-        The unknowns of each.
-    load : float or ndarray
-        Load group; a column of them where there are several states.
-    correction : callable
-        Returns the changes that remove residuals, shape (..., rows, N + 2), to first order: -J^-1 of each.
-    """
-
-    equations: Equations
-    y: Array
-    load: Numbers
+    equations: Equations  # Theirs; speed and law hold columns where there are several states
+    y: Array  # The unknowns of each
+    load: Numbers  # Load group; a column of them where there are several states
     correction: Callable[[Array], Array]
 
     @cached_property
@@ -152,27 +140,13 @@ class StackedStates:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A solution of the discrete equations, or the last iterate towards one.
+    """A solution of the discrete equations, or the last iterate towards one."""
 
-    Attributes
-    ----------
-    groups : Groups
-        Scalar groups.
-    equations : Equations
-        The discrete problem.
-    y : ndarray
-        Gap at the nodes, offset, flux gap.
-    root : Root
-        The Newton iteration that ended here.
-    prediction_error : float
-        Largest relative change of the gap from its guess.
-    """
-
-    groups: Groups
-    equations: Equations
-    y: Array
-    root: Root
-    prediction_error: float
+    groups: Groups  # Scalar groups
+    equations: Equations  # The discrete problem
+    y: Array  # Gap at the nodes, offset, flux gap
+    root: Root  # The Newton iteration that ended here
+    prediction_error: float  # Largest relative change of the gap from its guess
 
     @property
     def mesh(self) -> Mesh:
@@ -377,39 +351,7 @@ def mesh_for(
     spread: float = 0.0,
     anew: bool = True,
 ) -> Mesh:
-    """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place.
-
-    Parameters
-    ----------
-    guess : Guess
-        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
-        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
-        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
-    groups : Groups
-        Scalar groups.
-    law : ContactLaw
-        Contact pressure from the gap.
-    order : int
-        Nodes a panel.
-    tolerance : float
-        Legendre tail allowed on each panel.
-    profile_tolerance : float
-        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
-    gap_tolerance : float
-        That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
-    halvings : int
-        How often the panels beside the ends of a film are halved, beyond the demand of the tolerance.
-    spread : float
-        Distance from the minimum of the gap up to which it may be read off.
-    anew : bool
-        Whether panels begin with those of the guess and are laid anew, see :func:`stribeck.numerics.panels.adapt`; coarse
-        states far from their guesses are found more surely on halves of the coarsest panels.
-
-    Raises
-    ------
-    MeshTooLargeError
-        If more panels are needed than :data:`mesh.MAX_PANELS`.
-    """
+    """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place."""
     cavitation = groups.model.cavitation
     film = groups.model.film
     plateau, broken = fall_of(film, float(groups.speed))

@@ -12,26 +12,15 @@ from typing import NamedTuple
 
 
 class Layout(NamedTuple):
-    """Where each unknown lies; ``y[..., layout.offset]`` keeps the axis of a number, so that it is a column of stacked states.
+    """Where each unknown lies in the vector."""
 
-    Attributes
-    ----------
-    size : int
-        Number of all unknowns.
-    gap, pressure : slice
-        Fields: the gap, and the fluid pressure if it is an unknown of its own.
-    numbers : slice
-        All numbers.
-    offset, flux_gap, exit, dilation : slice
-        Numbers: the height of the undeformed cylinder, the flux gap, the exit of a film that ends, and the length of the
-        cavity behind it in units of that on the mesh.  Empty where a model does not have them.
-    """
+    # ``y[..., layout.offset]`` keeps the axis of a number, so that it is a column of stacked states.
 
-    size: int
-    gap: slice
-    numbers: slice
+    size: int  # Number of all unknowns
+    gap: slice  # Fields: the gap, and the fluid pressure if it is an unknown of its own
+    numbers: slice  # All numbers
     offset: slice
     flux_gap: slice
-    pressure: slice
+    pressure: slice  # Fields: the gap, and the fluid pressure if it is an unknown of its own
     exit: slice
     dilation: slice

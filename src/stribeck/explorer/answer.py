@@ -76,74 +76,32 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class AsymptoticField:
-    """An asymptotic field where it is in its range.
+    """An asymptotic field where it is in its range."""
 
-    Attributes
-    ----------
-    name : str
-        The formula.
-    worst : float
-        Its largest relative error in its range.
-    predicts : str
-        The field.
-    x, value : ndarray
-        In Hertz units.
-    """
-
-    name: str
-    worst: float
-    predicts: str
-    x: Array
-    value: Array
+    name: str  # The formula
+    worst: float  # Its largest relative error in its range
+    predicts: str  # The field
+    x: Array  # In Hertz units
+    value: Array  # In Hertz units
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """All that a tab shows.
+    """All that a tab shows."""
 
-    Attributes
-    ----------
-    inputs : Inputs
-        What was asked.
-    solution : Solution or PointSolution
-        The state.
-    regime : str
-        Its regime.
-    checks : Checks
-        Whether the model applies: those that the state decides, and at rest all.
-    notes : tuple of str
-        What to know of the curve, as ``stribeck curve`` prints it; at rest.
-    spread : Uncertainty or None
-        What the errors of the inputs leave open in the state; at rest, where some are given.
-    curve : Curve or None
-        The curve through it, None where it cannot be solved.
-    diagram : Diagram or None
-        The phase diagram around it, None where it is not solved yet.
-    reach : float
-        How far the profile is drawn to both sides [a].
-    profile : Profile
-        The fields, in Hertz units.
-    plane : Field or None
-        The fields on the plane of a ball, from the middle line on to one side, to which the other is equal.
-    thin : tuple of AsymptoticField
-        Asymptotic fields.
-    speeds : tuple of float
-        Ends of the axis of speeds [m/s].
-    """
-
-    inputs: Inputs
-    solution: Solution | PointSolution
-    regime: Regime
-    checks: Checks
-    notes: tuple[str, ...]
-    spread: Uncertainty | None
-    curve: Curve | None
-    diagram: Diagram | None
-    reach: float
-    profile: Profile
-    plane: Field | None
-    thin: tuple[AsymptoticField, ...]
-    speeds: tuple[float, float]
+    inputs: Inputs  # What was asked
+    solution: Solution | PointSolution  # The state
+    regime: Regime  # Its regime
+    checks: Checks  # Whether the model applies: those that the state decides, and at rest all
+    notes: tuple[str, ...]  # What to know of the curve, as `stribeck curve` prints it; at rest
+    spread: Uncertainty | None  # What the errors of the inputs leave open in the state; at rest, where some are given
+    curve: Curve | None  # The curve through it, None where it cannot be solved
+    diagram: Diagram | None  # The phase diagram around it, None where it is not solved yet
+    reach: float  # How far the profile is drawn to both sides [a]
+    profile: Profile  # The fields, in Hertz units
+    plane: Field | None  # The fields on the plane of a ball, from the middle line on to one side, to which the other is equal
+    thin: tuple[AsymptoticField, ...]  # Asymptotic fields
+    speeds: tuple[float, float]  # Ends of the axis of speeds [m/s]
 
 
 class Answerer:
@@ -162,25 +120,7 @@ class Answerer:
                 self._last_curves[known.inputs.table.geometry] = known.curve
 
     def __call__(self, inputs: Inputs, measured: Sequence[float] = ()) -> Answer:
-        """Return the answer at once; outside the atlas with the last curve, marked stale, until :meth:`settle` solved its own.
-
-        Parameters
-        ----------
-        inputs : Inputs
-            What is asked.
-        measured : sequence of float
-            Speeds that a curve read off the atlas shall hold too, where the table does [m/s].
-
-        Returns
-        -------
-        Answer
-            The answer.
-
-        Raises
-        ------
-        InputError, SolveError
-            Where the state cannot be solved.
-        """
+        """Return the answer at once: outside the atlas with the last curve, marked stale, until :meth:`settle` ends."""
         contact, definition = inputs.contact, inputs.definition
         solution = self._state(inputs)
         friction = solution.friction(definition=definition)
@@ -213,22 +153,7 @@ class Answerer:
         )
 
     def settle(self, inputs: Inputs, report: Report, at_rest: bool = False) -> bool:
-        """Solve the curve of inputs outside the atlas, first of all as the picture needs it.
-
-        Parameters
-        ----------
-        inputs : Inputs
-            What is shown.
-        report : callable
-            Called with the finished part; an exception that it raises ends the work.
-        at_rest : bool
-            Whether to solve it to the tolerance of curves that stay.
-
-        Returns
-        -------
-        bool
-            Whether there is something new to show.
-        """
+        """Solve the curve of inputs outside the atlas, first of all as the picture needs it."""
         contact, definition = inputs.contact, inputs.definition
         key, geometry = ("solved", _key(contact), definition), contact.INPUTS.geometry
         rtol = SOLVED_RTOL if at_rest else FIRST_RTOL[geometry]
@@ -439,21 +364,7 @@ def profile_reach(solution: BaseSolution) -> float:
 
 
 def asymptotic_fields(solution: BaseSolution, reach: float) -> list[AsymptoticField]:
-    """Return the asymptotic fields whose range holds the state.
-
-    Parameters
-    ----------
-    solution : Solution
-        The state.
-    reach : float
-        How far the profile is drawn [a].
-
-    Returns
-    -------
-    list of AsymptoticField
-        Those of rough contacts, and those of smooth ones, or of contacts at rest, where asperities, or the fluid, carry less
-        than :data:`ABSENT` of the load.
-    """
+    """Return the asymptotic fields whose range holds the state."""
     groups = solution.groups
     if groups.geometry != "line" or groups.model != ARTICLE:
         return []

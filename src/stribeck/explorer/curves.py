@@ -61,27 +61,13 @@ NOTED_POINTS, NOTED_RTOL = {"line": 101, "point": 41}, 1e-4
 
 
 class SolvedRows(NamedTuple):
-    """How a diagram of one geometry is solved.
+    """How a diagram of one geometry is solved."""
 
-    Attributes
-    ----------
-    step : int
-        One of how many of the :data:`ROWS` roughnesses is solved.
-    points : int
-        Points of a row.
-    rtol : float
-        Tolerance of its states.
-    room : float
-        Factor by which rows go on beyond the ends of the axis, so that lines can leave it between two rows.
-    is_quick : bool
-        Whether it comes before margins and checks, which need not wait for it long.
-    """
-
-    step: int
-    points: int
-    rtol: float
-    room: float = 1.0
-    is_quick: bool = False
+    step: int  # One of how many of the :data:`ROWS` roughnesses is solved
+    points: int  # Points of a row
+    rtol: float  # Tolerance of its states
+    room: float = 1.0  # Factor by which rows go on beyond the ends of the axis, so that lines can leave it between two rows
+    is_quick: bool = False  # Whether it comes before margins and checks, which need not wait for it long
 
 
 SOLVED_ROWS = {"line": SolvedRows(8, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(8, 9, 1e-3)}
@@ -97,58 +83,26 @@ Report = Callable[[float], object]
 
 @dataclass(frozen=True)
 class Transition:
-    """Where along the speed a regime ends.
+    """Where along the speed a regime ends."""
 
-    Attributes
-    ----------
-    name : str
-        ``"boundary"``, ``"hydrodynamic"`` or ``"minimum"``.
-    speed : float
-        Speed there [m/s].
-    error : float
-        Relative error of the speed; nan where it is not known [-].
-    """
-
-    name: str
-    speed: float
-    error: float
+    name: str  # `"boundary"`, `"hydrodynamic"` or `"minimum"`
+    speed: float  # Speed there [m/s]
+    error: float  # Relative error of the speed; nan where it is not known [-]
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Friction along the speed.
+    """Friction along the speed."""
 
-    Attributes
-    ----------
-    speed : ndarray, shape (n,)
-        Speeds [m/s].
-    friction : mapping of str to ndarray
-        Friction coefficient by definition [-].
-    contact : ndarray, shape (n,)
-        Part of it from asperities [-].
-    transitions : tuple of Transition
-        Those on it, and those beyond its ends.
-    source : str
-        Where it comes from, with its error.
-    stale : bool
-        Whether it belongs to inputs before the present ones.
-    solved : StribeckCurve or None
-        The solved curve that it shows; None off the atlas.
-    doubtful : ndarray of bool, shape (n,)
-        Where the contact law is outside its range while asperities matter.
-    band : Band or None
-        What the errors of the inputs leave open, where some are given.
-    """
-
-    speed: Array
-    friction: Mapping[Definition, Array]
-    contact: Array
-    transitions: tuple[Transition, ...]
-    source: str
-    stale: bool = False
-    solved: StribeckCurve | None = None
+    speed: Array  # Speeds [m/s]
+    friction: Mapping[Definition, Array]  # Friction coefficient by definition [-]
+    contact: Array  # Part of it from asperities [-]
+    transitions: tuple[Transition, ...]  # Those on it, and those beyond its ends
+    source: str  # Where it comes from, with its error
+    stale: bool = False  # Whether it belongs to inputs before the present ones
+    solved: StribeckCurve | None = None  # The solved curve that it shows; None off the atlas
     doubtful: Array = field(default_factory=lambda: np.zeros(0, bool))
-    band: Band | None = None
+    band: Band | None = None  # What the errors of the inputs leave open, where some are given
 
     def transition(self, name: str) -> Transition | None:
         """Return the transition of a name, or None."""
@@ -157,27 +111,14 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Diagram:
-    """Regimes over speed and roughness at the load of the contact.
+    """Regimes over speed and roughness at the load of the contact."""
 
-    Attributes
-    ----------
-    roughness : ndarray, shape (n,)
-        Roughnesses [m].
-    boundary, hydrodynamic, minimum : ndarray, shape (n,)
-        Speeds at which boundary lubrication ends, hydrodynamic lubrication begins and friction is at its minimum;
-        zero, infinite or nan where there are none [m/s].
-    stale : bool
-        Whether it belongs to inputs before the present ones.
-    part : float
-        How much of its rows is there [-].
-    """
-
-    roughness: Array
+    roughness: Array  # Roughnesses [m]
     boundary: Array
     hydrodynamic: Array
     minimum: Array
-    stale: bool = False
-    part: float = 1.0
+    stale: bool = False  # Whether it belongs to inputs before the present ones
+    part: float = 1.0  # How much of its rows is there [-]
 
 
 def hersey_scale(contact: Contact) -> float:
@@ -246,22 +187,7 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
 
 
 def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
-    """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    definition : {"balanced", "published"}
-        By which the minimum goes.
-    report : callable
-        Called with the finished part; an exception that it raises ends the work.
-
-    Returns
-    -------
-    tuple of str
-        Its notes; why there are none in its place where it cannot be solved.
-    """
+    """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas."""
     try:
         found = stribeck_curve(
             contact,
@@ -282,31 +208,7 @@ def solved_curve(
     like: StribeckCurve | None = None,
     rtol: float = SOLVED_RTOL,
 ) -> Curve:
-    """Return a curve of solved states, with the transitions located on them.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    definition : {"balanced", "published"}
-        By which minimum and transitions go.
-    report : callable
-        Called with the finished part; an exception that it raises ends the work.
-    like : StribeckCurve, optional
-        The curve before, whose states serve as guesses.
-    rtol : float
-        Relative tolerance of its states.
-
-    Returns
-    -------
-    Curve
-        The curve; one that is known at its points only, between them by a monotone interpolation of the logarithms.
-
-    Raises
-    ------
-    InputError, SolveError
-        Where it cannot be solved.
-    """
+    """Return a curve of solved states, with the transitions located on them."""
     found = stribeck_curve(
         contact,
         points=SOLVED_POINTS[contact.INPUTS.geometry],
@@ -368,28 +270,7 @@ def solved_diagram(
     report: Report,
     like: StribeckCurve | None = None,
 ) -> Iterator[Diagram]:
-    """Give the diagram at the load of a contact as its rows are solved, those beside the contact first.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    definition : {"balanced", "published"}
-        By which the regimes go.
-    speeds : tuple of float
-        Ends of its axis of speeds [m/s].
-    decade : int
-        Power of ten at which the axis of roughness begins.
-    report : callable
-        Is called between states; what it raises ends the work.
-    like : StribeckCurve, optional
-        The curve of the contact itself, whose states serve as guesses, as those of each row do for the next.
-
-    Yields
-    ------
-    Diagram
-        With nan in the rows that are still missing.
-    """
+    """Give the diagram at the load of a contact as its rows are solved, those beside the contact first."""
     step = SOLVED_ROWS[contact.INPUTS.geometry].step
     shown = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
     roughness = shown[::step]

@@ -44,46 +44,16 @@ KINDS = {
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What a tab shows.
+    """What a tab shows."""
 
-    Attributes
-    ----------
-    answer : Answer
-        The answer to its inputs.
-    pins : sequence of (str, Curve, float)
-        Pinned curves: name, curve, Hersey number at 1 m/s.
-    measured : tuple of Measured
-        Measured curves.
-    states : sequence of (str, BaseSolution, str)
-        The states of the pinned contacts: name, state, definition of friction.
-    """
-
-    answer: Answer
-    pins: Sequence[tuple[str, Curve, float]] = ()
-    measured: tuple[Measured, ...] = ()
+    answer: Answer  # The answer to its inputs
+    pins: Sequence[tuple[str, Curve, float]] = ()  # Pinned curves: name, curve, Hersey number at 1 m/s
+    measured: tuple[Measured, ...] = ()  # Measured curves
     states: Sequence[tuple[str, BaseSolution, Definition]] = ()
 
 
 def read_case(name: str, content: bytes) -> Case:
-    """Return a case from the content of its file.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file, for sentences.
-    content : bytes
-        Its content.
-
-    Returns
-    -------
-    Case
-        The case.
-
-    Raises
-    ------
-    InputError
-        As :func:`stribeck.load_case`; or if the case names a file, which a page cannot read.
-    """
+    """Return a case from the content of its file."""
     path = Path(shown_name(name))
     tables = parse_toml(content, path)
     for table, key in (("surface", "spectrum"), ("table", "file")):
@@ -149,27 +119,7 @@ def _rounded(inputs: Inputs, name: str) -> str:
 
 
 def content(kind: str, shown: View, go_on: Callable[..., object] | None = None) -> bytes:
-    """Return the content of a file of what is shown.
-
-    Parameters
-    ----------
-    kind : str
-        One of the endings of :data:`KINDS`.
-    shown : View
-        What is shown.
-    go_on : callable, optional
-        Is called while a curve is solved; an exception that it raises ends the work.
-
-    Returns
-    -------
-    bytes
-        The content.
-
-    Raises
-    ------
-    MissingExtraError
-        If a picture is wanted and matplotlib is not installed.
-    """
+    """Return the content of a file of what is shown."""
     what, _, ending = kind.partition(".")
     if ending in ("png", "svg"):
         from stribeck.explorer.charts.picture import picture

@@ -74,15 +74,7 @@ def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
 
 
 class Following:
-    """The answers of one open page.
-
-    Parameters
-    ----------
-    opened : Opened
-        What its address asks for.
-    shown : View
-        The answer to the inputs of the address, with the pinned curves.
-    """
+    """The answers of one open page."""
 
     def __init__(self, opened: url.Opened, shown: View) -> None:
         self.inputs, self.pins = opened.inputs, list(opened.pins)

@@ -24,32 +24,14 @@ __all__ = ["Fitted", "Measured", "fit_measured", "read_measured"]
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A measured Stribeck curve.
+    """A measured Stribeck curve."""
 
-    Attributes
-    ----------
-    name : str
-        Name of its file, and of the curve where that holds several.
-    file : str
-        Name of its file.
-    speed : ndarray, shape (n,)
-        Sliding speed, ascending [m/s].
-    friction : ndarray, shape (n,)
-        Friction coefficient [-].
-    source : Measurements
-        All that its file holds.
-    made : Contact
-        The contact that was shown when it was loaded, with the inputs that its file gives.
-    own : tuple of str
-        Those of its inputs on which its Hersey number depends and that its file gives, or that its speeds were taken with.
-    """
-
-    name: str
-    file: str
-    speed: Array
-    friction: Array
-    source: Measurements
-    made: Contact
+    name: str  # Name of its file, and of the curve where that holds several
+    file: str  # Name of its file
+    speed: Array  # Sliding speed, ascending [m/s]
+    friction: Array  # Friction coefficient [-]
+    source: Measurements  # All that its file holds
+    made: Contact  # The contact that was shown when it was loaded, with the inputs that its file gives
     own: tuple[str, ...]
 
     def places(self, contact: Contact, abscissa: Abscissa) -> Array:
@@ -62,42 +44,14 @@ class Measured:
 
 @dataclass(frozen=True)
 class Fitted:
-    """What a fit gave.
+    """What a fit gave."""
 
-    Attributes
-    ----------
-    inputs : Inputs
-        Those with the fitted values.
-    words : str
-        The values with their errors, in a sentence.
-    """
-
-    inputs: Inputs
-    words: str
+    inputs: Inputs  # Those with the fitted values
+    words: str  # The values with their errors, in a sentence
 
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
-    """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones.
-
-    Parameters
-    ----------
-    now : Inputs
-        Where the fit begins.
-    measured : Measured
-        One of the curves.
-    on_step : callable
-        Is called as the work goes on; what it raises ends it.
-
-    Returns
-    -------
-    Fitted
-        Inputs and words.
-
-    Raises
-    ------
-    InputError, SolveError
-        As :func:`stribeck.fit`.
-    """
+    """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones."""
     settings = json.loads(now.rest).get("fit", {}) if now.rest else {}
     found = fit(measured.source, now.contact, free=settings.get("free"), intervals=False, on_step=on_step)
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
@@ -122,25 +76,6 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
 
     .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta},
               \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta R} \text{ of a ball}
-
-    Parameters
-    ----------
-    name : str
-        Name of the file, for sentences.
-    content : bytes
-        A table as :func:`stribeck.fits.measurements.read_measurements` reads it.
-    contact : Contact
-        Whose viscosity and load hold where the file has viscosity times speed or the Hersey number, and does not give them.
-
-    Returns
-    -------
-    list of Measured
-        The curves.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read; the sentence names row and column.
     """
     with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
         path = Path(folder) / "curve.csv"  # never under the name that came with it

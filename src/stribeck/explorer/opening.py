@@ -46,20 +46,7 @@ def curves_of(model: Answerer, pins: Sequence[Pin], answer: Answer) -> list[tupl
 
 
 async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, View]:
-    """Return what an address asks for and its answer, computed beside the event loop.
-
-    Parameters
-    ----------
-    items : list of (str, str)
-        Keys and values of the address.
-    start : Inputs
-        What the command was started with.
-
-    Returns
-    -------
-    Opened, View
-        The inputs, and their answer with the pinned curves; that of the start where they cannot be solved.
-    """
+    """Return what an address asks for and its answer, computed beside the event loop."""
 
     def prepare() -> tuple[url.Opened, View]:
         opened = url.decode(items, start)

@@ -43,15 +43,7 @@ ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
 
 class Slider(ui.element, component="slider.js"):
-    """Field, unit and slider of one quantity.
-
-    Parameters
-    ----------
-    name : str
-        Name of an input or of a group.
-    start : dict
-        What it shows first, as of :func:`knob_state`.
-    """
+    """Field, unit and slider of one quantity."""
 
     def __init__(self, name: str, start: dict[str, Any]) -> None:
         super().__init__()
@@ -60,15 +52,7 @@ class Slider(ui.element, component="slider.js"):
 
 
 class ChoiceRow(ui.element, component="choice.js"):
-    """A list to choose from, and fields for what the choice needs.
-
-    Parameters
-    ----------
-    name : str
-        Key of :data:`CHOICES`.
-    start : dict
-        What it shows first, as of :func:`stribeck.explorer.inputs.choices.state_of`.
-    """
+    """A list to choose from, and fields for what the choice needs."""
 
     def __init__(self, name: str, start: dict[str, Any]) -> None:
         super().__init__()
@@ -76,13 +60,7 @@ class ChoiceRow(ui.element, component="choice.js"):
 
 
 class Chart(ui.element, component="chart.js"):
-    """A chart, empty until the first frame.
-
-    Parameters
-    ----------
-    name, label : str
-        Its name, and what it shows in words.
-    """
+    """A chart, empty until the first frame."""
 
     def __init__(self, name: str, label: str) -> None:
         super().__init__()
@@ -114,13 +92,7 @@ def knob_state(now: Inputs, name: str) -> dict[str, Any]:
 
 
 class Page:
-    """The elements of one page.
-
-    Parameters
-    ----------
-    now : Inputs
-        What its fields show first.
-    """
+    """The elements of one page."""
 
     def __init__(self, now: Inputs) -> None:
         self.client = ui.context.client

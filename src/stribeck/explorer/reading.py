@@ -33,31 +33,7 @@ MOST_MEMORY = 4_000_000_000
 
 
 def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: float = LONGEST_TIME) -> Any:
-    """Return what a file holds.
-
-    Parameters
-    ----------
-    kind : {"case", "measured", "scan"}
-        What it is; a text file that holds no measured curve may hold heights.
-    name : str
-        Its name, for sentences.
-    content : bytes
-        Its content.
-    contact : Contact
-        The contact over which measured curves are drawn.
-    seconds : float
-        Time after which it is given up.
-
-    Returns
-    -------
-    Inputs, list of Measured, or Scan
-        What it holds.
-
-    Raises
-    ------
-    InputError
-        If it cannot be used, or takes too long.
-    """
+    """Return what a file holds."""
     # Of the contact only what measured curves need: not every law can be sent.
     task = pickle.dumps((kind, name, content, contact.replace(law=None), seconds))
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}

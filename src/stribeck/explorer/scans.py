@@ -28,40 +28,14 @@ ENDINGS = (".x3p", ".sur", ".pro", ".al3d", ".sdf", ".opd", ".plux", ".xyz")
 
 @dataclass(frozen=True)
 class Scan:
-    """A measured surface.
+    """A measured surface."""
 
-    Attributes
-    ----------
-    table : dict
-        The table ``[surface]`` of a case.
-    words : str
-        What was found, in a sentence.
-    """
-
-    table: dict[str, Any]
-    words: str
+    table: dict[str, Any]  # The table `[surface]` of a case
+    words: str  # What was found, in a sentence
 
 
 def read_scan(name: str, content: bytes) -> Scan:
-    """Return the surface of a file of heights.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    content : bytes
-        Its content.
-
-    Returns
-    -------
-    Scan
-        Its self-affine spectrum, as ``stribeck surface`` finds it.
-
-    Raises
-    ------
-    InputError
-        As :func:`stribeck.surfaces.read_topography` and :func:`stribeck.surfaces.analyse`.
-    """
+    """Return the surface of a file of heights."""
     shown = shown_name(name)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / shown
@@ -84,25 +58,7 @@ def _without_options(sentence: str) -> str:
 
 
 def with_scan(now: Inputs, scan: Scan) -> Inputs:
-    """Return the inputs on a measured surface: its roughness and Persson's law, with alpha and beta of its spectrum.
-
-    Parameters
-    ----------
-    now : Inputs
-        Those before.
-    scan : Scan
-        The surface.
-
-    Returns
-    -------
-    Inputs
-        Those after.
-
-    Raises
-    ------
-    InputError
-        If the roughness does not go with the contact.
-    """
+    """Return the inputs on a measured surface: its roughness and Persson's law, with alpha and beta of its spectrum."""
     tables = {name: table for name, table in tables_of(now.model).items() if name not in ("asperities", "table")}
     tables |= {"law": "persson", "surface": scan.table}
     found = law_of_file("persson", {}, {"surface": scan.table}, Path()).coefficients

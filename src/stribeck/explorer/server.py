@@ -49,26 +49,7 @@ ICON = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><rect widt
 
 
 def serve(case: Path | None = None, port: int | None = None, browser: bool = True, host: str = HOST) -> None:
-    """Serve the page until Ctrl-C.
-
-    Parameters
-    ----------
-    case : path-like, optional
-        Case file to begin with.
-    port : int, optional
-        Port; a free one if not given.
-    browser : bool
-        Whether to open the page in the browser.
-    host : str
-        Address of this machine to listen on: 127.0.0.1, ::1 or localhost.
-
-    Raises
-    ------
-    InputError
-        If the case is wrong or too large for an address, the port is not free, or others reach the host.
-    MissingExtraError
-        If NiceGUI is not installed.
-    """
+    """Serve the page until Ctrl-C."""
     check_host(host)
     start = example() if case is None else from_case(load_case(case))
     check_length(start)
@@ -125,17 +106,7 @@ def prepare() -> None:
 
 
 def build(start: Inputs, port: int, token: str) -> None:
-    """Give NiceGUI's application its page, its routes for files, and the guard before them.
-
-    Parameters
-    ----------
-    start : Inputs
-        What is shown where an address says nothing.
-    port : int
-        The port.
-    token : str
-        What a browser must know.
-    """
+    """Give NiceGUI's application its page, its routes for files, and the guard before them."""
     from nicegui import app, ui
     from starlette.requests import Request
     from starlette.responses import Response
@@ -193,25 +164,7 @@ def example() -> Inputs:
 
 
 def listen(wanted: int | None, host: str = HOST) -> socket.socket:
-    """Return a socket that listens on a port of this machine on which nobody else did.
-
-    Parameters
-    ----------
-    wanted : int or None
-        The port that must be free; one of :data:`PORTS` where None.
-    host : str
-        The address.
-
-    Returns
-    -------
-    socket.socket
-        The socket, which nobody can take any more.
-
-    Raises
-    ------
-    InputError
-        If there is no such port.
-    """
+    """Return a socket that listens on a port of this machine on which nobody else did."""
     if wanted is not None and not 1 <= wanted <= 65535:
         raise InputError(f"port = {wanted} must be a whole number from 1 to 65535.")
     for port in PORTS if wanted is None else (wanted,):

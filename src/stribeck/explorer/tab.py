@@ -39,17 +39,7 @@ MOST_MEASURED = 3
 
 
 class Tab(Following):
-    """One open page.
-
-    Parameters
-    ----------
-    opened : Opened
-        What its address asks for.
-    start : Inputs
-        What the command was started with.
-    shown : View
-        The answer to the inputs of the address, with the pinned curves.
-    """
+    """One open page."""
 
     def __init__(self, opened: url.Opened, start: Inputs, shown: View) -> None:
         super().__init__(opened, shown)

@@ -27,50 +27,19 @@ MOST_DIGITS = 4
 
 @dataclass(frozen=True)
 class Row:
-    """One number.
+    """One number."""
 
-    Attributes
-    ----------
-    key : str
-        Its name in the package.
-    label : str
-        Its name in words.
-    value : float
-        The number, in SI units.
-    error : float
-        Its estimated absolute error; zero for what follows from the inputs alone, nan where it is not known.
-    text : str
-        The number as shown, with its unit.
-    error_text : str
-        The error of the solver as shown, in a tooltip.
-    interval : str
-        The 95 % interval by the errors of the inputs; empty where none are given.
-    """
-
-    key: str
-    label: str
-    value: float
-    error: float
-    text: str
-    error_text: str
-    interval: str = ""
+    key: str  # Its name in the package
+    label: str  # Its name in words
+    value: float  # The number, in SI units
+    error: float  # Its estimated absolute error; zero for what follows from the inputs alone, nan where it is not known
+    text: str  # The number as shown, with its unit
+    error_text: str  # The error of the solver as shown, in a tooltip
+    interval: str = ""  # The 95 % interval by the errors of the inputs; empty where none are given
 
 
 def numbers(answer: Answer, margins: RegimeMargins | None = None) -> list[Row]:
-    """Return friction by both definitions, shares, films and their ends, ratios and the nearest transitions.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-    margins : RegimeMargins, optional
-        Margins of the same contact, which have the intervals of the transitions nearby.
-
-    Returns
-    -------
-    list of Row
-        The numbers in their order.
-    """
+    """Return friction by both definitions, shares, films and their ends, ratios and the nearest transitions."""
     solution, contact = answer.solution, answer.inputs.contact
     errors, scales = solution.errors, contact.hertz
     rows = []
@@ -209,20 +178,7 @@ def _small(error: float) -> str:
 
 
 def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
-    """Return regime, numbers and notes as HTML; each value stands in full in ``data-value``.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-    rows : sequence of Row
-        Its numbers.
-
-    Returns
-    -------
-    str
-        HTML without text of the user.
-    """
+    """Return regime, numbers and notes as HTML; each value stands in full in ``data-value``."""
     notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
     notes += [] if answer.spread is None else answer.spread.sources
     head = '<tr><td></td><td></td><th scope="col">95 %</th></tr>' if any(row.interval for row in rows) else ""
@@ -257,18 +213,7 @@ def _line(row: Row) -> str:
 
 
 def verdict_html(answer: Answer) -> str:
-    """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-
-    Returns
-    -------
-    str
-        One line, which opens where a check is not fine or states an error.
-    """
+    """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it."""
     checks = answer.checks
     said = [each.sentence for each in checks.said]
     look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
@@ -280,18 +225,7 @@ def verdict_html(answer: Answer) -> str:
 
 
 def curve_notes_html(answer: Answer) -> str:
-    """Return the notes of the curve as HTML, but for those that the verdict holds.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-
-    Returns
-    -------
-    str
-        A paragraph for each.
-    """
+    """Return the notes of the curve as HTML, but for those that the verdict holds."""
     return _notes(note for note in answer.notes if not answer.checks.covers(note))
 
 
@@ -301,20 +235,7 @@ def _notes(notes: Iterable[str]) -> str:
 
 
 def comparison_html(answer: Answer, states: Sequence[tuple[str, BaseSolution, Definition]]) -> str:
-    """Return the numbers of the pinned contacts beside those of the present one; empty where nothing is pinned.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-    states : sequence of (str, BaseSolution, str)
-        Name, state and definition of friction of each pinned contact.
-
-    Returns
-    -------
-    str
-        A table with a column for each contact.
-    """
+    """Return the numbers of the pinned contacts beside those of the present one; empty where nothing is pinned."""
     if not states:
         return ""
     columns = [("present", answer.solution, answer.inputs.definition), *states]
@@ -347,18 +268,7 @@ COMPARED: dict[str, Callable[[BaseSolution, Definition], str]] = {
 
 
 def margins_html(margins: RegimeMargins) -> str:
-    """Return the margins to the next regimes in each input as HTML.
-
-    Parameters
-    ----------
-    margins : RegimeMargins
-        Of the state that is shown.
-
-    Returns
-    -------
-    str
-        A table with a line for each input and a column for each regime beside the present one.
-    """
+    """Return the margins to the next regimes in each input as HTML."""
     targets = margins.targets
     lines = ["<table><tr><td></td>", *(f'<th scope="col">to {target}</th>' for target in targets), "</tr>"]
     for margin in margins.margins:

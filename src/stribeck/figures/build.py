@@ -38,7 +38,6 @@ SHOWING = (
     "__main__.py",
     "cases/",
     "cli/",
-    "evidence/",
     "explorer/",
     "figures/style.py",
     "files/pictures.py",
@@ -55,68 +54,22 @@ OnProgress = Callable[[str, int, int], object]
 
 @dataclass
 class FigureJob:
-    """The solves of one figure: each is reported when done, and one that fails ends the figure.
+    """The solves of one figure: each is reported when done, and one that fails ends the figure."""
 
-    Attributes
-    ----------
-    report : callable
-        As in :class:`PaperFigure`.
-    steps : int
-        Number of calls of :meth:`solve` and :meth:`curve` to come.
-    rtol : float
-        Relative tolerance of each state.
-    done : int
-        Number of calls so far.
-    error_estimate : float
-        Largest estimated relative error of the states so far.
-    """
-
-    report: Report
-    steps: int
-    rtol: float = 1e-7
-    done: int = 0
-    error_estimate: float = 0.0
+    report: Report  # As in :class:`PaperFigure`
+    steps: int  # Number of calls of :meth:`solve` and :meth:`curve` to come
+    rtol: float = 1e-7  # Relative tolerance of each state
+    done: int = 0  # Number of calls so far
+    error_estimate: float = 0.0  # Largest estimated relative error of the states so far
 
     def solve(self, speed: float, load: float, roughness: float) -> Solution:
-        """Return one converged state.
-
-        Parameters
-        ----------
-        speed, load, roughness : float
-            The groups [-].
-
-        Returns
-        -------
-        Solution
-            The state.
-
-        Raises
-        ------
-        SolveError
-            If it did not converge.
-        """
+        """Return one converged state."""
         found: Solution = solve(Groups(speed, load, roughness), rtol=self.rtol)
         self._step(found)
         return found
 
     def curve(self, **arguments: Any) -> StribeckCurve:
-        """Return a Stribeck curve of which every point converged.
-
-        Parameters
-        ----------
-        **arguments
-            Those of :func:`stribeck.stribeck_curve`, without ``rtol`` and ``on_point``.
-
-        Returns
-        -------
-        StribeckCurve
-            The curve.
-
-        Raises
-        ------
-        SolveError
-            If points are missing.
-        """
+        """Return a Stribeck curve of which every point converged."""
         interrupted = False
 
         def report(done: int, points: int) -> None:
@@ -153,72 +106,24 @@ class FigureJob:
 
 
 def column(dims: str | Sequence[str], values: Any, long_name: str, units: str = "1") -> Column:
-    """Return a variable of a dataset.
-
-    Parameters
-    ----------
-    dims : str or sequence of str
-        Names of its dimensions; empty for one number.
-    values : array_like
-        Its values.
-    long_name : str
-        What it is, in words with its scale.
-    units : str
-        Its unit; ``"1"`` for numbers in Hertz scales.
-
-    Returns
-    -------
-    tuple
-        As xarray takes it.
-    """
+    """Return a variable of a dataset."""
     return dims, np.asarray(values), {"units": units, "long_name": long_name}
 
 
 def dataset(variables: Mapping[str, Column], coords: Mapping[str, Column], **attributes: Any) -> xarray.Dataset:
-    """Return a dataset.
-
-    Parameters
-    ----------
-    variables, coords : mapping of str to tuple
-        What :func:`column` returns, by name.
-    **attributes
-        Of the whole: ``finding``, and what :attr:`FigureJob.attributes` gives.
-
-    Returns
-    -------
-    xarray.Dataset
-        The dataset.
-
-    Raises
-    ------
-    MissingExtraError
-        If xarray is not installed.
-    """
+    """Return a dataset."""
     made: xarray.Dataset = import_xarray("the data of a figure").Dataset(dict(variables), dict(coords), attributes)
     return made
 
 
 @dataclass(frozen=True)
 class Made:
-    """What became of one figure.
+    """What became of one figure."""
 
-    Attributes
-    ----------
-    name : str
-        Its name in the paper.
-    outcome : {"solved", "reused", "failed", "unwritten", "interrupted"}
-        Whether its data were solved or taken from the file; else why there is no figure: a solve failed, a file could not be
-        written, or Ctrl-C came.
-    files : tuple of pathlib.Path
-        What was written or, for data that are used again, found.
-    message : str
-        A sentence where there is no figure.
-    """
-
-    name: str
+    name: str  # Its name in the paper
     outcome: Literal["solved", "reused", "failed", "unwritten", "interrupted"]
-    files: tuple[Path, ...] = ()
-    message: str = ""
+    files: tuple[Path, ...] = ()  # What was written or, for data that are used again, found
+    message: str = ""  # A sentence where there is no figure
 
 
 def make_figures(
@@ -228,32 +133,7 @@ def make_figures(
     force: bool = False,
     on_progress: OnProgress = lambda name, done, steps: None,
 ) -> list[Made]:
-    """Make figures of the paper: for each a PNG, an SVG and the data as NetCDF, such as ``figure_3.png``.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Figures, such as ``"3"`` or ``"S1"``; all of them by default.
-    folder : str or path-like
-        Where to write; it is made if the folder above it exists.
-    force : bool
-        Whether to solve again what the files already hold, and to replace files that are not of this command.
-    on_progress : callable
-        ``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work; when
-        it raises KeyboardInterrupt the figures that are finished stay.
-
-    Returns
-    -------
-    list of Made
-        What became of each figure, in the order of the paper; after Ctrl-C up to the one that was interrupted.
-
-    Raises
-    ------
-    InputError
-        If a name is not known, the folder cannot be written, or a file in the way is not of this command.
-    MissingExtraError
-        If matplotlib, xarray or netCDF4 is not installed.
-    """
+    """Make figures of the paper: for each a PNG, an SVG and the data as NetCDF, such as ``figure_3.png``."""
     figures = [load_figure(name) for name in figure_names(names)]
     _need_extras()
     place = _folder(folder)
@@ -275,18 +155,7 @@ def make_figures(
 
 
 def fingerprint(figure: PaperFigure) -> str:
-    """Return what changes when the numbers of a figure may change.
-
-    Parameters
-    ----------
-    figure : PaperFigure
-        The figure.
-
-    Returns
-    -------
-    str
-        Hash of the sources of this package without those that only show results and without the other figures.
-    """
+    """Return what changes when the numbers of a figure may change."""
     package = Path(__file__).parents[1]
     found = hashlib.sha256(version("stribeck").encode())
     for path in sorted(package.rglob("*.py")):

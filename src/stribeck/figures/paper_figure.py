@@ -30,29 +30,13 @@ NAME = re.compile(r"(?:fig(?:ure)?s?[\s._-]*)?(s?[0-9]+)[\s._-]*\(?[a-f]?\)?", r
 
 @dataclass(frozen=True)
 class PaperFigure:
-    """A figure of the paper.
+    """A figure of the paper."""
 
-    Attributes
-    ----------
-    name : str
-        Its name there, one of :data:`FIGURES`.
-    title : str
-        Headline.
-    claim : str
-        What the paper says that it shows, in one sentence.
-    compute : callable
-        ``compute(report)`` solves all states and returns what is drawn as one Dataset. Each variable and coordinate has
-        the attributes ``units`` and ``long_name``; the dataset has ``finding``, one sentence with numbers measured on
-        it that answers the claim, and what :attr:`FigureJob.attributes` gives.
-    draw : callable
-        ``draw(dataset)`` returns the picture, from the dataset alone.
-    """
-
-    name: str
-    title: str
-    claim: str
-    compute: Callable[[Report], xarray.Dataset]
-    draw: Callable[[xarray.Dataset], Figure]
+    name: str  # Its name there, one of :data:`FIGURES`
+    title: str  # Headline
+    claim: str  # What the paper says that it shows, in one sentence
+    compute: Callable[[Report], xarray.Dataset]  # `compute(report)` solves all states and returns what is drawn as one Dataset
+    draw: Callable[[xarray.Dataset], Figure]  # `draw(dataset)` returns the picture, from the dataset alone
 
     @property
     def stem(self) -> str:
@@ -60,18 +44,7 @@ class PaperFigure:
         return f"figure_{self.name.lower()}"
 
     def data(self, report: Report = lambda done, steps: None) -> xarray.Dataset:
-        """Solve the figure and return its numbers with their provenance.
-
-        Parameters
-        ----------
-        report : callable
-            Called after each step of the work, for progress.
-
-        Returns
-        -------
-        xarray.Dataset
-            What :attr:`compute` gives, with ``figure``, ``title``, ``claim`` and ``source`` as attributes.
-        """
+        """Solve the figure and return its numbers with their provenance."""
         provenance = {
             "figure": self.name,
             "title": self.title,
@@ -90,23 +63,7 @@ def load_figure(name: str) -> PaperFigure:
 
 
 def figure_names(texts: Iterable[str]) -> tuple[str, ...]:
-    """Return the figures that are meant, each once, in the order of the paper.
-
-    Parameters
-    ----------
-    texts : iterable of str
-        Names as people write them, such as ``"3"``, ``"s1"``, ``"figure_4"`` or ``"Fig. 5(b)"``; none means all.
-
-    Returns
-    -------
-    tuple of str
-        Names of :data:`FIGURES`.
-
-    Raises
-    ------
-    InputError
-        If a name is not known.
-    """
+    """Return the figures that are meant, each once, in the order of the paper."""
     wanted = set()
     for text in texts:
         match = NAME.fullmatch(text.strip())

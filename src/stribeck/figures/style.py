@@ -54,25 +54,7 @@ LETTERS_PER_INCH = 17.0
 
 
 def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
-    """Return an empty figure with the title, and a foot of claim, finding and source of the data.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        What :meth:`PaperFigure.data` returns; its attributes fill title and foot.
-    width, height : float
-        Size of the room for panels [inch].
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure; :func:`panels` fills it.
-
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
-    """
+    """Return an empty figure with the title, and a foot of claim, finding and source of the data."""
     foot = _foot(data, int(LETTERS_PER_INCH * (width - 0.3)))
     head, low = 0.45, LINE * len(foot) + 0.22
     whole = height + head + low
@@ -87,22 +69,7 @@ def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
 
 
 def panels(figure: Figure, rows: int, columns: int, **options: Any) -> list[Axes]:
-    """Return the axes of a grid of panels, row by row, each in house style.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        What :func:`new_figure` returned.
-    rows, columns : int
-        Size of the grid.
-    **options
-        As ``Figure.add_gridspec`` takes them, such as ``height_ratios``.
-
-    Returns
-    -------
-    list of matplotlib.axes.Axes
-        The panels.
-    """
+    """Return the axes of a grid of panels, row by row, each in house style."""
     grid = figure.add_gridspec(rows, columns, **options)
     found = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
     for axes in found:
@@ -120,48 +87,19 @@ def house_style(axes: Axes) -> None:
 
 
 def letter(axes: Axes, which: str, text: str = "") -> None:
-    """Write the letter of a panel over it, and what it shows.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The panel.
-    which : str
-        Its letter, such as ``"a"``; a panel that the paper does not have is ``"+"``.
-    text : str
-        A few words.
-    """
+    """Write the letter of a panel over it, and what it shows."""
     label = "(+)" if which == "+" else f"({which})"
     axes.set_title(f"{label} {text}".strip(), loc="left", size=9.5, color=INK, weight="semibold" if not text else "normal")
 
 
 def legend(axes: Axes, **options: Any) -> None:
-    """Put the legend of a panel inside it, small and without frame.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The panel.
-    **options
-        As ``Axes.legend`` takes them.
-    """
+    """Put the legend of a panel inside it, small and without frame."""
     small: dict[str, Any] = {"frameon": False, "fontsize": 8, "labelcolor": INK, "handlelength": 2.2, "title_fontsize": 8.5}
     axes.legend(**small | options)
 
 
 def sequence(count: int) -> list[str]:
-    """Return colours for the ascending steps of a parameter, dark to light, told apart by colour-blind readers.
-
-    Parameters
-    ----------
-    count : int
-        Number of steps.
-
-    Returns
-    -------
-    list of str
-        Colours of viridis without its palest end.
-    """
+    """Return colours for the ascending steps of a parameter, dark to light, told apart by colour-blind readers."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -170,18 +108,7 @@ def sequence(count: int) -> list[str]:
 
 
 def power(value: float) -> str:
-    r"""Return a number as text for labels, powers of ten as such.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-
-    Returns
-    -------
-    str
-        Such as ``$10^{-3}$``, ``$3\times10^{-3}$`` or ``0.5``.
-    """
+    r"""Return a number as text for labels, powers of ten as such."""
     if value == 0 or 0.01 < abs(value) < 1000:
         return f"{value:.3g}"
     exponent = math.floor(math.log10(abs(value)) + 1e-9)
@@ -190,21 +117,7 @@ def power(value: float) -> str:
 
 
 def slope(axes: Axes, x: float, y: float, exponent: float, text: str, decades: float = 1.0) -> None:
-    """Draw a triangle that shows the slope of a power law on logarithmic axes.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The panel.
-    x, y : float
-        Its lower left corner, in the data.
-    exponent : float
-        The slope.
-    text : str
-        What to write beside it.
-    decades : float
-        Its length.
-    """
+    """Draw a triangle that shows the slope of a power law on logarithmic axes."""
     far, high = x * 10**decades, y * 10 ** (decades * exponent)
     axes.plot([x, far, far, x], [y, y, high, y], color=GREY, lw=0.9, zorder=1)
     axes.annotate(
@@ -213,15 +126,7 @@ def slope(axes: Axes, x: float, y: float, exponent: float, text: str, decades: f
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture; the same figure gives the same bytes.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    path : pathlib.Path
-        The file, ending in ``.png`` or ``.svg``.
-    """
+    """Write a picture; the same figure gives the same bytes."""
     from matplotlib import rc_context
 
     metadata: dict[str, Any] = {"Date": None} if path.suffix == ".svg" else {"Software": None}

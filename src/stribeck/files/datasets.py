@@ -39,25 +39,7 @@ def import_xarray(what: str = "a dataset") -> Any:
 
 
 def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], attributes: Mapping[str, Any]) -> xarray.Dataset:
-    """Return a dataset whose variables have units and long names.
-
-    Parameters
-    ----------
-    columns, coords : mapping of str to tuple
-        Dimensions, values, unit and long name of each variable.
-    attributes : mapping
-        What belongs to the whole.
-
-    Returns
-    -------
-    xarray.Dataset
-        The dataset.
-
-    Raises
-    ------
-    MissingExtraError
-        If xarray is not installed.
-    """
+    """Return a dataset whose variables have units and long names."""
 
     def described(table: Mapping[str, Column]) -> dict[str, Any]:
         return {
@@ -76,24 +58,7 @@ def listed(values: Sequence[Any]) -> Any:
 
 
 def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
-    """Write a dataset as NetCDF-4.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What to write.
-    path : str or path-like
-        The file, ending in ``.nc``.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If netCDF4 is not installed.
-    """
+    """Write a dataset as NetCDF-4."""
     try:
         import netCDF4  # noqa: F401
     except ImportError:
@@ -106,22 +71,7 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
 
 
 def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
-    """Write a dataset as text: comments, one line of names with units, one line for each point.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What to write; all of it runs along one coordinate.
-    path : str or path-like
-        The file, ending in ``.csv``; ``pandas.read_csv(path, comment="#")`` reads it.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-
-    Raises
-    ------
-    InputError
-        If the dataset has other than one dimension, the file cannot be written, or exists and ``force`` is not given.
-    """
+    """Write a dataset as text: comments, one line of names with units, one line for each point."""
     if len(dataset.sizes) != 1:
         dimensions = ", ".join(map(str, dataset.sizes)) or "none"
         raise InputError(f"a CSV file has one dimension and this dataset has {dimensions}; write NetCDF (.nc) instead.")
@@ -140,17 +90,7 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
 
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
-    """Write a dataset as the ending of ``path`` says: ``.nc`` or ``.csv``.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What to write.
-    path : str or path-like
-        The file.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    """
+    """Write a dataset as the ending of ``path`` says: ``.nc`` or ``.csv``."""
     write = write_csv if str(path).lower().endswith(CSV) else write_netcdf
     write(dataset, path, force=force)
 

@@ -25,24 +25,12 @@ MOST_LINES = 4
 
 @dataclass(frozen=True)
 class Line:
-    """A line that is not empty.
+    """A line that is not empty."""
 
-    Parameters
-    ----------
-    number : int
-        Its row in the file.
-    text : str
-        Its text, without the sign of a comment.
-    comment : bool
-        Whether it began with one.
-    numbers : int
-        How many of its cells are numbers.
-    """
-
-    number: int
-    text: str
-    comment: bool
-    numbers: int
+    number: int  # Its row in the file
+    text: str  # Its text, without the sign of a comment
+    comment: bool  # Whether it began with one
+    numbers: int  # How many of its cells are numbers
 
     @classmethod
     def of(cls, number: int, text: str) -> Self:
@@ -59,42 +47,18 @@ class Line:
 
 @dataclass(frozen=True)
 class Heading:
-    """The lines between text or numbers above and the numbers of a table.
+    """The lines between text or numbers above and the numbers of a table."""
 
-    Parameters
-    ----------
-    at : int
-        Place of the names among the lines.
-    first : int
-        Place of the first line that belongs to the table.
-    below : int
-        Place of the first line below the heading.
-    separator : str
-        What separates the columns; empty for white space.
-    names : tuple of str
-        The names, empty for a column without one.
-    units : tuple of str
-        Units below the names; empty if there are none.
-    labels : tuple of str
-        Names of curves above the names or below them; empty if there are none.
-    known : int
-        Names that the caller knows.
-    end : int
-        Place of the next heading, or the number of lines.
-    rows : int
-        Lines of numbers below it.
-    """
-
-    at: int
-    first: int
-    below: int
-    separator: str
-    names: tuple[str, ...]
-    units: tuple[str, ...] = ()
-    labels: tuple[str, ...] = ()
-    known: int = 0
-    end: int = 0
-    rows: int = 0
+    at: int  # Place of the names among the lines
+    first: int  # Place of the first line that belongs to the table
+    below: int  # Place of the first line below the heading
+    separator: str  # What separates the columns; empty for white space
+    names: tuple[str, ...]  # The names, empty for a column without one
+    units: tuple[str, ...] = ()  # Units below the names; empty if there are none
+    labels: tuple[str, ...] = ()  # Names of curves above the names or below them; empty if there are none
+    known: int = 0  # Names that the caller knows
+    end: int = 0  # Place of the next heading, or the number of lines
+    rows: int = 0  # Lines of numbers below it
 
     @classmethod
     def at_line(cls, lines: Sequence[Line], i: int) -> Self:
@@ -160,20 +124,7 @@ class Heading:
 
 
 def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Heading]:
-    """Return the headings of all tables among lines, from above.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        The lines of a file.
-    knows : callable
-        Whether the caller knows a name.
-
-    Returns
-    -------
-    list of Heading
-        One for each run of rows of numbers below names of columns.
-    """
+    """Return the headings of all tables among lines, from above."""
     found: list[Heading] = []
     stack: list[int] = []
     comments: list[int] = []

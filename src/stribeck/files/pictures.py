@@ -184,24 +184,7 @@ def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
 
 
 def caption_lines(figure: Figure, parts: Sequence[Sequence[str]], notes: Sequence[str], room: float) -> list[tuple[str, str]]:
-    """Return the lines below a picture with their colours, broken as they are measured so that each fits into its room.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        Whose letters they are made of.
-    parts : sequence of sequence of str
-        What was given: each part begins a line, its items stand in a row; they may hold formulas.
-    notes : sequence of str
-        Sentences, each of which begins a line.
-    room : float
-        Width of a line [inch].
-
-    Returns
-    -------
-    list of (str, str)
-        Text and colour of each line.
-    """
+    """Return the lines below a picture with their colours, broken as they are measured so that each fits into its room."""
     probe = figure.text(0.0, 0.0, "", size=8)
 
     def fits(line: str) -> bool:

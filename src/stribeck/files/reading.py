@@ -20,25 +20,7 @@ KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a devi
 
 
 def read_bounded(path: PathLike, largest: int) -> bytes:
-    """Return the content of an ordinary file, or its beginning if it is too large.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-    largest : int
-        Most bytes that are wanted.
-
-    Returns
-    -------
-    bytes
-        All of it; of a larger file ``largest + 1`` bytes, by which the caller sees that it is.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read, or is a directory, a pipe, a socket or a device.
-    """
+    """Return the content of an ordinary file, or its beginning if it is too large."""
     # Without O_NONBLOCK, a pipe that nobody writes to would be waited for in `open`.
     number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:

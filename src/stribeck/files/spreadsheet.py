@@ -37,25 +37,7 @@ _CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
 
 def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int, str]]]:
-    """Return the sheets of a workbook that hold numbers.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The workbook.
-    wanted : str, optional
-        Name of the only sheet to read.
-
-    Returns
-    -------
-    dict of str to list
-        Number and text of each row that holds something, its cells separated by tabs; the sheet with most numbers first.
-
-    Raises
-    ------
-    InputError
-        If the workbook cannot be read, is too large, has no such sheet, or holds no numbers.
-    """
+    """Return the sheets of a workbook that hold numbers."""
     content = content_of(path, LARGEST_WORKBOOK, "a workbook")
     if len(content) > LARGEST_WORKBOOK:
         raise InputError(f"{path} has more than {LARGEST_WORKBOOK} bytes; keep the sheet with the measured rows.")

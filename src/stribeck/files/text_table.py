@@ -50,39 +50,17 @@ _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 @dataclass(frozen=True)
 class TextTable:
-    """The cells of a file, as text.
+    """The cells of a file, as text."""
 
-    Parameters
-    ----------
-    path : str
-        The file.
-    header : tuple of str
-        Names of the columns; empty for a column without a name.
-    rows : tuple of tuple of str
-        The cells, one for each column.
-    numbers : tuple of int
-        Row of the file in which each stands, counted from 1.
-    separator : str
-        What separates the columns, in words.
-    units_row : tuple of str
-        A row of units below the header; empty if there is none.
-    written : tuple of str
-        Names of the columns as the file has them.
-    above : tuple of tuple
-        Number and text of each row above the header.
-    notes : tuple of str
-        What was left out and put together, one sentence each.
-    """
-
-    path: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers: tuple[int, ...]
-    separator: str
-    units_row: tuple[str, ...] = ()
-    written: tuple[str, ...] = ()
-    above: tuple[tuple[int, str], ...] = ()
-    notes: tuple[str, ...] = ()
+    path: str  # The file
+    header: tuple[str, ...]  # Names of the columns; empty for a column without a name
+    rows: tuple[tuple[str, ...], ...]  # The cells, one for each column
+    numbers: tuple[int, ...]  # Row of the file in which each stands, counted from 1
+    separator: str  # What separates the columns, in words
+    units_row: tuple[str, ...] = ()  # A row of units below the header; empty if there is none
+    written: tuple[str, ...] = ()  # Names of the columns as the file has them
+    above: tuple[tuple[int, str], ...] = ()  # Number and text of each row above the header
+    notes: tuple[str, ...] = ()  # What was left out and put together, one sentence each
 
     def unit(self, name: str) -> str:
         """Return the unit of a column: that in its header, or in the row of units."""
@@ -129,32 +107,7 @@ def read_table(
     knows: Callable[[str], bool] = knows_nothing,
     sheet: str | None = None,
 ) -> TextTable:
-    """Return the cells of a file of columns with a header.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        A workbook, or a text file whose columns are separated by tab, semicolon, comma, bar or spaces; ``#`` begins a comment.
-    header_row : int, optional
-        Row of the names of the columns; by default the row of names above most rows of numbers, or the comment there if no
-        other row of names is.
-    expected : str
-        What to say of a file without a header.
-    knows : callable
-        Whether the caller knows a name of a column: a table with two names that are known comes before others.
-    sheet : str, optional
-        Sheet of a workbook; by default the one with known names, of several that with most numbers.
-
-    Returns
-    -------
-    TextTable
-        Header and cells.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, has no header, or a row has another number of cells than the header.
-    """
+    """Return the cells of a file of columns with a header."""
     filled_up = path.suffix.lower() in SPREADSHEETS and path.is_file()
     notes: tuple[str, ...] = ()
     if filled_up:
@@ -217,30 +170,7 @@ def read_table(
 def read_two_columns(
     path: Path, plain: tuple[str, str] | None, with_units: dict[str, str]
 ) -> tuple[Array, tuple[float, float] | None]:
-    """Return the numbers of a file.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        A file with a header, two numbers on each line, and comments after ``#``; commas, semicolons, tabs or spaces separate
-        the numbers, whose decimal sign may be a comma if that is no separator.
-    plain : tuple of str or None
-        Names of the columns where they have no units; None where they need them.
-    with_units : dict of str to str
-        Names of the columns where they have, and the dimension of each.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        The numbers as written.
-    tuple of float or None
-        The SI values of the units, if it has any.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or is no such table; the sentence names line and column.
-    """
+    """Return the numbers of a file."""
     example = ", ".join(f"{name} [{DIMENSIONS[kind].example.split()[1]}]" for name, kind in with_units.items())
     advice = f"the first line must be {show(example)}, with the units of the file"
     if plain is not None:

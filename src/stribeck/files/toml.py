@@ -28,27 +28,7 @@ _SLIPS = {
 
 
 def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
-    """Return the tables of a TOML file.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    kind : str
-        What the file is, for sentences.
-    needed : str
-        The table without which it says nothing.
-
-    Returns
-    -------
-    dict
-        What the file says, at least one entry.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read, is too large, empty or no TOML.
-    """
+    """Return the tables of a TOML file."""
     return parse_toml(content_of(path, LARGEST_TOML, f"a TOML {kind}"), path, kind, needed)
 
 

@@ -30,25 +30,7 @@ class MissingExtraError(InputError, ImportError):
 
 
 def path_of(value: Any, name: str = "path") -> Path:
-    """Return a path that was given as text or path-like; refuse what is none, and a name that no file system takes.
-
-    Parameters
-    ----------
-    value : str or path-like
-        The path.
-    name : str
-        What the argument is called.
-
-    Returns
-    -------
-    pathlib.Path
-        The path, which need not exist.
-
-    Raises
-    ------
-    InputError
-        If it is no path, or one that the system cannot look up, as with a name of 300 letters.
-    """
+    """Return a path that was given as text or path-like; refuse what is none, and a name that no file system takes."""
     try:
         path = Path(value)
     except TypeError:
@@ -63,27 +45,7 @@ def path_of(value: Any, name: str = "path") -> Path:
 
 
 def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Path:
-    """Return where a file shall be written, or refuse a place where it cannot.
-
-    Parameters
-    ----------
-    path : str or path-like
-        Name of the file; a link stands for what it points at.
-    suffixes : collection of str
-        Endings that are known, such as ``".nc"``, in the order to name them.
-    force : bool
-        Whether an existing file may be replaced.
-
-    Returns
-    -------
-    pathlib.Path
-        The file to write.
-
-    Raises
-    ------
-    InputError
-        If the ending is unknown, the file exists and ``force`` is not given, or its folder cannot be written.
-    """
+    """Return where a file shall be written, or refuse a place where it cannot."""
     given = path_of(path)
     if given.suffix.lower() not in suffixes:
         *others, last = suffixes
@@ -121,25 +83,6 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
     """Give a temporary name beside ``path`` to write to, and move it there after success.
 
     Whatever ends the writing, ``path`` then holds its new content whole, or what it held before.
-
-    Parameters
-    ----------
-    path : str or path-like
-        Name of the file.
-    suffixes : collection of str
-        As in :func:`check_writable`.
-    force : bool
-        Whether an existing file may be replaced.
-
-    Yields
-    ------
-    pathlib.Path
-        The temporary name, with the same ending.
-
-    Raises
-    ------
-    InputError
-        As in :func:`check_writable`, or if the writing failed, as on a full disk.
     """
     target = check_writable(path, suffixes, force=force)
     temporary = _beside(target)
@@ -177,21 +120,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def reason_of(problem: BaseException, file: Path | None = None) -> str:
-    """Return what was wrong with a file, in the words of the system.
-
-    Parameters
-    ----------
-    problem : BaseException
-        What was raised.
-    file : pathlib.Path, optional
-        File that could not be written.  Some libraries say "Permission denied" of a full disk: whether it is full is tried
-        out beside it.
-
-    Returns
-    -------
-    str
-        A few words.
-    """
+    """Return what was wrong with a file, in the words of the system."""
     if file is not None and getattr(problem, "errno", None) not in FULL:
         trial = _beside(file)
         try:

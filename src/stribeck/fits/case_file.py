@@ -46,25 +46,7 @@ _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
 
 
 def load_fit_case(data: object, path: PathLike) -> Case:
-    """Read the case file of a fit; say so if it and the data were swapped.
-
-    Parameters
-    ----------
-    data : object
-        What was given as data: the path of a file, or measurements.
-    path : str or path-like
-        The case file.
-
-    Returns
-    -------
-    Case
-        The checked case.
-
-    Raises
-    ------
-    InputError
-        As :func:`stribeck.load_case`; or if the data are a case file and the case file is none.
-    """
+    """Read the case file of a fit; say so if it and the data were swapped."""
     if isinstance(data, str | os.PathLike) and "contact" in _tables(data) and not _tables(path) and Path(path).is_file():
         raise InputError(
             f"{data} and {path} look swapped: {data} is a case file and {path} is not. "
@@ -82,22 +64,7 @@ def _tables(path: PathLike) -> dict[str, Any]:
 
 
 def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
-    """Refuse a fit whose case could not be written afterwards.
-
-    Parameters
-    ----------
-    case : Case
-        The case that the fit begins from.
-    names : sequence of str
-        Inputs to fit.
-    path : str or path-like
-        File that the fitted case is to be written to.
-
-    Raises
-    ------
-    InputError
-        If the case is written in a way that hides a value.
-    """
+    """Refuse a fit whose case could not be written afterwards."""
     contact = case.contact
     known = {name: value for name in names if (value := getattr(contact, name, None))}
     if case.fit.scales_surface and "beta" not in known and "roughness" in known:
@@ -108,30 +75,7 @@ def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
 
 
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:
-    """Write the case of a fit with the fitted values, everything else as it was.
-
-    Parameters
-    ----------
-    fit : Fit
-        The fit, converged.
-    case : Case
-        The case that it began from.
-    path : str or path-like
-        File to write, ending in ``.toml``.
-    force : bool
-        Whether an existing file is replaced.
-
-    Raises
-    ------
-    InputError
-        If the fit did not converge, the file cannot be written, or the case is written in a way that hides its values.
-
-    Notes
-    -----
-    Where the contact law comes from a table ``[surface]``, a fitted roughness scales its ``h_rms``.  Where alpha or beta were
-    free too, or the table has a measured spectrum, it keeps its shape (``shape_only = true``) and the three numbers stand in
-    ``[contact]``.
-    """
+    """Write the case of a fit with the fitted values, everything else as it was."""
     if not fit.converged:
         raise InputError(f"no fitted case is written. {fit.outcome.value}")
     said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
@@ -292,41 +236,13 @@ def _place(name: str) -> tuple[str, str]:
 
 
 def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:
-    """Return a value of a fitted input as short text with its unit.
-
-    Parameters
-    ----------
-    each : FittedInput
-        The input.
-    value : float, optional
-        Another value of it than the fitted one.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        The text.
-    """
+    """Return a value of a fitted input as short text with its unit."""
     value = each.value if value is None else value
     return f"{value:.{digits}g}" if each.is_factor else format_si(value, each.dimension, digits)
 
 
 def format_interval(each: FittedInput, level: float) -> str:
-    """Return an interval of a fitted input in words.
-
-    Parameters
-    ----------
-    each : FittedInput
-        The input.
-    level : float
-        0.68 or 0.95.
-
-    Returns
-    -------
-    str
-        Its ends, or which of them is open.
-    """
+    """Return an interval of a fitted input in words."""
     low, high = each.interval_68 if level < 0.9 else each.interval_95
     if low == 0 and math.isinf(high):
         return "open"

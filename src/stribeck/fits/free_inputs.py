@@ -21,34 +21,16 @@ DEFAULT_FACTOR = 1e3
 
 @dataclass(frozen=True)
 class FreeInput:
-    """An input that is fitted, as the logarithm of a factor on what it starts from.
+    """An input that is fitted, as the logarithm of a factor on what it starts from."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the input of the contact.
-    curve : int or None
-        The curve that has it for itself; None where all share it.
-    start : float
-        Value of factor one, in SI units; 1 where curves that share it have different values.
-    low, high : float
-        Bounds of the logarithm of the factor.
-    prior : tuple of float, or None
-        Mean and standard deviation of that logarithm before the data.
-    is_factor : bool
-        Whether what is fitted is a common factor on values that differ.
-    also : tuple of str
-        Inputs on which the same factor acts.
-    """
-
-    name: str
-    curve: int | None
-    start: float
-    low: float
-    high: float
-    prior: tuple[float, float] | None = None
-    is_factor: bool = False
-    also: tuple[str, ...] = ()
+    name: str  # Name of the input of the contact
+    curve: int | None  # The curve that has it for itself; None where all share it
+    start: float  # Value of factor one, in SI units; 1 where curves that share it have different values
+    low: float  # Bounds of the logarithm of the factor
+    high: float  # Bounds of the logarithm of the factor
+    prior: tuple[float, float] | None = None  # Mean and standard deviation of that logarithm before the data
+    is_factor: bool = False  # Whether what is fitted is a common factor on values that differ
+    also: tuple[str, ...] = ()  # Inputs on which the same factor acts
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -61,29 +43,7 @@ class FreeInput:
 
 
 def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], settings: FitSettings) -> tuple[FreeInput, ...]:
-    """Return the inputs to fit, one for each name, or one for each curve where the settings say so.
-
-    Parameters
-    ----------
-    contact : Contact
-        What the fit starts from.
-    data : Measurements
-        The curves.
-    names : sequence of str
-        Inputs to fit.
-    settings : FitSettings
-        Bounds, priors, and which inputs each curve has for itself.
-
-    Returns
-    -------
-    tuple of FreeInput
-        In the order of ``names`` and of the curves.
-
-    Raises
-    ------
-    InputError
-        If one cannot be told from these data at all, starts at zero, or starts outside its bounds.
-    """
+    """Return the inputs to fit, one for each name, or one for each curve where the settings say so."""
     found = []
     contacts = [contact.replace(**inputs) for inputs in data.inputs]
     for name in names:

@@ -54,24 +54,7 @@ class Unidentifiable:
 def undetermined(
     free: Sequence[FreeInput], labels: Sequence[str], jacobian: Array, prediction: Prediction
 ) -> tuple[Unidentifiable, ...]:
-    """Return the combinations of free inputs that the data do not determine.
-
-    Parameters
-    ----------
-    free : sequence of FreeInput
-        What was fitted.
-    labels : sequence of str
-        Their names in sentences.
-    jacobian : ndarray, shape (n, p)
-        Derivatives of the residuals, in units of the noise, by the logarithms.
-    prediction : Prediction
-        The fitted friction.
-
-    Returns
-    -------
-    tuple of Unidentifiable
-        The worst first; empty where all are determined.
-    """
+    """Return the combinations of free inputs that the data do not determine."""
     _, S, V = np.linalg.svd(jacobian, full_matrices=True)
     S = np.append(S, np.zeros(len(free) - len(S)))
     weak = [k for k in range(len(free)) if S[k] * WIDEST < 1]

@@ -42,39 +42,17 @@ AT_BOUND = 1e-4
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the least squares converged or stopped.
+    """Where the least squares converged or stopped."""
 
-    Parameters
-    ----------
-    theta : ndarray, shape (p,)
-        Logarithms of the factors.
-    value : float
-        q there.
-    residuals : ndarray, shape (n,)
-        Residuals of the data over their errors.
-    jacobian : ndarray, shape (n, p)
-        Their derivatives.
-    prediction : Prediction
-        Friction there.
-    fall : float
-        How far q is above its optimum, by its derivatives.
-    ended : bool
-        Whether the iteration and the scale of the noise came to rest.
-    evaluations : int
-        Predictions that were made.
-    objective : Objective
-        What was minimised, with its final scale.
-    """
-
-    theta: Array
-    value: float
-    residuals: Array
-    jacobian: Array
-    prediction: Prediction
-    fall: float
-    ended: bool
-    evaluations: int
-    objective: Objective
+    theta: Array  # Logarithms of the factors
+    value: float  # q there
+    residuals: Array  # Residuals of the data over their errors
+    jacobian: Array  # Their derivatives
+    prediction: Prediction  # Friction there
+    fall: float  # How far q is above its optimum, by its derivatives
+    ended: bool  # Whether the iteration and the scale of the noise came to rest
+    evaluations: int  # Predictions that were made
+    objective: Objective  # What was minimised, with its final scale
 
     @property
     def distance(self) -> float:
@@ -107,30 +85,6 @@ def minimise(
     """Return the minimum of q near a start, at a given scale of the noise.
 
     Inputs stay at the start along directions that change no residual.
-
-    Parameters
-    ----------
-    goal : Objective
-        What is minimised.
-    start : ndarray, shape (p,)
-        Where to begin.
-    fixed : dict of int to float, optional
-        Free inputs that are held, and where.
-    most : int
-        Predictions allowed.
-    on_step : callable, optional
-        Called with the number of predictions after each.
-    tolerance : float
-        Relative change of q at which the least squares end.
-    flat : float
-        Singular value of the derivatives, over the largest, below which nothing changes along a direction.
-    near : float
-        Square root of the fall of q, by its derivatives at the start, below which the start is returned.
-
-    Returns
-    -------
-    Minimum
-        What was reached; ``converged`` says whether it is the optimum.
     """
     # Imported here because it takes longer than the rest of the package.
     from scipy.optimize import least_squares
@@ -249,18 +203,7 @@ def noise_of(at: Minimum) -> float:
 
 
 def effective_parameters(at: Minimum) -> float:
-    """Return how many free inputs the data determine beside the priors: trace of (J'J + P)^-1 J'J.
-
-    Parameters
-    ----------
-    at : Minimum
-        The fit.
-
-    Returns
-    -------
-    float
-        The number of free inputs without priors, less with them.
-    """
+    """Return how many free inputs the data determine beside the priors: trace of (J'J + P)^-1 J'J."""
     rows, _ = at.objective.priors
     if not len(rows):
         return float(at.jacobian.shape[1])
@@ -269,22 +212,7 @@ def effective_parameters(at: Minimum) -> float:
 
 
 def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | None = None) -> Minimum:
-    """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known.
-
-    Parameters
-    ----------
-    goal : Objective
-        What is minimised; its scale is where that of the noise begins.
-    start : ndarray, shape (p,)
-        Where to begin.
-    on_step : callable, optional
-        Called with the number of predictions after each.
-
-    Returns
-    -------
-    Minimum
-        With residuals in units of the noise.
-    """
+    """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known."""
     found = minimise(goal, start, on_step=on_step)
     count = found.evaluations
     if goal.sigma is not None:

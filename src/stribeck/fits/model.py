@@ -43,42 +43,18 @@ __all__ = ["FrictionModel", "Prediction"]
 
 @dataclass(frozen=True)
 class Prediction:
-    """The friction coefficients of all rows at one set of free inputs.
+    """The friction coefficients of all rows at one set of free inputs."""
 
-    Parameters
-    ----------
-    friction : ndarray, shape (n,)
-        Size of the friction coefficient [-].
-    jacobian : ndarray, shape (n, p)
-        Derivatives by the logarithms of the free inputs [-].
-    contact_share, fluid_share : ndarray, shape (n,)
-        Parts of the friction coefficient that asperities and fluid cause [-].
-    load_share : ndarray, shape (n,)
-        Part of the load on asperities [-].
-    error : ndarray, shape (n,)
-        Estimated absolute error of the friction coefficient [-].
-    """
-
-    friction: Array
-    jacobian: Array
-    contact_share: Array
-    fluid_share: Array
-    load_share: Array
-    error: Array
+    friction: Array  # Size of the friction coefficient [-]
+    jacobian: Array  # Derivatives by the logarithms of the free inputs [-]
+    contact_share: Array  # Parts of the friction coefficient that asperities and fluid cause [-]
+    fluid_share: Array  # Parts of the friction coefficient that asperities and fluid cause [-]
+    load_share: Array  # Part of the load on asperities [-]
+    error: Array  # Estimated absolute error of the friction coefficient [-]
 
 
 class FrictionModel:
-    """Friction of the rows of measured curves, by free inputs.
-
-    Parameters
-    ----------
-    contact : Contact
-        What all curves have in common.
-    data : Measurements
-        The curves.
-    free : sequence of FreeInput
-        What is fitted.
-    """
+    """Friction of the rows of measured curves, by free inputs."""
 
     def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
@@ -177,21 +153,7 @@ class FrictionModel:
         return [*row, *((free == name) + self.rule.exponents.get(name, {}).get(free, 0.0) for name in self.rule.inputs)]
 
     def logs_at(self, curve: Indices, values: Array) -> Array:
-        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors one.
-
-        Parameters
-        ----------
-        curve : ndarray of int, shape (n,)
-            Curve of each place.
-        values : ndarray, shape (n,)
-            Speed, viscosity times speed or Hersey number [SI].
-
-        Returns
-        -------
-        ndarray, shape (n, 4 + inputs)
-            ln of speed group, load group, roughness group, boundary_friction, and beta and what else the friction of the
-            geometry takes; minus infinity where one is zero.
-        """
+        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors one."""
         rows = np.empty((len(self.contacts), 4 + len(self.rule.inputs)))
         for i, contact in enumerate(self.contacts):
             g, others = contact.groups, self.rule.of_contact(contact)
@@ -207,15 +169,7 @@ class FrictionModel:
         return float(self.rule.rubbing(contact.groups, self.rule.of_contact(contact)))
 
     def start(self) -> tuple[Array, Array]:
-        """Return where the curves of a ball begin, and what the fit changes.
-
-        Returns
-        -------
-        ndarray, shape (curves, 3)
-            ln of speed, load and relative roughness of the first row of each; zero for the last of smooth surfaces.
-        ndarray of bool, shape (3,)
-            Which of the three any free input changes.
-        """
+        """Return where the curves of a ball begin, and what the fit changes."""
         exponent = self.contact.groups.scaling.roughness_exponent
         firsts = [int(np.argmax(self.data.curve == curve)) for curve in range(len(self.contacts))]
         logs = self.logs[firsts, :3].copy()
@@ -238,20 +192,7 @@ class FrictionModel:
         )
 
     def read(self, places: Array, definition: Definition) -> Array:
-        """Return the friction of all rows at many places at once, off the atlas, see :func:`in_atlas`.
-
-        Parameters
-        ----------
-        places : ndarray, shape (m, p)
-            Logarithms of the factors on the free inputs, a place in each row.
-        definition : {"balanced", "published"}
-            Definition of the viscous friction.
-
-        Returns
-        -------
-        ndarray, shape (m, n)
-            Friction coefficient [-]; nan in all rows of a place from which one lies outside the box of its table.
-        """
+        """Return the friction of all rows at many places at once, off the atlas, see :func:`in_atlas`."""
         x = np.exp(self.logs + np.einsum("mp,npk->mnk", places, self.exponents[self.data.curve]))
         physics = self.contact.groups.physics
         inside = atlas.covers(Groups(x[..., 0], x[..., 1], x[..., 2], **physics)).all(axis=1)
@@ -265,22 +206,7 @@ class FrictionModel:
         return found
 
     def predict(self, theta: Array, parts_of: PartsOf | Between, at: tuple[Indices, Array] | None = None) -> Prediction:
-        """Return the friction at logarithms of factors.
-
-        Parameters
-        ----------
-        theta : ndarray, shape (p,)
-            Logarithms of the factors on the free inputs.
-        parts_of : callable
-            What gives the states, one of :mod:`stribeck.fits.states`.
-        at : tuple of ndarray, optional
-            Curve and abscissa of other places than the measured rows.
-
-        Returns
-        -------
-        Prediction
-            Friction and derivatives.
-        """
+        """Return the friction at logarithms of factors."""
         curve, values, logs = (self.data.curve, self.data.values, self.logs) if at is None else (*at, self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))

@@ -23,20 +23,7 @@ TIED = 0.95
 
 
 def outcome_of(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:
-    """Return how a fit ended.
-
-    Parameters
-    ----------
-    at : Minimum
-        Where it ended.
-    inputs : sequence of FittedInput
-        The inputs there.
-
-    Returns
-    -------
-    FitOutcome
-        What a reader has to know first.
-    """
+    """Return how a fit ended."""
     if not at.converged:
         return FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
     if any(_implausible(each) for each in inputs):
@@ -52,26 +39,7 @@ def notes_of(
     weak: Sequence[Unidentifiable],
     contacts: Sequence[Contact],
 ) -> list[str]:
-    """Return the sentences on a fit.
-
-    Parameters
-    ----------
-    at : Minimum
-        Where it ended.
-    inputs : sequence of FittedInput
-        The inputs there.
-    correlation, covariance : ndarray, shape (p, p)
-        Of their logarithms.
-    weak : sequence of Unidentifiable
-        What the data do not determine.
-    contacts : sequence of Contact
-        The fitted contact of each curve.
-
-    Returns
-    -------
-    list of str
-        One each.
-    """
+    """Return the sentences on a fit."""
     notes = []
     for each in inputs:
         if each.at_bound:

@@ -28,30 +28,14 @@ CAUCHY = 2.385
 
 @dataclass(frozen=True)
 class Objective:
-    """What a fit minimises, for one way to obtain states and one scale of the noise.
+    """What a fit minimises, for one way to obtain states and one scale of the noise."""
 
-    Parameters
-    ----------
-    model : FrictionModel
-        Predicts the friction of the rows.
-    parts_of : callable
-        What gives the states.
-    sigma : ndarray, shape (n,), or None
-        Known standard errors: absolute, or relative where ``logarithmic``; None where only their ratio is known.
-    logarithmic : bool
-        Whether residuals are of the logarithm of friction.
-    robust : bool
-        Whether the loss is the robust one.
-    scale : float
-        What the residuals are divided by: the noise where its size comes from the residuals, else 1.
-    """
-
-    model: FrictionModel
-    parts_of: PartsOf | Between
+    model: FrictionModel  # Predicts the friction of the rows
+    parts_of: PartsOf | Between  # What gives the states
     sigma: Array | None
-    logarithmic: bool
-    robust: bool
-    scale: float = 1.0
+    logarithmic: bool  # Whether residuals are of the logarithm of friction
+    robust: bool  # Whether the loss is the robust one
+    scale: float = 1.0  # What the residuals are divided by: the noise where its size comes from the residuals, else 1
 
     def residuals(self, theta: Array) -> tuple[Array, Array, Prediction]:
         """Return the residuals of the data, their derivatives, and the prediction they come from."""
@@ -104,24 +88,7 @@ class Objective:
 
 
 def objective(model: FrictionModel, parts_of: PartsOf | Between, settings: FitSettings, robust: bool) -> Objective:
-    """Return the objective that the data and the settings ask for.
-
-    Parameters
-    ----------
-    model : FrictionModel
-        Predicts the rows.
-    parts_of : callable
-        What gives the states.
-    settings : FitSettings
-        What is known of the noise.
-    robust : bool
-        Whether the loss is the robust one.
-
-    Returns
-    -------
-    Objective
-        With scale 1.
-    """
+    """Return the objective that the data and the settings ask for."""
     data = model.data
     if data.error is not None:
         return Objective(model, parts_of, data.error, False, robust)

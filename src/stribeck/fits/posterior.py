@@ -55,29 +55,7 @@ class Posterior:
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
-    """Draw from the posterior of a fit whose contact the atlas covers.
-
-    Parameters
-    ----------
-    fit : Fit
-        The fit, converged.
-    steps : int
-        Steps of each walker, of which the first fifth is left out.
-    on_step : callable, optional
-        ``on_step(done, steps)`` is called after each step.
-
-    Returns
-    -------
-    Posterior
-        Draws, intervals, and whether the chain is long enough.
-
-    Raises
-    ------
-    MissingExtraError
-        If emcee is not installed.
-    InputError
-        If the fit did not converge, its loss is robust, the atlas has no table for its contact, or ``steps`` is below 100.
-    """
+    """Draw from the posterior of a fit whose contact the atlas covers."""
     try:
         import emcee
     except ImportError:

@@ -59,31 +59,7 @@ class Ends:
 def profile_ends(
     at: Minimum, i: int, covariance: Array, thresholds: list[float], on_point: Callable[[], object] | None = None
 ) -> list[Ends]:
-    """Return the intervals of one free input.
-
-    Parameters
-    ----------
-    at : Minimum
-        The fit.
-    i : int
-        Number of the free input.
-    covariance : ndarray, shape (p, p)
-        Covariance of the logarithms, which predicts how the others follow.
-    thresholds : list of float
-        How much q may rise, ascending, one for each interval.
-    on_point : callable, optional
-        Called after each point of the profile.
-
-    Returns
-    -------
-    list of Ends
-        In the order of the thresholds.
-
-    Raises
-    ------
-    BetterMinimumError
-        If the profile leads below the fit it began from.
-    """
+    """Return the intervals of one free input."""
     sides = [_side(at, i, sign, covariance, thresholds, on_point) for sign in (-1.0, 1.0)]
     return [Ends(low, high) for low, high in zip(*sides, strict=True)]
 

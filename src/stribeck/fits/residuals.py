@@ -66,22 +66,7 @@ def excess_of(chi_squared: float, degrees_of_freedom: float) -> float:
 
 
 def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Quality:
-    """Return what the residuals of a fit say about it.
-
-    Parameters
-    ----------
-    at : Minimum
-        The fit.
-    curve : ndarray of int, shape (n,)
-        Curve of each row; rows ascend along each.
-    degrees_of_freedom : float
-        Rows less free inputs.
-
-    Returns
-    -------
-    Quality
-        Sizes, probabilities and sentences.
-    """
+    """Return what the residuals of a fit say about it."""
     from scipy.stats import chi2
 
     r, known = at.residuals, at.objective.sigma is not None

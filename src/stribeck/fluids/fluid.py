@@ -43,18 +43,10 @@ class Slopes(NamedTuple):
 
 
 class Fall(NamedTuple):
-    """How the pressure of a film falls off far away, for meshes.
+    """How the pressure of a film falls off far away, for meshes."""
 
-    Attributes
-    ----------
-    plateau : float
-        Distance beyond which the viscosity is constant [a].
-    broken : bool
-        Whether it falls as a broken power of the distance.
-    """
-
-    plateau: float = 0.0
-    broken: bool = False
+    plateau: float = 0.0  # Distance beyond which the viscosity is constant [a]
+    broken: bool = False  # Whether it falls as a broken power of the distance
 
 
 class Film(Protocol):

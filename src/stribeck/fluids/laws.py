@@ -16,31 +16,14 @@ from stribeck._types import Array
 
 
 class FilmUnits(NamedTuple):
-    r"""What the numbers of a law are divided by to be in Hertz units.
+    r"""What the numbers of a law are divided by to be in Hertz units."""
 
-    Attributes
-    ----------
-    pressure : float
-        :math:`p_\mathrm{Hz}` [Pa].
-    time : float
-        :math:`6 \eta_0 a/(p_\mathrm{Hz} u_\mathrm{Hz})` [s]: a relaxation time over it is the Weissenberg number
-        at lambda = 1.
-    gap : float
-        :math:`u_\mathrm{Hz}` [m].
-    viscosity : float
-        :math:`\eta_0`, the viscosity at ambient pressure and low rate [Pa s].
-    decay_length : float
-        :math:`h_\mathrm{rms}/\alpha`, which the roughness is where :math:`\alpha = 1` [m].
-    alpha : float, optional
-        :math:`\alpha` of the contact; None where a law must know it itself.
-    """
-
-    pressure: float
+    pressure: float  # `p_\mathrm{Hz}` [Pa]
     time: float
-    gap: float
-    viscosity: float
-    decay_length: float = 0.0
-    alpha: float | None = None
+    gap: float  # `u_\mathrm{Hz}` [m]
+    viscosity: float  # `\eta_0`, the viscosity at ambient pressure and low rate [Pa s]
+    decay_length: float = 0.0  # `h_\mathrm{rms}/\alpha`, which the roughness is where `\alpha = 1` [m]
+    alpha: float | None = None  # `\alpha` of the contact; None where a law must know it itself
 
     @property
     def stress(self) -> float:

@@ -59,17 +59,7 @@ SIDES = np.array([[-0.5], [0.5]])
 
 
 def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | None = None) -> Profile:
-    """Return the flow with the integrals ``r_0`` and ``r_1``, both of shape (n,), not both zero.
-
-    Parameters
-    ----------
-    law : RateLaw
-        The law.
-    r_0, r_1 : ndarray, shape (n,)
-        Integrals of the rate.
-    start : pair of ndarray, optional
-        Wall rates to start from.
-    """
+    """Return the flow with the integrals ``r_0`` and ``r_1``, both of shape (n,), not both zero."""
     closed = law.across(r_0, r_1, start)
     if closed is not None:
         return closed

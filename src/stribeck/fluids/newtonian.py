@@ -63,23 +63,12 @@ class Newtonian:
 
     Viscosity :math:`\eta` and density :math:`\rho` are relative to those at ambient pressure; :math:`S = \sigma \phi_s` and
     :math:`\phi_x` are the flow factors of rough surfaces.
-
-    Parameters
-    ----------
-    viscosity : ViscosityLaw
-        Viscosity as a function of pressure.
-    density : DensityLaw
-        Density as a function of pressure.
-    flow : FlowFactors
-        Of rough surfaces.
-    slide : float
-        Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``.
     """
 
-    viscosity: ViscosityLaw = Constant()
-    density: DensityLaw = Incompressible()
-    flow: FlowFactors = Smooth()
-    slide: float = 1.0
+    viscosity: ViscosityLaw = Constant()  # Viscosity as a function of pressure
+    density: DensityLaw = Incompressible()  # Density as a function of pressure
+    flow: FlowFactors = Smooth()  # Of rough surfaces
+    slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     is_smooth: bool = field(init=False, repr=False, compare=False)
     is_plain: bool = field(init=False, repr=False, compare=False)
@@ -235,18 +224,6 @@ def flux_gap(gap: Array, weights: Array) -> float:
     r"""Return the flux gap of a given film.
 
     .. math:: h^* = \frac{\int h^{-2} dx}{\int h^{-3} dx}
-
-    Parameters
-    ----------
-    gap : ndarray, shape (n,)
-        Positive gap at the nodes of a mesh [u_Hz].
-    weights : ndarray, shape (n,)
-        Weights of the integral over the whole line.
-
-    Returns
-    -------
-    float
-        The gap h* at which the pressure gradient vanishes [u_Hz]; follows from p_f(+-inf) = 0.
     """
     minimum = gap.min()
     scaled = minimum / gap

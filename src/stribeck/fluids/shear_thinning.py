@@ -64,32 +64,13 @@ class _Local(NamedTuple):
 
 @dataclass(frozen=True)
 class ShearThinning:
-    """The fluid whose viscosity falls with the shear rate.
+    """The fluid whose viscosity falls with the shear rate."""
 
-    Parameters
-    ----------
-    law : RateLaw
-        Stress as a function of the rate, in Hertz units.
-    viscosity : ViscosityLaw
-        Viscosity at low rates as a function of pressure.
-    density : DensityLaw
-        Density as a function of pressure.
-    slide : float
-        Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``.
-    speed : float or ndarray
-        Speed group at which the film is looked at, see :meth:`at`.
-
-    Notes
-    -----
-    The local equations are solved to 1e-13, from the last solution on as many nodes where there is one, at whatever speed;
-    the answer does not depend on it but by rounding.
-    """
-
-    law: RateLaw
-    viscosity: ViscosityLaw = Constant()
-    density: DensityLaw = Incompressible()
-    slide: float = 1.0
-    speed: Numbers = field(default=1.0, compare=False)
+    law: RateLaw  # Stress as a function of the rate, in Hertz units
+    viscosity: ViscosityLaw = Constant()  # Viscosity at low rates as a function of pressure
+    density: DensityLaw = Incompressible()  # Density as a function of pressure
+    slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
+    speed: Numbers = field(default=1.0, compare=False)  # Speed group at which the film is looked at, see :meth:`at`
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     _known: dict[tuple[int, ...], _Local] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = True

@@ -18,19 +18,11 @@ __all__ = ["Cells"]
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Functions on equal cells side by side; beyond the ends they are those at the ends.
+    """Functions on equal cells side by side; beyond the ends they are those at the ends."""
 
-    Attributes
-    ----------
-    start, width : float
-        Where the first cell begins, and the width of each.
-    coefficients : ndarray, shape (terms, ..., cells)
-        Of powers of the place in a cell, 0 to 1.
-    """
-
-    start: float
-    width: float
-    coefficients: Array
+    start: float  # Where the first cell begins, and the width of each
+    width: float  # Where the first cell begins, and the width of each
+    coefficients: Array  # Of powers of the place in a cell, 0 to 1
 
     @classmethod
     def of(cls, function: Callable[[Array], Array], start: float, end: float, cells: int, terms: int) -> Cells:

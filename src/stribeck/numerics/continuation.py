@@ -36,43 +36,15 @@ S = TypeVar("S", bound=State)
 
 @dataclass(frozen=True, eq=False)
 class Path(Generic[S]):
-    """The points that a march accepted, in its order, and how it ended.
+    """The points that a march accepted, in its order, and how it ended."""
 
-    Attributes
-    ----------
-    coordinates : tuple of float
-        Where the accepted states lie, every target that was reached among them exactly.
-    states : tuple
-        The accepted states.
-    outcome : Outcome
-        CONVERGED at the end asked for, PATH_LOST, INTERRUPTED, or that of the first state if this failed.
-    failure : state or None
-        The last state that failed; where the path was lost, its outcome says why.
-    """
-
-    coordinates: tuple[float, ...]
-    states: tuple[S, ...]
-    outcome: Outcome
-    failure: S | None
+    coordinates: tuple[float, ...]  # Where the accepted states lie, every target that was reached among them exactly
+    states: tuple[S, ...]  # The accepted states
+    outcome: Outcome  # CONVERGED at the end asked for, PATH_LOST, INTERRUPTED, or that of the first state if this failed
+    failure: S | None  # The last state that failed; where the path was lost, its outcome says why
 
     def at(self, coordinate: float) -> S:
-        """Return the state recorded at exactly this coordinate.
-
-        Parameters
-        ----------
-        coordinate : float
-            A coordinate of the path, for example a target.
-
-        Returns
-        -------
-        state
-            The state there.
-
-        Raises
-        ------
-        ValueError
-            If the path holds no point there.
-        """
+        """Return the state recorded at exactly this coordinate."""
         try:
             return self.states[self.coordinates.index(coordinate)]
         except ValueError:
@@ -81,23 +53,13 @@ class Path(Generic[S]):
 
 @dataclass(frozen=True)
 class Steps:
-    """How long the steps of a march are.
+    """How long the steps of a march are."""
 
-    Attributes
-    ----------
-    first, longest, shortest : float
-        Lengths of the first, the longest and the shortest step, all > 0.
-    order : int
-        Degree of the prediction: the corrector sees at most ``order + 1`` points.
-    aim : float
-        Effort at which the step length is kept; two less doubles it, two more halves it.
-    """
-
-    first: float
-    longest: float
-    shortest: float
-    order: int = 3
-    aim: float = 4
+    first: float  # Lengths of the first, the longest and the shortest step, all > 0
+    longest: float  # Lengths of the first, the longest and the shortest step, all > 0
+    shortest: float  # Lengths of the first, the longest and the shortest step, all > 0
+    order: int = 3  # Degree of the prediction: the corrector sees at most `order + 1` points
+    aim: float = 4  # Effort at which the step length is kept; two less doubles it, two more halves it
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not in order."""
@@ -118,40 +80,7 @@ def march(
     history: Sequence[tuple[float, S]] = (),
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
-    """Follow states from one coordinate to another in steps that adapt to the effort of the corrector.
-
-    Parameters
-    ----------
-    correct : callable
-        ``correct(s, history)`` returns the state at s, with attributes ``outcome`` and ``effort``, or None.
-        It does its own prediction from ``history``, the last accepted (coordinate, state) pairs, latest
-        last, empty at the start (see :func:`extrapolation_weights`).
-    start, stop : float
-        Ends of the path, in either direction.
-    steps : Steps
-        Their lengths.
-    targets : iterable of float, optional
-        Coordinates between the ends to be met exactly, besides the ends.
-    history : sequence of (float, state), optional
-        Points already known, the last of them at ``start``, which is then not solved again.
-    on_point : callable, optional
-        ``on_point(s, state)`` is called after each accepted point, for progress.
-
-    Returns
-    -------
-    Path
-        All accepted points, also if the path was lost or the user interrupted it.
-
-    Raises
-    ------
-    ValueError
-        If the ends, the targets or the history do not fit together.
-
-    Notes
-    -----
-    A step that fails is tried again at half its length, from the same point, until it is shorter than the shortest; the next
-    step after a failure does not grow. Before a target the step is halved rather than leave a remnant.
-    """
+    """Follow states from one coordinate to another in steps that adapt to the effort of the corrector."""
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise ValueError(f"start = {start!r}, stop = {stop!r}; both must be finite")
     if history and history[-1][0] != start:
@@ -210,18 +139,6 @@ def extrapolation_weights(coordinates: npt.ArrayLike, s: float) -> Array:
     r"""Give the weights of the polynomial through given points, evaluated at s.
 
     .. math:: w_i = \prod_{j \ne i} \frac{s - s_j}{s_i - s_j}, \qquad x(s) \approx \sum_i w_i \, x(s_i)
-
-    Parameters
-    ----------
-    coordinates : array_like, shape (m,)
-        Distinct coordinates of the points.
-    s : float
-        Where to evaluate.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        The weights; their sum is one.
     """
     c = np.asarray(coordinates, dtype=np.float64)
     others = ~np.eye(c.size, dtype=bool)

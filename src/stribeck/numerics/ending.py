@@ -13,13 +13,7 @@ _WATCH: ContextVar[Callable[[], object] | None] = ContextVar("watch", default=No
 
 @contextmanager
 def ended_by(watch: Callable[[], object]) -> Iterator[None]:
-    """Let all iterations of this thread call ``watch`` at each step.
-
-    Parameters
-    ----------
-    watch : callable
-        Called without arguments; what it raises ends the work and reaches the caller.
-    """
+    """Let all iterations of this thread call ``watch`` at each step."""
     before = _WATCH.set(watch)
     try:
         yield

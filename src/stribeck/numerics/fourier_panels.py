@@ -70,24 +70,12 @@ def radau(degree: int) -> Rule:
 
 @dataclass(frozen=True, eq=False)
 class PolarMesh:
-    """Panels in the radius times cosines of the angle.
+    """Panels in the radius times cosines of the angle."""
 
-    Parameters
-    ----------
-    edges : ndarray, shape (panels + 1,)
-        Radii at which panels begin and end, from 0 to the rim.
-    log_from : int
-        Index of the first panel whose polynomials are in the logarithm of the radius, >= 1.
-    degree : int
-        Degree of the polynomials.
-    modes : int
-        Number of angles, and of cosines.
-    """
-
-    edges: Array
-    log_from: int
-    degree: int
-    modes: int
+    edges: Array  # Radii at which panels begin and end, from 0 to the rim
+    log_from: int  # Index of the first panel whose polynomials are in the logarithm of the radius, >= 1
+    degree: int  # Degree of the polynomials
+    modes: int  # Number of angles, and of cosines
 
     @property
     def panels(self) -> int:

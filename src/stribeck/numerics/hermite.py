@@ -39,20 +39,7 @@ def _sums(order: int) -> Array:
 
 
 def hermite_weights(order: int, tau: Array) -> tuple[Array, Array]:
-    """Return what the coefficients of both ends are multiplied by, on an interval of length one.
-
-    Parameters
-    ----------
-    order : int
-        K, the highest order that both ends have, at least 0.
-    tau : ndarray, shape (n,)
-        Places, 0 to 1.
-
-    Returns
-    -------
-    tuple of ndarray, shape (n, K + 1)
-        For the coefficients of the left and of the right end.
-    """
+    """Return what the coefficients of both ends are multiplied by, on an interval of length one."""
     powers = np.arange(order + 1)
     sums = _sums(order).T
     left = (tau[:, None] ** powers @ sums) * (1 - tau[:, None]) ** (order + 1)
@@ -87,23 +74,7 @@ def _highest_orders(order: int) -> Array:
 
 
 def missed_by(order: int, ends: Array, rate: float) -> Array:
-    r"""Return by how much a polynomial is wrong, over :math:`(\tau (1 - \tau))^K`: its change by the highest order.
-
-    Parameters
-    ----------
-    order : int
-        K.
-    ends : ndarray, shape (2 K + 2, n)
-        Coefficients at both ends, one under the other, on an interval of length one.
-    rate : float
-        Change by an order over that by the order before, both divided so, as far as is known: where the last one vanishes by
-        chance, the one before counts so much.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        For each column.
-    """
+    r"""Return by how much a polynomial is wrong, over :math:`(\tau (1 - \tau))^K`: its change by the highest order."""
     if order < 2:
         return np.abs(_highest_order(order) @ ends).max(axis=0) if order else np.zeros(ends.shape[1])
     found = np.abs(_highest_orders(order) @ ends)

@@ -18,42 +18,15 @@ Apply = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """The solution of a linear system, how many products it took, and how much of the right-hand side is left.
+    """The solution of a linear system, how many products it took, and how much of the right-hand side is left."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (n,)
-        The solution.
-    steps : int
-        Products with the matrix.
-    left : float
-        Norm of the preconditioned residual over that of the preconditioned right-hand side; infinite if that is not finite.
-    """
-
-    x: Array
-    steps: int
+    x: Array  # The solution
+    steps: int  # Products with the matrix
     left: float
 
 
 def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, max_steps: int) -> Solved:
-    """Return x with ``A x = right`` but for ``tolerance``, both sides preconditioned.
-
-    Parameters
-    ----------
-    product, precondition : callable
-        x -> A x, and r -> about A^-1 r.
-    right : ndarray, shape (n,)
-        Right-hand side.
-    tolerance : float
-        Where to stop, > 0.
-    max_steps : int
-        Largest number of products; there is no restart.
-
-    Returns
-    -------
-    Solved
-        Also if the tolerance was not reached.
-    """
+    """Return x with ``A x = right`` but for ``tolerance``, both sides preconditioned."""
     start = precondition(right)
     size = float(np.sqrt(start @ start))
     if size == 0.0 or not np.isfinite(size):

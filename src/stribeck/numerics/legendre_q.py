@@ -24,22 +24,7 @@ which is 1e-4 or less."""
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
-    r"""Return :math:`Q_{m-1/2}(\chi)` for ``m < count``.
-
-    Parameters
-    ----------
-    radius, source : ndarray, shape (n,)
-        The two radii, > 0.
-    difference : ndarray, shape (n,)
-        Their difference, free of cancellation, not zero.
-    count : int
-        Number of angular modes, >= 1.
-
-    Returns
-    -------
-    ndarray, shape (count, n)
-        The functions.
-    """
+    r"""Return :math:`Q_{m-1/2}(\chi)` for ``m < count``."""
     ratio = np.abs(difference) / np.sqrt(radius * source)  # 2 sinh(xi/2)
     excess = 0.5 * ratio * ratio  # chi - 1
     complement = (difference / (radius + source)) ** 2

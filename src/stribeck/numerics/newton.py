@@ -82,24 +82,10 @@ class Problem(Protocol):
 
 @dataclass(frozen=True)
 class StepControl:
-    """When the iteration ends, and when it keeps an inverse.
+    """When the iteration ends, and when it keeps an inverse."""
 
-    Attributes
-    ----------
-    tolerance : float
-        Size of the error at which the iteration ends, > 0.
-    max_steps : int
-        Largest number of steps, >= 1.
-    chord : float or None
-        Take a step with the last inverse if it is at most this fraction of the step before it, in (0, 1);
-        0.1 is a good value. None takes such a step only to end the iteration.
-    monotone : bool
-        Halve each Newton step until the step with its inverse behind it is shorter in the mean: where F is a small power
-        of an unknown, full steps go to and fro.
-    """
-
-    tolerance: float = 1e-10
-    max_steps: int = 50
+    tolerance: float = 1e-10  # Size of the error at which the iteration ends, > 0
+    max_steps: int = 50  # Largest number of steps, >= 1
     chord: float | None = None
     monotone: bool = False
 
@@ -141,41 +127,18 @@ class LU:
 
 
 def relative_size(x: Array, dx: Array) -> float:
-    r"""Size of a step relative to the state, :math:`\max|\Delta x| / (1 + \max|x|)`.
-
-    Parameters
-    ----------
-    x, dx : ndarray, shape (n,)
-        State and step.
-
-    Returns
-    -------
-    float
-        The default ``size`` of :func:`root_find`.
-    """
+    r"""Size of a step relative to the state, :math:`\max|\Delta x| / (1 + \max|x|)`."""
     return float(np.abs(dx).max() / (1.0 + np.abs(x).max()))
 
 
 @dataclass(frozen=True, eq=False)
 class Dense:
-    """The problem of plain functions, its Jacobian a dense matrix.
+    """The problem of plain functions, its Jacobian a dense matrix."""
 
-    Attributes
-    ----------
-    function : callable
-        ``function(x)`` returns F, shape (n,).
-    jacobian : callable
-        ``jacobian(x)`` returns dF/dx, shape (n, n).
-    fraction : callable, optional
-        ``fraction(x, dx)`` returns the longest admissible fraction of a step; all of it by default.
-    step_size : callable
-        ``step_size(x, dx)`` returns the size of a step.
-    """
-
-    function: Callable[[Array], Array]
-    jacobian: Callable[[Array], Array]
+    function: Callable[[Array], Array]  # `function(x)` returns F, shape (n,)
+    jacobian: Callable[[Array], Array]  # `jacobian(x)` returns dF/dx, shape (n, n)
     fraction: Callable[[Array, Array], float] | None = None
-    step_size: Callable[[Array, Array], float] = relative_size
+    step_size: Callable[[Array, Array], float] = relative_size  # `step_size(x, dx)` returns the size of a step
 
     def residual(self, x: Array) -> Array:
         """Return F(x); refuse one of another shape than x."""
@@ -206,36 +169,16 @@ class Dense:
 
 @dataclass(frozen=True, eq=False)
 class Root:
-    """What :func:`root_find` returns.
+    """What :func:`root_find` returns."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (n,)
-        The root, or the last iterate with a finite residual if the outcome is a failure.
-    outcome : Outcome
-        How the iteration ended.
-    steps : int
-        Steps taken, Newton and chord steps together.
-    factorisations : int
-        Inverses made: the cost of the root.
-    last_step : float
-        Size of the last undamped step; nan before the first.
-    contraction : float
-        Size of the last step over that of the one before it; nan with fewer than two.
-    residual : ndarray, shape (n,), or None
-        The residual at ``x``; None if it was not evaluated there.
-    inverse : Inverse or None
-        The last one; None if none could be made.
-    """
-
-    x: Array
-    outcome: Outcome
-    steps: int
-    factorisations: int
-    last_step: float
-    contraction: float
-    residual: Array | None
-    inverse: Inverse | None
+    x: Array  # The root, or the last iterate with a finite residual if the outcome is a failure
+    outcome: Outcome  # How the iteration ended
+    steps: int  # Steps taken, Newton and chord steps together
+    factorisations: int  # Inverses made: the cost of the root
+    last_step: float  # Size of the last undamped step; nan before the first
+    contraction: float  # Size of the last step over that of the one before it; nan with fewer than two
+    residual: Array | None  # The residual at `x`; None if it was not evaluated there
+    inverse: Inverse | None  # The last one; None if none could be made
 
     @property
     def effort(self) -> int:
@@ -244,40 +187,7 @@ class Root:
 
 
 def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | None = None, kept: Inverse | None = None) -> Root:
-    r"""Find x with F(x) = 0 by damped Newton steps.
-
-    Parameters
-    ----------
-    problem : Problem
-        Residual, inverse Jacobian, units, admissible fraction and size of steps.
-    start : array_like, shape (n,)
-        First iterate; not written to.
-    control : StepControl, optional
-        Tolerance, largest number of steps, use of kept inverses.
-    kept : Inverse, optional
-        That of a nearby state (``Root.inverse`` of a neighbour) for the first step; needs ``control.chord``.
-
-    Returns
-    -------
-    Root
-        With its :class:`Outcome`; a failure is returned, not raised.
-
-    Raises
-    ------
-    ValueError
-        If the start is no vector.
-
-    Notes
-    -----
-    The iteration ends when an undamped step is at most the tolerance, that step being taken: a Newton step,
-    or a chord step at most half as long as the step before it. So the error left is below the tolerance
-    (``test_newton.py::test_the_error_left_is_below_the_tolerance``).
-
-    A trial point at which F is not finite is approached by halving the step. Newton steps that are small but no
-    longer contract end the iteration as ROUNDING, with the best state that double precision gives.
-
-    Floating-point warnings are silenced during the call: a value that is not finite shows in the outcome.
-    """
+    r"""Find x with F(x) = 0 by damped Newton steps."""
     x = np.array(start, dtype=np.float64)
     if x.ndim != 1 or x.size == 0:
         raise ValueError(f"start has shape {x.shape}; it must be one-dimensional and not empty")
@@ -371,22 +281,7 @@ def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: fl
 
 
 def root_between(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float | None:
-    """Return where a function vanishes between two places at which its signs differ, by inverse interpolation and bisection.
-
-    Parameters
-    ----------
-    function : callable
-        Of one number, continuous.
-    low, high : float
-        The two places.
-    tolerance : float
-        Absolute change of the place at which the search ends.
-
-    Returns
-    -------
-    float or None
-        The place; None where the signs are the same.
-    """
+    """Return a zero between two places of unlike sign, by inverse interpolation and bisection."""
     places, values = [low, high], [function(low), function(high)]
     if 0.0 in values:
         return places[values.index(0.0)]

@@ -119,28 +119,12 @@ def towards_infinity(order: int) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Panels on the real line, closed at infinity.
+    """Panels on the real line, closed at infinity."""
 
-    Parameters
-    ----------
-    edges : ndarray, shape (panels,)
-        Edges of the panels in ``x``, ascending, from ``-X`` to ``X`` [half-width of the Hertz contact].
-    order : int
-        Nodes on each panel, even (so that no node lies at infinity).
-    scale : float
-        Length on which the fields vary in the middle; gaps are interpolated over ``scale**2 + x**2``.
-    restart : float
-        Edge beyond zero where a field that ends at zero begins anew; infinite where it does not.
-
-    Notes
-    -----
-    Nodes are ordered panel by panel from left to right; those of the panel through infinity come last.
-    """
-
-    edges: Array
-    order: int
-    scale: float = 1.0
-    restart: float = math.inf
+    edges: Array  # Edges of the panels in `x`, ascending, from `-X` to `X` [half-width of the Hertz contact]
+    order: int  # Nodes on each panel, even (so that no node lies at infinity)
+    scale: float = 1.0  # Length on which the fields vary in the middle; gaps are interpolated over `scale**2 + x**2`
+    restart: float = math.inf  # Edge beyond zero where a field that ends at zero begins anew; infinite where it does not
 
     @property
     def panels(self) -> int:
@@ -318,41 +302,6 @@ def adapt(
 
     Panels are halved until each resolves them; then they may be laid anew, as long as the tails that halving left allow.  The
     fields are not looked at again: they are often known by polynomials on other panels, with kinks where these end.
-
-    Parameters
-    ----------
-    fields : callable
-        ``fields(x, half_widths, stretch)`` with ``x`` of shape (panels, order) and the half-widths of the panels, shape
-        (panels,), returns the fields there, shape (number, panels, order), each scaled so that ``tolerance`` is the size
-        that may be neglected. ``stretch``, of the shape of ``x``, is one but on the panel through infinity, where it is by
-        how much dx/dt grows towards it: what is integrated over x has to be multiplied by it.
-    scale, reach : float
-        Width of the coarsest panels and the smallest half-width of their box [half-width of the Hertz contact].
-    order : int
-        Nodes on each panel.
-    tolerance : float
-        Legendre tail of the fields that halved panels have at most.  Panels laid anew have up to four times that at tolerances
-        up to 1e-5 (3.4 times was found, on 388 peaks), and more at cruder ones with many nodes, where a tail does not yet go
-        with a power of the length (36 times, at 8e-4 with 16 nodes).
-    start : Mesh, optional
-        Panels to begin with, instead of the coarsest.
-    anew : bool
-        Whether the panels are laid anew.
-    places : ndarray
-        Edges besides zero, where the fields have kinks: panels laid anew would hide these in longer ones.
-    shortest : callable, optional
-        Panels around ``x`` of at most this length are not halved: fields that are known by polynomials jump where their panels
-        end, and no panel is short enough for a jump.
-
-    Returns
-    -------
-    Mesh
-        Its panels.
-
-    Raises
-    ------
-    MeshTooLargeError
-        If more than :data:`MAX_PANELS` panels are needed.
     """
     nodes = reference(order).nodes
 

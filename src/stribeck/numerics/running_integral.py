@@ -24,18 +24,9 @@ from stribeck.quantities.lazy import cached_property
 
 @dataclass(frozen=True, eq=False)
 class RunningIntegral:
-    """The integral from infinity on a mesh.
+    """The integral from infinity on a mesh."""
 
-    Attributes
-    ----------
-    mesh : Mesh
-        The panels.
-    restart : float
-        Edge at which the integral from plus infinity ends: zero, or beyond it where there is a gap; infinite where that
-        integral does not exist.
-    """
-
-    mesh: Mesh
+    mesh: Mesh  # The panels
     restart: float = 0.0
 
     @property
@@ -150,18 +141,10 @@ class RunningIntegral:
 
 @dataclass(frozen=True, eq=False)
 class Volterra:
-    """The solution ``q = (I - A f)^-1 A v`` of ``q = A (v + f q)``, for one nodal factor f.
+    """The solution ``q = (I - A f)^-1 A v`` of ``q = A (v + f q)``, for one nodal factor f."""
 
-    Attributes
-    ----------
-    integral : RunningIntegral
-        A.
-    factor : ndarray, shape (size,)
-        f at the nodes.
-    """
-
-    integral: RunningIntegral
-    factor: Array
+    integral: RunningIntegral  # A
+    factor: Array  # f at the nodes
 
     @cached_property
     def _factor(self) -> Array:

@@ -24,15 +24,9 @@ NUGGET = 1e-8
 
 @dataclass(eq=False)
 class Scattered:
-    """Several functions of the same m variables, known at some places.
+    """Several functions of the same m variables, known at some places."""
 
-    Parameters
-    ----------
-    lengths : ndarray, shape (m,)
-        Distances over which they change by about their own size.
-    """
-
-    lengths: Array
+    lengths: Array  # Distances over which they change by about their own size
     _places: list[Array] = field(default_factory=list)
     _data: list[Array] = field(default_factory=list)
     _inverse: Array = field(default_factory=lambda: np.zeros((0, 0)))

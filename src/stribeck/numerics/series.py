@@ -121,18 +121,10 @@ def reciprocal(values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Where a function is evaluated for its Taylor coefficients about zero.
+    """Where a function is evaluated for its Taylor coefficients about zero."""
 
-    Attributes
-    ----------
-    places : ndarray, shape (n,)
-        The places.
-    weights : ndarray, shape (orders, n)
-        What the values are multiplied by; the sum is the coefficient.
-    """
-
-    places: Array
-    weights: Array
+    places: Array  # The places
+    weights: Array  # What the values are multiplied by; the sum is the coefficient
 
     def taylor(self, values: Array, order: int) -> Array:
         """Return the Taylor coefficients up to ``order``, shape (order + 1, ...), of values, shape (n, ...)."""
@@ -173,29 +165,7 @@ def implicit_series(
     inverse: Callable[[Array], Array],
     order: int,
 ) -> Array:
-    """Return the Taylor coefficients of the solution of an equation.
-
-    Parameters
-    ----------
-    start : ndarray, shape (n,)
-        The solution at zero.
-    samples : Samples
-        Where the equation is evaluated.
-    local : callable
-        ``local(k, w)`` returns what is nonlinear, at the samples in rows, from the coefficients w of the solution, shape
-        (order + 1, n), of which those from k on are zero.
-    residual : callable
-        ``residual(k, w, v)`` returns the coefficient of order k of the residual, v being that of what ``local`` returns.
-    inverse : callable
-        ``inverse(r)`` returns ``-J**-1 r`` with the Jacobian at the start.
-    order : int
-        The highest order.
-
-    Returns
-    -------
-    ndarray, shape (order + 1, n)
-        The coefficients.
-    """
+    """Return the Taylor coefficients of the solution of an equation."""
     found = np.zeros((order + 1, *start.shape))
     found[0] = start
     for k in range(1, order + 1):
@@ -204,22 +174,7 @@ def implicit_series(
 
 
 def radius(coefficients: Array, reach: float = 1.0, rounding: float = ROUNDING) -> float:
-    """Return about the radius of convergence of series: that by which their coefficients fall.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (K + 1, ...)
-        The coefficients.
-    reach : float
-        Distance of the samples that they come from: what does not exceed their rounding tells nothing.
-    rounding : float
-        Rounding of values there.
-
-    Returns
-    -------
-    float
-        The radius, from the upper half of the orders; at most :data:`LARGEST_RADIUS`.
-    """
+    """Return about the radius of convergence of series: that by which their coefficients fall."""
     order = len(coefficients) - 1
     size = np.abs(coefficients[1:]).reshape(order, -1).max(axis=1)
     k = np.arange(order // 2 + 1, order + 1)
@@ -233,18 +188,6 @@ def beyond(series: Array, t: float) -> tuple[Array, float]:
     """Return series at a place outside, and by how much two of their rational forms differ at most.
 
     Their denominators, the one of higher degree than the other, make the highest coefficients vanish.
-
-    Parameters
-    ----------
-    series : ndarray, shape (K + 1, n)
-        Coefficients; one denominator serves all n.
-    t : float
-        The place.
-
-    Returns
-    -------
-    tuple of ndarray and float
-        The values, shape (n,), and the largest difference; of few orders those of the polynomial, and zero.
     """
     order = len(series) - 1
     scaled = series * (t ** np.arange(order + 1.0))[:, None]

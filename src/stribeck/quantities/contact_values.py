@@ -32,26 +32,7 @@ def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def contact_values(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, float | None]:
-    """Return the inputs that a contact keeps, in SI units, from those that were given.
-
-    Parameters
-    ----------
-    given : mapping
-        Inputs of :data:`ROWS` by name, text with a unit or numbers in SI units; None counts as not given if
-        another may take its place.
-    table : InputTable
-        The inputs of the geometry.
-
-    Returns
-    -------
-    dict of str to float
-        A value for each input that a contact keeps; None for one that it does without.
-
-    Raises
-    ------
-    InputError
-        If one is unknown, missing, given twice or impossible.
-    """
+    """Return the inputs that a contact keeps, in SI units, from those that were given."""
     values = {name: value for name, value in given.items() if value is not None or name not in table.choices}
     for name in values:
         if name not in table.quantities:
@@ -85,20 +66,7 @@ def signature_of(table: InputTable) -> inspect.Signature:
 
 
 def check_alternatives(given: Mapping[str, Any], table: InputTable = LINE) -> None:
-    """Check that an input with alternatives is given once: by itself, or by all of those that stand for it.
-
-    Parameters
-    ----------
-    given : mapping
-        Inputs by name; None counts as not given.
-    table : InputTable
-        The inputs of the geometry.
-
-    Raises
-    ------
-    InputError
-        If it is given twice, in part or not at all.
-    """
+    """Check that an input with alternatives is given once: by itself, or by all of those that stand for it."""
     for other in table.alternatives:
         values = {name: given.get(name) for name in other.inputs}
         second = {name: given[name] for name in other.other if given.get(name) is not None}

@@ -22,52 +22,26 @@ __all__ = ["CONVERSIONS", "GIVEN", "Conversion", "Given", "GivenInput", "convert
 
 @dataclass(frozen=True)
 class GivenInput:
-    """One input as a data sheet has it.
+    """One input as a data sheet has it."""
 
-    Attributes
-    ----------
-    name, dimension, typical : str
-        Its name, kind and an example.
-    usual : tuple of float
-        Range in which the conversion holds, in SI units.
-    """
-
-    name: str
-    dimension: str
-    typical: str
-    usual: tuple[float, float] = (0.0, math.inf)
+    name: str  # Its name, kind and an example
+    dimension: str  # Its name, kind and an example
+    typical: str  # Its name, kind and an example
+    usual: tuple[float, float] = (0.0, math.inf)  # Range in which the conversion holds, in SI units
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """How an input of a contact follows from others.
+    """How an input of a contact follows from others."""
 
-    Attributes
-    ----------
-    of : str
-        The input that follows.
-    inputs : tuple of GivenInput
-        What it follows from, all together.
-    value : callable
-        Its value from theirs, in SI units.
-    formula, source : str
-        For people.
-    error : float
-        Standard error of the formula itself over the value.
-    besides : dict
-        Other inputs that it takes for granted where they are not given.
-    geometry : str
-        The geometry that it is for; empty for all.
-    """
-
-    of: str
-    inputs: tuple[GivenInput, ...]
-    value: Callable[..., float]
-    formula: str
-    source: str
-    error: float = 0.0
-    besides: dict[str, float] = field(default_factory=dict)
-    geometry: str = ""
+    of: str  # The input that follows
+    inputs: tuple[GivenInput, ...]  # What it follows from, all together
+    value: Callable[..., float]  # Its value from theirs, in SI units
+    formula: str  # For people
+    source: str  # For people
+    error: float = 0.0  # Standard error of the formula itself over the value
+    besides: dict[str, float] = field(default_factory=dict)  # Other inputs that it takes for granted where they are not given
+    geometry: str = ""  # The geometry that it is for; empty for all
 
 
 def gent(hardness: float) -> float:
@@ -144,43 +118,16 @@ _TURNS = re.compile(r"hz|1\s*/\s*s\b|s\s*\^?\s*-1|s⁻¹", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Given:
-    """Inputs of a contact, as conversions leave them.
+    """Inputs of a contact, as conversions leave them."""
 
-    Attributes
-    ----------
-    values : dict
-        By name: what was made of others in SI units, the rest as it was given.
-    errors : dict of str to float
-        Standard errors over the values, where known.
-    said : tuple of str
-        One sentence for each conversion.
-    problems : tuple of str
-        What could not be read or converted, one sentence each; a typical value then stands in ``values``, so that nothing is
-        called missing that was there.
-    """
-
-    values: dict[str, Any]
-    errors: dict[str, float]
-    said: tuple[str, ...]
+    values: dict[str, Any]  # By name: what was made of others in SI units, the rest as it was given
+    errors: dict[str, float]  # Standard errors over the values, where known
+    said: tuple[str, ...]  # One sentence for each conversion
     problems: tuple[str, ...] = ()
 
 
 def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
-    """Return inputs of a contact from inputs as data sheets have them.
-
-    Parameters
-    ----------
-    given : mapping
-        Inputs by name, those of :data:`GIVEN` among them; values may carry an error, see
-        :mod:`stribeck.quantities.uncertain`.  None counts as not given.
-    table : InputTable
-        The inputs of the geometry.
-
-    Returns
-    -------
-    Given
-        The inputs that the contact knows, their errors, what was converted, and what is wrong.
-    """
+    """Return inputs of a contact from inputs as data sheets have them."""
     values: dict[str, Any] = {}
     errors: dict[str, float] = {}
     problems = []
@@ -213,20 +160,7 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
 
 
 def converted(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
-    """Return inputs of a contact with those of data sheets converted, values with errors left to be refused.
-
-    Parameters
-    ----------
-    given : mapping
-        Inputs by name.
-    table : InputTable
-        The inputs of the geometry.
-
-    Returns
-    -------
-    dict
-        Inputs that a contact knows.
-    """
+    """Return inputs of a contact with those of data sheets converted, values with errors left to be refused."""
     if not any(given.get(name) is not None for name in GIVEN):
         return {name: value for name, value in given.items() if name not in GIVEN}
     found = read_given({name: value for name, value in given.items() if name in GIVEN or not has_error(value)}, table)

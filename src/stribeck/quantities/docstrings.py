@@ -11,22 +11,7 @@ _HEADING = re.compile(r"^(\w+)\n-+\n", re.MULTILINE)
 
 
 def completed(function: Callable[..., Any], arguments: Mapping[str, str], returns: str, raises: str) -> str:
-    """Return the docstring of a function with the sections, and the arguments, that it leaves out.
-
-    Parameters
-    ----------
-    function : callable
-        The function; a section or an argument that it describes itself is left as it is.
-    arguments : mapping
-        Type and description of arguments, as numpydoc wants them, by name.
-    returns, raises : str
-        Text of these sections; empty for none.
-
-    Returns
-    -------
-    str
-        Docstring in the form of numpydoc.
-    """
+    """Return the docstring of a function with the sections, and the arguments, that it leaves out."""
     head, *parts = _HEADING.split(inspect.getdoc(function) or "")
     own = {title: text.strip("\n") for title, text in zip(parts[::2], parts[1::2], strict=True)}
     described = dict(re.findall(r"^(\w+) : (.*(?:\n    .*)*)", own.get("Parameters", ""), re.MULTILINE))

@@ -18,28 +18,14 @@ __all__ = ["FACTS", "ROWS", "Fact", "fact_values"]
 
 @dataclass(frozen=True)
 class Fact:
-    """One fact that checks ask for.
+    """One fact that checks ask for."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, in Python and in the table ``[check]``.
-    label : str
-        What people call it.
-    dimension : str
-        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
-    typical, source : str
-        A value, and of what it is.
-    models : tuple of str
-        Where a contact may hold it already, such as ``"solid.thickness"``.
-    """
-
-    name: str
-    label: str
-    dimension: str
-    typical: str
-    source: str
-    models: tuple[str, ...] = ()
+    name: str  # Its name, in Python and in the table `[check]`
+    label: str  # What people call it
+    dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
+    typical: str  # A value, and of what it is
+    source: str  # A value, and of what it is
+    models: tuple[str, ...] = ()  # Where a contact may hold it already, such as `"solid.thickness"`
 
 
 ROWS = (
@@ -77,23 +63,7 @@ FACTS = {row.name: row for row in ROWS}
 
 
 def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return facts in SI units.
-
-    Parameters
-    ----------
-    given : mapping
-        Facts of :data:`ROWS` by name, text with a unit or numbers in SI units; None counts as not given.
-
-    Returns
-    -------
-    dict of str to float
-        Those that were given.
-
-    Raises
-    ------
-    InputError
-        If one is unknown, its value is impossible, or it follows from another.
-    """
+    """Return facts in SI units."""
     found = {}
     for name, value in given.items():
         if value is None:

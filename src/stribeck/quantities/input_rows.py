@@ -14,68 +14,27 @@ __all__ = ["OTHER_BODY", "POINT_ROWS", "ROWS", "Input"]
 
 @dataclass(frozen=True)
 class Input:
-    """One input of a contact: all that any part of the package needs to know of it.
+    """One input of a contact: all that any part of the package needs to know of it."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, in Python, case files, on the command line, in fits, sweeps and files.
-    label : str
-        What people call it.
-    symbol : str
-        TeX.
-    dimension : str
-        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
-    typical, source : str
-        A value of a laboratory's contact, and where that is from.
-    exponents : tuple of float
-        Exponents with which it enters the groups of speed, load and roughness.
-    usual : tuple of float
-        Range that contacts have, in SI units: the ends of its slider.
-    implausible : float
-        Value beyond which something is wrong, as no known contact has it: a dry friction of 3 is that of smooth rubber on
-        clean glass, the largest of all.
-    units : tuple of str
-        Units to choose from; empty for a bare number.
-    letters : tuple of str
-        Symbols and names that users type for it.
-    headers : tuple of str
-        Words at the head of a column of measurements that mean it, in lower case.
-    zero : bool
-        Whether zero is allowed.
-    highest : float
-        Largest value allowed.
-    follows_surface : bool
-        Whether it follows from the roughness of the surface, and no hand can turn it alone.
-    derived : bool
-        Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`.
-    optional : bool
-        Whether a contact does without it.
-    default : float or None
-        What it then has, None if nothing.
-    known : int
-        Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs.
-    """
-
-    name: str
-    label: str
-    symbol: str
-    dimension: str
-    typical: str
-    source: str
-    exponents: tuple[float, float, float] = (0, 0, 0)
-    usual: tuple[float, float] = (0.0, math.inf)
+    name: str  # Its name, in Python, case files, on the command line, in fits, sweeps and files
+    label: str  # What people call it
+    symbol: str  # TeX
+    dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
+    typical: str  # A value of a laboratory's contact, and where that is from
+    source: str  # A value of a laboratory's contact, and where that is from
+    exponents: tuple[float, float, float] = (0, 0, 0)  # Exponents with which it enters the groups of speed, load and roughness
+    usual: tuple[float, float] = (0.0, math.inf)  # Range that contacts have, in SI units: the ends of its slider
     implausible: float = math.inf
-    units: tuple[str, ...] = ()
-    letters: tuple[str, ...] = ()
-    headers: tuple[str, ...] = ()
-    zero: bool = False
-    highest: float = math.inf
-    follows_surface: bool = False
-    derived: bool = False
-    optional: bool = False
-    default: float | None = None
-    known: int = 9
+    units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
+    letters: tuple[str, ...] = ()  # Symbols and names that users type for it
+    headers: tuple[str, ...] = ()  # Words at the head of a column of measurements that mean it, in lower case
+    zero: bool = False  # Whether zero is allowed
+    highest: float = math.inf  # Largest value allowed
+    follows_surface: bool = False  # Whether it follows from the roughness of the surface, and no hand can turn it alone
+    derived: bool = False  # Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`
+    optional: bool = False  # Whether a contact does without it
+    default: float | None = None  # What it then has, None if nothing
+    known: int = 9  # Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs
 
 
 _PDMS = "as in examples/pdms_cylinder.toml"

@@ -35,30 +35,14 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Alternative:
-    """Inputs that may be given in place of another.
+    """Inputs that may be given in place of another."""
 
-    Attributes
-    ----------
-    of : str
-        The input that a contact keeps.
-    inputs : tuple of str
-        What may be given instead, all together.
-    value : callable
-        Its value from theirs, in SI units.
-    meaning : str
-        What the kept input is, for sentences.
-    hint : str
-        What to know if one of several is missing.
-    other : tuple of str
-        The same of a second body, which may be given besides, all together.
-    """
-
-    of: str
-    inputs: tuple[str, ...]
-    value: Callable[..., float]
-    meaning: str
-    hint: str = ""
-    other: tuple[str, ...] = ()
+    of: str  # The input that a contact keeps
+    inputs: tuple[str, ...]  # What may be given instead, all together
+    value: Callable[..., float]  # Its value from theirs, in SI units
+    meaning: str  # What the kept input is, for sentences
+    hint: str = ""  # What to know if one of several is missing
+    other: tuple[str, ...] = ()  # The same of a second body, which may be given besides, all together
 
 
 def _in_series(*bodies: float) -> float:
@@ -81,24 +65,12 @@ ALTERNATIVES = (
 
 @dataclass(frozen=True)
 class InputTable:
-    """The inputs of the contacts of one geometry.
+    """The inputs of the contacts of one geometry."""
 
-    Attributes
-    ----------
-    geometry : {"line", "point"}
-        The geometry.
-    contact : str
-        Name of its contact in Python.
-    rows : tuple of Input
-        All inputs.
-    alternatives : tuple of Alternative
-        What may be given in place of some.
-    """
-
-    geometry: str
-    contact: str
-    rows: tuple[Input, ...]
-    alternatives: tuple[Alternative, ...]
+    geometry: str  # The geometry
+    contact: str  # Name of its contact in Python
+    rows: tuple[Input, ...]  # All inputs
+    alternatives: tuple[Alternative, ...]  # What may be given in place of some
 
     @cached_property
     def quantities(self) -> dict[str, Input]:
@@ -147,27 +119,7 @@ FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction
 
 
 def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
-    """Return one input of a contact in SI units, checked.
-
-    Parameters
-    ----------
-    name : str
-        One of the inputs of the table.
-    value : str or float
-        Text with a unit, or a bare number in SI units.
-    table : InputTable
-        The inputs of the geometry; those of a cylinder by default.
-
-    Returns
-    -------
-    float
-        The value in SI units.
-
-    Raises
-    ------
-    InputError
-        Where the value is impossible or its unit is wrong.
-    """
+    """Return one input of a contact in SI units, checked."""
     wanted = table.quantities[name]
     result = to_si(value, wanted.dimension, name, wanted.typical)
     if wanted.highest < math.inf and not 0 <= result <= wanted.highest:

@@ -29,20 +29,7 @@ def answers_typos(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
-    """Return the error with the name that was probably meant, if it says that ``function`` has no such argument.
-
-    Parameters
-    ----------
-    problem : TypeError
-        What the call raised.
-    function : callable
-        What was called.
-
-    Returns
-    -------
-    TypeError
-        A new error, or the same one.
-    """
+    """Return the error with the name that was probably meant, if it says that ``function`` has no such argument."""
     said = re.fullmatch(r"(?:(\S+)\(\) )?got an unexpected keyword argument '(\w+)'", str(problem))
     if said is None or (said[1] or function.__name__).rpartition(".")[2] != function.__name__:
         return problem

@@ -35,22 +35,7 @@ class cached_property(functools.cached_property[T]):  # noqa: N801
 def lazy_names(
     package: str, homes: Mapping[str, Sequence[str]], packages: Sequence[str] = ()
 ) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
-    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose public names live in its modules.
-
-    Parameters
-    ----------
-    package : str
-        Its full name.
-    homes : mapping of str to sequence of str
-        Module, seen from the package, and its public names.
-    packages : sequence of str
-        Packages in it that are public themselves.
-
-    Returns
-    -------
-    tuple
-        All three; a name is an attribute of the package once it was asked for.
-    """
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose public names live in its modules."""
     modules = {name: module for module, names in homes.items() for name in names}
     public = sorted([*packages, *modules])
 

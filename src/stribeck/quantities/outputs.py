@@ -42,33 +42,15 @@ IN_UNITS = {
 
 @dataclass(frozen=True)
 class Observable:
-    """One number that a solved state has.
+    """One number that a solved state has."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, in Python, files, sweeps and JSON.
-    label : str
-        What reports call it.
-    meaning : str
-        What it is, in a file.
-    scale : {"number", "gap", "width", "pressure", "friction"}
-        What returns it to SI: nothing, the Hertz indentation, half-width or pressure, or beta.
-    film : str
-        Its name in SI units; empty if files hold it in Hertz units alone.
-    error : {"relative", "absolute", ""}
-        What the estimated error of a state is for it; nothing if it has none, or one of its own.
-    listed : bool
-        Whether files and reports show it; the two viscous frictions enter friction.
-    """
-
-    name: str
-    label: str
-    meaning: str
-    scale: Scale = "number"
-    film: str = ""
+    name: str  # Its name, in Python, files, sweeps and JSON
+    label: str  # What reports call it
+    meaning: str  # What it is, in a file
+    scale: Scale = "number"  # What returns it to SI: nothing, the Hertz indentation, half-width or pressure, or beta
+    film: str = ""  # Its name in SI units; empty if files hold it in Hertz units alone
     error: Literal["relative", "absolute", ""] = "relative"
-    listed: bool = True
+    listed: bool = True  # Whether files and reports show it; the two viscous frictions enter friction
 
 
 ROWS = (
@@ -118,15 +100,9 @@ _FLAT, _UNITS = "1", {"gap": "m", "width": "m", "pressure": "Pa"}
 
 @dataclass(frozen=True)
 class OutputTable:
-    """The observables of the states of one geometry.
+    """The observables of the states of one geometry."""
 
-    Attributes
-    ----------
-    rows : tuple of Observable
-        All of them.
-    """
-
-    rows: tuple[Observable, ...]
+    rows: tuple[Observable, ...]  # All of them
 
     @cached_property
     def names(self) -> tuple[str, ...]:

@@ -18,25 +18,13 @@ __all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_name
 
 @dataclass(frozen=True, kw_only=True)
 class PartInput(Input):
-    """A number of a law, see :class:`stribeck.quantities.input_rows.Input`.
+    """A number of a law, see :class:`stribeck.quantities.input_rows.Input`."""
 
-    Attributes
-    ----------
-    path : tuple of str
-        Attributes that lead from the parts of a contact to the number.
-    table, key : str
-        Where a case file has it.
-    range : tuple of float
-        What a fit may make of it; without bounds of its own, positive numbers.
-    of : str
-        What has such a number, for sentences.
-    """
-
-    path: tuple[str, ...]
-    table: str
-    key: str
-    range: tuple[float, float] = (0.0, float("inf"))
-    of: str
+    path: tuple[str, ...]  # Attributes that lead from the parts of a contact to the number
+    table: str  # Where a case file has it
+    key: str  # Where a case file has it
+    range: tuple[float, float] = (0.0, float("inf"))  # What a fit may make of it; without bounds of its own, positive numbers
+    of: str  # What has such a number, for sentences
 
 
 _ROWS = (
@@ -169,13 +157,7 @@ def part_value(parts: Any, name: str) -> float | None:
 
 
 def with_part_value(parts: Any, name: str, value: str | float) -> Any:
-    """Return the parts with another number of one of their laws.
-
-    Raises
-    ------
-    InputError
-        If they have none of this name, or the value is impossible.
-    """
+    """Return the parts with another number of one of their laws."""
     row = PART_INPUTS[name]
     if part_value(parts, name) is None:
         raise InputError(f"{name} = {show(value)}, but this contact has none: it belongs to {row.of}; give it to the contact.")

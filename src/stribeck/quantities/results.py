@@ -16,21 +16,11 @@ __all__ = ["ByValue", "Card", "Shown", "brief", "same"]
 
 @dataclass(frozen=True)
 class Card:
-    """What a result shows of itself.
+    """What a result shows of itself."""
 
-    Attributes
-    ----------
-    headline : str
-        What it is, in a line.
-    rows : sequence of pairs of str
-        Name and value of what matters.
-    notes : sequence of str
-        What to know before using it, in sentences.
-    """
-
-    headline: str
-    rows: Sequence[tuple[str, str]]
-    notes: Sequence[str] = ()
+    headline: str  # What it is, in a line
+    rows: Sequence[tuple[str, str]]  # Name and value of what matters
+    notes: Sequence[str] = ()  # What to know before using it, in sentences
 
 
 class Shown:

@@ -25,32 +25,7 @@ def has_error(value: Any) -> bool:
 
 
 def split_error(name: str, value: Any, dimension: str, example: str = "") -> tuple[Any, float | None]:
-    """Return a value without its error, and that error relative to it.
-
-    Parameters
-    ----------
-    name : str
-        What the value is called, for sentences.
-    value : object
-        Text such as ``"1.0 +- 0.2 um"``, ``"1.0 um +- 20 %"`` or ``"0.3 +- 0.05"``; a mapping of ``value`` and ``error``;
-        anything else has no error.
-    dimension : str
-        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
-    example : str, optional
-        Such a value, for sentences; one of its dimension if omitted.
-
-    Returns
-    -------
-    object
-        The value as it would be written without an error; in SI units if it had one.
-    float or None
-        Its standard error over the value; None where none was given.
-
-    Raises
-    ------
-    InputError
-        If value or error cannot be read, or the error is not positive.
-    """
+    """Return a value without its error, and that error relative to it."""
     if not has_error(value):
         return value, None
     if isinstance(value, Mapping):

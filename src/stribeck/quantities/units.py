@@ -27,24 +27,12 @@ class InputError(ValueError):
 
 @dataclass(frozen=True)
 class Dimension:
-    """A kind of quantity: what it is called, its SI unit, an example, and the units that display it.
+    """A kind of quantity: what it is called, its SI unit, an example, and the units that display it."""
 
-    Attributes
-    ----------
-    noun : str
-        The kind of quantity with its article, for sentences.
-    unit : str
-        SI unit, empty for a bare number.
-    example : str
-        Text that :func:`to_si` accepts.
-    steps : dict of int to str
-        Power of ten -> unit, for :func:`format_si`.
-    """
-
-    noun: str
-    unit: str
-    example: str
-    steps: dict[int, str]
+    noun: str  # The kind of quantity with its article, for sentences
+    unit: str  # SI unit, empty for a bare number
+    example: str  # Text that :func:`to_si` accepts
+    steps: dict[int, str]  # Power of ten -> unit, for :func:`format_si`
 
 
 def _prefixed(unit: str, powers: tuple[int, ...]) -> dict[int, str]:
@@ -192,25 +180,7 @@ def checked_callback(name: str, value: Any) -> Any:
 
 
 def read_number(name: str, text: str) -> float:
-    """Return a bare number that was typed; what it may be is for its user to say.
-
-    Parameters
-    ----------
-    name : str
-        What the number is called, for the error sentence.
-    text : str
-        The number.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InputError
-        Where the text is no number.
-    """
+    """Return a bare number that was typed; what it may be is for its user to say."""
     try:
         return float(text)
     except ValueError:
@@ -218,25 +188,7 @@ def read_number(name: str, text: str) -> float:
 
 
 def real_array(name: str, value: Any) -> NDArray[np.float64]:
-    """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists.
-
-    Parameters
-    ----------
-    name : str
-        What the numbers are, for the message.
-    value : array_like
-        The numbers.
-
-    Returns
-    -------
-    ndarray
-        Of the shape given, zero-dimensional for a number.
-
-    Raises
-    ------
-    InputError
-        If ``value`` is not made of real numbers.
-    """
+    """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists."""
     try:
         found = np.asarray(value)
     except ValueError:  # ragged lists

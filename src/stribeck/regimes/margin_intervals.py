@@ -35,35 +35,7 @@ QUANTILE = 1.959964
 def with_intervals(
     contact: Contact, margins: RegimeMargins, errors: Mapping[str, Any], definition: Definition = "balanced"
 ) -> RegimeMargins:
-    """Return margins with the 95 % interval of each factor.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    margins : RegimeMargins
-        Its margins.
-    errors : mapping
-        Standard errors of inputs, as :func:`stribeck.propagate` takes them.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-
-    Returns
-    -------
-    RegimeMargins
-        The same; a factor has an interval where its state has exact derivatives and its input is above zero.
-
-    Raises
-    ------
-    InputError
-        If an input is unknown, or its error no positive number.
-
-    Notes
-    -----
-    To first order, so that an interval is lognormal.  For both example seals, with errors of 10 to 30 %, margins solved again
-    at one standard error to either side of each input agree with the standard deviation of the logarithm within 1 %; in
-    speed towards boundary lubrication, factors of 800 and 190 000 away, within a fifth.
-    """
+    """Return margins with the 95 % interval of each factor."""
     sigmas = kept_errors(contact, errors)
     if not sigmas:
         return margins

@@ -22,28 +22,13 @@ a roughness from that of atoms.  Roughness ends with the contact itself: see :fu
 
 
 class Search(NamedTuple):
-    """How far and how finely the regimes of one geometry are searched.
-
-    Attributes
-    ----------
-    lightest : float
-        Smallest load: of a cylinder, per length, that of a thread of 10 um; of a ball that of a grain of dust [SI].
-    heaviest : callable
-        ``heaviest(contact)`` is the load at which the Hertz contact is as wide as the body [SI].
-    roughest : callable
-        ``roughest(contact)`` is the largest roughness: of a cylinder the half-width of the Hertz contact, of a ball its
-        indentation, beyond which states at heavy loads are no longer determined [m].
-    largest_group : float
-        Load group up to which the solver is tested, where the contact law allows it.
-    rtol : float
-        Smallest tolerance of the states that are scanned: a ball takes a tenth of a second or more each.
-    """
+    """How far and how finely the regimes of one geometry are searched."""
 
     lightest: float
     heaviest: Callable[[Contact], float]
     roughest: Callable[[Contact], float]
-    largest_group: float
-    rtol: float
+    largest_group: float  # Load group up to which the solver is tested, where the contact law allows it
+    rtol: float  # Smallest tolerance of the states that are scanned: a ball takes a tenth of a second or more each
 
 
 SEARCHES: dict[Geometry, Search] = {
@@ -54,21 +39,7 @@ SEARCHES: dict[Geometry, Search] = {
 
 
 def scanned_rtol(contact: Contact, rtol: float) -> float:
-    """Return the tolerance of the states among which changes of regime are looked for.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    rtol : float
-        Relative tolerance that is asked for.
-
-    Returns
-    -------
-    float
-        At least 3e-3 of a ball: transitions and minima of the PDMS ball, of a lens and of one at load group 2 then lie within
-        1.2e-3 of those at 1e-3 or 1e-4, for a tenth of the time.
-    """
+    """Return the tolerance of the states among which changes of regime are looked for."""
     return max(rtol, SEARCHES[contact.groups.geometry].rtol)
 
 
@@ -77,25 +48,6 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
 
     .. math:: F_N \le \frac{\pi}{4} E^* R \text{ on the line}, \quad \frac43 E^* R^2 \text{ on the ball} \;\;(a \le R),
         \qquad h_\mathrm{rms} \le a \text{ and } u_\mathrm{Hz}
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    name : {"speed", "load", "roughness", "viscosity"}
-        The input.
-
-    Returns
-    -------
-    tuple of float
-        Lowest and highest value [SI]: speed 1e-12 to 1000 m/s, viscosity 1e-5 to 1e8 Pa s, load from 1e-6 N/m or 1e-9 N to
-        where the Hertz contact is as wide as the body, roughness from 0.1 nm to the half-width of that contact,
-        of a ball to its indentation.
-
-    Notes
-    -----
-    Rules of thumb: roughness higher than the contact is half wide is a matter of shape, and the present value counts as
-    possible even where it is none.
     """
     search = SEARCHES[contact.groups.geometry]
     if name == "load":

@@ -75,43 +75,7 @@ def regime_margins(
     on_point: Callable[[int, int], object] | None = None,
     curve: StribeckCurve | None = None,
 ) -> RegimeMargins:
-    """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact; zero speed and zero roughness are ordinary inputs.
-    rtol : float
-        Relative tolerance of the states, at least that of :func:`stribeck.regimes.margin_limits.scanned_rtol`.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    on_point : callable, optional
-        ``on_point(done, scans)`` is called after each state, for progress.
-    curve : StribeckCurve, optional
-        Curve of the contact over the speed, as of :func:`stribeck_curve`, whose states spare starts from cold.
-
-    Returns
-    -------
-    RegimeMargins
-        For each input the nearest change with less and with more of it.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range.
-    SolveError
-        If the contact itself cannot be solved.
-    KeyboardInterrupt
-        After Ctrl-C.
-
-    Notes
-    -----
-    Each input is followed by continuation, decade by decade, until the regime of :func:`regime_of` changes, by at most a
-    factor of 1e6, as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, where the law goes on to 10 and of a ball
-    to 1e4, relative roughness 1e-6 to 1e3, and within :func:`stribeck.regimes.margin_limits.physical_bounds`; towards slow
-    speed no further than to where the fluid's share tends to a limit above its bound. More load lowers the speed group as a
-    power, and the relative roughness. Speed and viscosity enter as their product: one scan serves both.
-    """
+    """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes."""
     rtol = check_rtol(rtol)
     definition = check_definition(definition)
     if not isinstance(contact, Contact):

@@ -49,18 +49,7 @@ LABELS = {
 
 
 def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
-    """Return a diagram with units, long names and provenance.
-
-    Parameters
-    ----------
-    diagram : Diagram
-        A diagram, full or not.
-
-    Returns
-    -------
-    xarray.Dataset
-        Along load, roughness and speed.
-    """
+    """Return a diagram with units, long names and provenance."""
     library = import_xarray()
     plane = AXES[:2]
     speed_unit, roughness_unit = (_unit(diagram, name) for name in ("speed", "roughness"))

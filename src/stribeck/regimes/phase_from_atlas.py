@@ -74,33 +74,7 @@ def transition_speeds(
     slide_to_roll: float = PURE_SLIDING,
     wetted_radius: float = math.inf,
 ) -> TransitionSpeeds:
-    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
-
-    Parameters
-    ----------
-    groups : Groups
-        The contacts, of one load and any roughnesses, shape (n,); their speed does not matter.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    speeds : tuple of float, optional
-        Smallest and largest speed group between which to look; those of the table by default.
-    narrowings : int
-        Rounds in which a passage is narrowed, at most; with fewer the stated error is larger.
-    slide_to_roll, wetted_radius : float
-        Motion and liquid of balls, as in :func:`stribeck.atlas.friction`.
-
-    Returns
-    -------
-    TransitionSpeeds
-        The first passage of each on the way up in speed, as on curves.
-
-    Raises
-    ------
-    InputError
-        If the atlas has no table for the groups, or a state is outside its box.
-    """
+    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas."""
     row = table_for(groups)
     roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
     speeds = row.speeds(groups) if speeds is None else speeds

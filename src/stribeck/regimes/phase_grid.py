@@ -30,27 +30,13 @@ AXES = ("load", "roughness", "speed")
 
 
 class Kind(NamedTuple):
-    """How the diagrams of one geometry are made.
+    """How the diagrams of one geometry are made."""
 
-    Attributes
-    ----------
-    points : dict of str to int
-        Points between the ends of a range, unless asked for otherwise.
-    density : float
-        States per decade that a row has at least, so that its transitions are seen and soon located.
-    rtol : float
-        Relative tolerance of the states of the grid, unless asked for otherwise.
-    ends : callable
-        ``ends(groups, boundary_friction, beta, definition)`` are the speed groups between which a row has its transitions.
-    has_formulas : bool
-        Whether formulas give transitions, and the branch of falling friction is followed beyond its minimum.
-    """
-
-    points: Mapping[str, int]
-    density: float
-    rtol: float
+    points: Mapping[str, int]  # Points between the ends of a range, unless asked for otherwise
+    density: float  # States per decade that a row has at least, so that its transitions are seen and soon located
+    rtol: float  # Relative tolerance of the states of the grid, unless asked for otherwise
     ends: Callable[[Groups, float, float, Definition], tuple[float, float]]
-    has_formulas: bool
+    has_formulas: bool  # Whether formulas give transitions, and the branch of falling friction is followed beyond its minimum
 
 
 def _ends_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
@@ -89,34 +75,16 @@ LINES = (*MARKS, "speed_at_minimum", "friction_at_minimum")
 
 @dataclass(eq=False)
 class Diagram:
-    """What is being filled in: a diagram's axes, settings and results.
+    """What is being filled in: a diagram's axes, settings and results."""
 
-    Attributes
-    ----------
-    contact : Contact or None
-        The contact, where the axes are in SI units.
-    axes : dict of str to ndarray
-        Values of load, roughness and speed, ascending.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of the states.
-    physics : Physics
-        Contact law, geometry and model of all states.
-    outcome : Outcome
-        CONVERGED, or INTERRUPTED.
-    """
-
-    contact: Contact | None
-    axes: dict[str, Array]
-    boundary_friction: float
-    beta: float
-    definition: Definition
-    rtol: float
-    physics: Physics
-    outcome: Outcome = Outcome.CONVERGED
+    contact: Contact | None  # The contact, where the axes are in SI units
+    axes: dict[str, Array]  # Values of load, roughness and speed, ascending
+    boundary_friction: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
+    beta: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
+    definition: Definition  # Definition of the viscous friction
+    rtol: float  # Relative tolerance of the states
+    physics: Physics  # Contact law, geometry and model of all states
+    outcome: Outcome = Outcome.CONVERGED  # CONVERGED, or INTERRUPTED
     fields: dict[str, Array] = field(init=False)
     regime: Any = field(init=False)
     outcomes: Any = field(init=False)

@@ -128,22 +128,7 @@ def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, f
 
 
 def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None = None) -> None:
-    """Draw the plane of one load onto axes, without legend.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where to.
-    dataset : xarray.Dataset
-        As in :func:`plot_phase_diagram`.
-    load : float, optional
-        As there.
-
-    Raises
-    ------
-    InputError
-        As there.
-    """
+    """Draw the plane of one load onto axes, without legend."""
     plane = _plane(dataset, load)
     (speed, x_label), (_, y_label) = _scaled(plane, "speed"), _scaled(plane, "roughness")
     y = _scaled(plane, "roughness")[0](plane.roughness.values)
@@ -163,20 +148,7 @@ def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None =
 
 
 def draw_phase_space(axes: Any, dataset: xarray.Dataset) -> None:
-    """Draw planes and surfaces onto three-dimensional axes, whose coordinates are decimal logarithms, without legend.
-
-    Parameters
-    ----------
-    axes : mpl_toolkits.mplot3d.axes3d.Axes3D
-        Where to.
-    dataset : xarray.Dataset
-        As in :func:`plot_phase_space`.
-
-    Raises
-    ------
-    InputError
-        As there.
-    """
+    """Draw planes and surfaces onto three-dimensional axes, whose coordinates are decimal logarithms, without legend."""
     loads = dataset["load"].values
     if len(loads) < 2:
         raise InputError(f"the diagram has {len(loads)} load; the space of a phase diagram needs two or more.")

@@ -14,18 +14,7 @@ __all__ = ["ways_to"]
 
 
 def ways_to(margins: RegimeMargins) -> Iterator[str]:
-    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere.
-
-    Parameters
-    ----------
-    margins : RegimeMargins
-        The margins of a contact.
-
-    Yields
-    ------
-    str
-        Such as ``"To reach hydrodynamic lubrication: speed x 5.53 (to 552.5 mm/s)."``
-    """
+    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
     table = INPUT_TABLES[margins.geometry]
     for regime in margins.targets:
         found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]

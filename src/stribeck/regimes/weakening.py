@@ -124,33 +124,6 @@ def weakening(
     r"""Return whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope on solved states.
 
     .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
-
-    Parameters
-    ----------
-    groups : Groups
-        One state, of which ``load`` and ``roughness`` count [-]; its speed is replaced.
-    boundary_friction, beta : float, optional
-        Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of the states.
-
-    Returns
-    -------
-    Weakening
-        Where the slope is smallest, and the minimum of friction behind that place, which may lie above the boundary plateau.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range.
-    SolveError
-        If a state on the way cannot be solved.
-
-    Notes
-    -----
-    A curve over speed has at most one branch of weakening in all that we solved.
     """
     as_groups(groups)
     rtol = check_rtol(rtol)
@@ -185,47 +158,7 @@ def roughness_without_minimum(
     rtol: float = 1e-6,
     physics: Physics | None = None,
 ) -> float:
-    r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge.
-
-    Parameters
-    ----------
-    load : float
-        Load group [-].
-    boundary_friction, beta : float, optional
-        Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.  Their quotient counts.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    criterion : {"slope", "plateau"}
-        ``"slope"``: from here on friction nowhere falls with speed.  ``"plateau"``: from here on the minimum of friction,
-        where there still is one, lies above boundary_friction (the words of [BP]); always the smaller.
-    rtol : float
-        Relative tolerance of the states, and of the result.
-    physics : Physics, optional
-        Contact law, geometry and model of the states; those of the article if omitted.
-
-    Returns
-    -------
-    float
-        Roughness group [-]; 0 where there is no dry friction that could fall, nan where it lies outside the relative roughness
-        1e-5 to 1e3.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range.
-    SolveError
-        If a state on the way cannot be solved.
-
-    Notes
-    -----
-    Found by bracketing in ln(roughness); each trial is one curve over the speed, about 0.1 s.  For mu0 = beta it is 0.0175 at
-    load 0.1 and 0.00342 at load 0.01, and 0.0160 and 0.00343 for the published friction.  At these relative roughnesses, 0.17
-    and 0.34, the formula for the film of large deformation no longer holds: the condition k < 0.4968 of [BP]'s friction would
-    allow 1.40 and 4.44.  From load 1 on asperities are saturated, and the
-    weakening that disappears may be as small as 1e-4 of the friction.
-
-    Source: [BP] Conclusion, in words.
-    """
+    r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge."""
     if criterion not in CRITERIA:
         raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
     rtol = check_rtol(rtol)

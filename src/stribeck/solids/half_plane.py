@@ -109,19 +109,7 @@ def nodes_of(targets: Callable[[Array, Array, Array], Array], places: Array, ord
 def blocks(
     targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array], places: Array, order: int
 ) -> Array:
-    """Return what panels do at the nodes of others, shape (pairs, order, columns).
-
-    Parameters
-    ----------
-    targets : callable
-        ``targets(centres, half_widths, nodes)`` returns where the nodes are, in half-widths of the panel that acts.
-    compute : callable
-        ``compute(s, order)`` with targets s, shape (n,), returns what is done there, shape (n, columns).
-    places : ndarray, shape (pairs, 2)
-        Centre and half-width of each panel seen from the one that acts, in half-widths of that.
-    order : int
-        Nodes of a panel.
-    """
+    """Return what panels do at the nodes of others, shape (pairs, order, columns)."""
     found = compute(nodes_of(targets, places, order).ravel(), order)
     return found.reshape(len(places), order, -1)
 
@@ -225,23 +213,6 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
     r"""Return the matrix from nodal pressures to the deflection.
 
     .. math:: w(x_i) = -\frac1\pi \int p(y) \ln|x_i - y| \, dy = \sum_j D_{ij} p(x_j)
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Panels that carry the pressure.
-    points : ndarray, shape (n,), optional
-        Where the deflection is wanted [Hertz half-width]; the nodes of ``mesh`` by default.  Zero is allowed.
-
-    Returns
-    -------
-    ndarray, shape (n, mesh.size)
-        The operator [u_Hz per p_Hz].
-
-    Notes
-    -----
-    Spectral in the order of the panels; see ``tests/test_elasticity.py``.
-    Source: [BP] Eq. (elasticity_dl), gauge ln(|x - y|/a).
     """
     order = mesh.order
     rule = reference(order)

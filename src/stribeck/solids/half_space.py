@@ -49,22 +49,7 @@ def _clustered(count: int) -> tuple[Array, Array]:
 
 
 def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array | None = None) -> Array:
-    """Return the matrices from the nodal pressures of each angular mode to its deflection.
-
-    Parameters
-    ----------
-    mesh : PolarMesh
-        Where the pressure lives [a].
-    modes : int, optional
-        Number of modes; those of the mesh by default.
-    targets : ndarray, shape (n,), optional
-        Radii at which the deflection is wanted [a], > 0; those of the mesh by default.
-
-    Returns
-    -------
-    ndarray, shape (modes, n, rings)
-        The operators [u_Hz per p_Hz].
-    """
+    """Return the matrices from the nodal pressures of each angular mode to its deflection."""
     count = mesh.modes if modes is None else modes
     radii = mesh.radii if targets is None else targets
     found = np.zeros((count, radii.size, mesh.rings))

@@ -19,21 +19,11 @@ __all__ = ["BODIES", "PlaneBody"]
 
 @dataclass(frozen=True)
 class PlaneBody:
-    """What meshes and equations of a ball ask of a kind of body.
-
-    Attributes
-    ----------
-    deflection : callable
-        ``deflection(mesh, solid)`` gives the matrices from pressures to deflections by angular mode.
-    widest_panel : callable
-        Largest width of the panels near the contact for a solid [a].
-    reaches : float
-        One if the deflection falls as 1/r far away, as that of a half-space; zero if it falls faster.
-    """
+    """What meshes and equations of a ball ask of a kind of body."""
 
     deflection: Callable[[PolarMesh, Any], Array]
-    widest_panel: Callable[[Any], float]
-    reaches: float
+    widest_panel: Callable[[Any], float]  # Largest width of the panels near the contact for a solid [a]
+    reaches: float  # One if the deflection falls as 1/r far away, as that of a half-space; zero if it falls faster
 
 
 def _half_space(mesh: PolarMesh, solid: HalfPlane) -> Array:

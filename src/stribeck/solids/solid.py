@@ -21,18 +21,10 @@ KEPT = 3
 
 
 class Lengths(NamedTuple):
-    """The lengths of a body that a mesh must resolve [a].
+    """The lengths of a body that a mesh must resolve [a]."""
 
-    Attributes
-    ----------
-    thickness : float
-        Of the thinnest layer; infinite without one.
-    memories : tuple of float
-        Over which the body remembers the pressure that has passed.
-    """
-
-    thickness: float = math.inf
-    memories: tuple[float, ...] = ()
+    thickness: float = math.inf  # Of the thinnest layer; infinite without one
+    memories: tuple[float, ...] = ()  # Over which the body remembers the pressure that has passed
 
     def joined(self, other: Lengths) -> Lengths:
         """Return the lengths of two bodies."""
@@ -69,15 +61,7 @@ class Solid(Protocol):
 
 
 def deflecting(solids: Sequence[Solid], mesh: Mesh) -> Callable[[Array], Array]:
-    """Return the function from rows of nodal pressure to the deflection of each on its own body.
-
-    Parameters
-    ----------
-    solids : sequence of Solid
-        Of each row, of one kind; a single one is that of all rows.
-    mesh : Mesh
-        Panels that carry the pressure.
-    """
+    """Return the function from rows of nodal pressure to the deflection of each on its own body."""
     together: Any = getattr(type(solids[0]), "together", None)
     if together is not None:
         found: Callable[[Array], Array] = together(solids, mesh)

@@ -222,15 +222,7 @@ def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> 
 
 
 class Memory:
-    """The nodal q with ``De q' + q = p``, zero far upstream, of rows of nodal p.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The panels.
-    deborah : ndarray, shape (rows,)
-        De of each row; a single one is that of all rows.
-    """
+    """The nodal q with ``De q' + q = p``, zero far upstream, of rows of nodal p."""
 
     def __init__(self, mesh: Mesh, deborah: Array) -> None:
         n, rule = mesh.order, reference(mesh.order)

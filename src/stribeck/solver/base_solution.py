@@ -333,20 +333,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
 
 def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) -> float | None:
-    """Return the friction coefficient of the losses in a body that remembers; None for others.
-
-    Parameters
-    ----------
-    solution : Solution
-        A state.
-    beta : float, optional
-        As in :meth:`Solution.friction`.
-
-    Returns
-    -------
-    float or None
-        :attr:`Solution.hysteresis_friction` times the slope a/R [-].
-    """
+    """Return the friction coefficient of the losses in a body that remembers; None for others."""
     groups = solution.groups
     if not getattr(groups.model.solid, "uses_speed", False):
         return None
@@ -355,18 +342,7 @@ def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) ->
 
 
 def si_films(solution: BaseSolution) -> dict[str, tuple[float, str, str]]:
-    """Return films and Hertz scales of a solution in SI units: value, unit and long name of each.
-
-    Parameters
-    ----------
-    solution : Solution
-        A state; one that comes from groups alone has no scales.
-
-    Returns
-    -------
-    dict
-        By name; empty where there is no contact.
-    """
+    """Return films and Hertz scales of a solution in SI units: value, unit and long name of each."""
     if solution.contact is None:
         return {}
     hertz = solution.contact.hertz

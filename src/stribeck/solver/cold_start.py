@@ -57,27 +57,15 @@ NEWTON_TOLERANCE = 1e-5
 
 @dataclass(frozen=True)
 class RigidGuess:
-    """The gap of a rigid cylinder with the deflection under its rigid-film pressure.
+    """The gap of a rigid cylinder with the deflection under its rigid-film pressure."""
 
-    Attributes
-    ----------
-    speed : float
-        Speed group [-].
-    offset : float
-        Height of the cylinder [u_Hz].
-    flux_gap : float
-        Flux gap of the rigid parabola, 4/3 of its height [u_Hz].
-    minimum_position, exit, dilation, restart : float
-        Those of a full film: a rigid film is the guess of no other [a].
-    """
-
-    speed: float
-    offset: float
-    flux_gap: float
-    minimum_position: float = 0.0
-    exit: float = 0.0
-    dilation: float = 1.0
-    restart: float = math.inf
+    speed: float  # Speed group [-]
+    offset: float  # Height of the cylinder [u_Hz]
+    flux_gap: float  # Flux gap of the rigid parabola, 4/3 of its height [u_Hz]
+    minimum_position: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
+    exit: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
+    dilation: float = 1.0  # Those of a full film: a rigid film is the guess of no other [a]
+    restart: float = math.inf  # Those of a full film: a rigid film is the guess of no other [a]
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -129,18 +117,7 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
 
 
 def cold_start(groups: Groups) -> Path[State]:
-    """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution.
-
-    Parameters
-    ----------
-    groups : Groups
-        Scalar groups; speed or roughness must be positive.
-
-    Returns
-    -------
-    Path
-        Of states on meshes that resolve them to about 1e-3; its outcome says whether the end was reached.
-    """
+    """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution."""
     kappa = float(groups.relative_roughness)
     by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
     along = faster if by_speed else unloaded

@@ -126,22 +126,12 @@ Way = tuple[Callable[[Film, float], Film], int, float, int, float]
 
 @dataclass(frozen=True)
 class RigidEnding:
-    """The gap of a rigid parabola, seen from the exit of its film.
+    """The gap of a rigid parabola, seen from the exit of its film."""
 
-    Attributes
-    ----------
-    speed : float
-        Speed group [-].
-    offset : float
-        Height of the parabola [u_Hz].
-    restart, dilation : float
-        Those of a film that does not begin anew.
-    """
-
-    speed: float
-    offset: float
-    restart: float = math.inf
-    dilation: float = 1.0
+    speed: float  # Speed group [-]
+    offset: float  # Height of the parabola [u_Hz]
+    restart: float = math.inf  # Those of a film that does not begin anew
+    dilation: float = 1.0  # Those of a film that does not begin anew
 
     @classmethod
     def of(cls, groups: Groups) -> RigidEnding | None:
@@ -291,15 +281,7 @@ TO_THINNEST: Way = (_fade, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0)
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
-    """Yield paths whose last state, where they arrive, is a first, coarse one of the groups and their model.
-
-    Parameters
-    ----------
-    groups : Groups
-        Scalar groups with their model.
-    article : callable
-        The path from cold to groups with the model of the article.
-    """
+    """Yield paths whose last state, where they arrive, is a first, coarse one of the groups and their model."""
     model, solid = groups.model, groups.model.solid
     path, state = _newtonian(groups, article, solid)
     if state is None and not isinstance(solid, HalfPlane):

@@ -23,23 +23,7 @@ LARGEST_CHANGE = 30.0
 
 
 class WarmStartSolver:
-    """Solves one state after another, each from the last one if that is near, else from cold.
-
-    Parameters
-    ----------
-    rtol : float
-        Relative tolerance of the states, as in :func:`stribeck.solve`.
-
-    Raises
-    ------
-    InputError
-        If ``rtol`` is outside its range.
-
-    Notes
-    -----
-    Each state meets ``rtol`` by its own error estimate, wherever it started from
-    (``test_near.py::test_a_state_does_not_depend_on_what_it_was_solved_from``).
-    """
+    """Solves one state after another, each from the last one if that is near, else from cold."""
 
     def __init__(self, rtol: float = 1e-6) -> None:
         rtol = check_rtol(rtol)
@@ -50,25 +34,7 @@ class WarmStartSolver:
 
     @one_blas_thread
     def __call__(self, problem: Groups | Contact) -> Solution:
-        """Return the state of a contact or of its groups.
-
-        Parameters
-        ----------
-        problem : Groups or Contact
-            The state.
-
-        Returns
-        -------
-        Solution
-            As of :func:`stribeck.solve`; between the nodes its fields are good to about 1e-4.
-
-        Raises
-        ------
-        InputError
-            If ``problem`` is neither, or many states.
-        SolveError
-            If the state cannot be solved from cold either.
-        """
+        """Return the state of a contact or of its groups."""
         groups, contact = as_groups(problem)
         if groups.is_hertzian:
             return hertz_solution(groups, contact, self.rtol)

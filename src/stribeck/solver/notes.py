@@ -77,20 +77,6 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     r"""Return the sentence that says that a contact is one of hard elastohydrodynamics.
 
     .. math:: \eta(p_\mathrm{Hz})/\eta = \exp(\alpha_p \, p_\mathrm{Hz})
-
-    Parameters
-    ----------
-    contact : Contact or None
-        The contact; without one pressures in Pa are not known.
-
-    Returns
-    -------
-    tuple of str
-        The sentence; empty up to a Hertz pressure of 50 MPa, and for a fluid with a law of viscosity over pressure.
-
-    Notes
-    -----
-    With the 10 to 25 1/GPa of oils, viscosity is 1.6 to 3.5 times as high at 50 MPa.  Source: when_not_to_use.md.
     """
     if contact is None or contact.groups.model.film.uses_pressure or not contact.hertz.pressure > HIGHEST_PRESSURE:
         return ()
@@ -105,22 +91,7 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
 
 
 def fluid_notes(film: Film, gap: Array, pressure: Array, flux_gap: float) -> tuple[str, ...]:
-    """Return the sentences that say where a film leaves the range of its laws.
-
-    Parameters
-    ----------
-    film : Film
-        The film at the speed of the state.
-    gap, pressure : ndarray
-        Gap and fluid pressure at the nodes, in Hertz units.
-    flux_gap : float
-        The flux gap h* [u_Hz]; nan for a ball, whose flow along a line is not one number.
-
-    Returns
-    -------
-    tuple of str
-        The sentences; mostly none.
-    """
+    """Return the sentences that say where a film leaves the range of its laws."""
     said = film.notes(gap, pressure if film.uses_pressure else None, flux_gap)
     return tuple(f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said)
 
@@ -148,24 +119,7 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
 def law_notes(
     groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None = None
 ) -> tuple[str, ...]:
-    """Return the sentences that say where the contact law leaves its range while asperities still matter.
-
-    Parameters
-    ----------
-    groups : Groups
-        The groups of the state, with its law.
-    contact : Contact or None
-        The contact; groups alone are weighed with boundary friction 1, alpha = 2 and beta = 0.05.
-    values : Values
-        Those of the state.
-    given : tuple of float, optional
-        Boundary friction and beta that are given beside groups.
-
-    Returns
-    -------
-    tuple of str
-        The sentences; none where asperities have at most 1 % of the load and of the friction.
-    """
+    """Return the sentences that say where the contact law leaves its range while asperities still matter."""
     if groups.roughness == 0:
         return ()
     shares = _shares(contact, values, given)
@@ -201,26 +155,7 @@ def matters(contact: Contact | None, values: Values) -> bool:
 
 
 def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
-    """Return the note on a friction minimum whose gap is outside the range of the contact law; empty if it is inside.
-
-    Parameters
-    ----------
-    groups : Groups
-        The groups there, with the law.
-    contact : Contact or None
-        The contact there.
-    values : Values
-        Those of the state.
-    friction : float
-        Share of the friction that asperities cause [-].
-    where : str
-        Where the minimum lies, such as ``"speed 27.6 mm/s"``.
-
-    Returns
-    -------
-    str
-        One sentence, or none.
-    """
+    """Return the note on a friction minimum whose gap is outside the range of the contact law; empty if it is inside."""
     if not (groups.roughness > 0 and friction > NEGLIGIBLE_SHARE and has_endless_tail(groups.law)):
         return ""
     ratio, measured = _gap_ratio(groups, contact, values)
@@ -277,27 +212,7 @@ LINE_BREAKS = (
 
 
 def cavitation_notes(contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_BREAKS) -> tuple[str, ...]:
-    """Return the note on a suction behind the contact of more than an atmosphere.
-
-    Parameters
-    ----------
-    contact : Contact or None
-        The contact; without one nothing is known of pressures in Pa.
-    fluid_pressure : ndarray
-        Fluid pressure above the ambient [p_Hz].
-    consequence : str
-        What a film that breaks at ambient pressure changes.
-
-    Returns
-    -------
-    tuple of str
-        The sentence, or nothing.
-
-    Notes
-    -----
-    Where the film breaks already at ambient pressure, suction of any size counts, and the fluid carries load in another order
-    of the speed; the numbers are from a separate calculation.  Source: when_not_to_use.md, "Cavitation behind the contact".
-    """
+    """Return the note on a suction behind the contact of more than an atmosphere."""
     if contact is None:
         return ()
     suction = -float(fluid_pressure.min()) * contact.hertz.pressure

@@ -66,28 +66,7 @@ class Departures:
 
 
 def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float) -> Departures:
-    r"""Return texture and skewness of a scan.
-
-    Parameters
-    ----------
-    topography : Topography
-        Heights without trend and without missing points.
-    measured : MeasuredSpectrum
-        Their spectrum.
-    hurst : float
-        Hurst exponent, which sets how strongly a stretch of the surface shows in A [-].
-
-    Returns
-    -------
-    Departures
-        Both.
-
-    Notes
-    -----
-    The aspect ratio is that of a stretched self-affine surface without a roll-off; with one, the surface is stretched more.
-    The variance of the skewness of correlated Gaussian heights is :math:`6 \sum \rho^3 / N`, with the autocorrelation
-    :math:`\rho` of the scan.  Both are tested on synthetic surfaces (``test_departures.py``).
-    """
+    r"""Return texture and skewness of a scan."""
     z = topography.heights - topography.heights.mean()
     deviation = float(z.std())
     rho = np.fft.ifftn(np.abs(np.fft.fftn(z)) ** 2).real / (z.size * deviation**2)
@@ -103,20 +82,7 @@ def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float)
 
 
 def departure_notes(topography: Topography, found: Departures) -> list[str]:
-    """Return a sentence for each departure that spoils the numbers.
-
-    Parameters
-    ----------
-    topography : Topography
-        Heights without trend.
-    found : Departures
-        Its texture and skewness.
-
-    Returns
-    -------
-    list of str
-        The sentences; none for an isotropic Gaussian scan of a plausible size.
-    """
+    """Return a sentence for each departure that spoils the numbers."""
     notes = _size_notes(topography)
     if found.aspect_ratio is not None and found.direction is not None and found.aspect_ratio > STRETCHED:
         times = f"{found.aspect_ratio:.2g} times" if found.aspect_ratio < MOST_STRETCHED else "many times"

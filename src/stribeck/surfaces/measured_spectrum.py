@@ -191,18 +191,6 @@ def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
     r"""Return the spectrum along a line of a self-affine surface without a short cut-off.
 
     .. math:: C_1(q) = 2 \int_0^\infty C(q \cosh v)\, q \cosh v\, \mathrm{d}v
-
-    Parameters
-    ----------
-    wavenumber : ndarray
-        Wave numbers along the line, of any shape [1/m].
-    roughness : SelfAffine
-        The surface; its spectrum goes on beyond ``q1``, and is flat below the roll-off to ``q0`` and zero below that.
-
-    Returns
-    -------
-    ndarray
-        C_1 [m^3].
     """
     k = np.asarray(wavenumber, dtype=float)
     q_r, q0, H = roughness.roll_off or roughness.q0, roughness.q0, roughness.hurst

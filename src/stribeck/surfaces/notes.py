@@ -23,20 +23,7 @@ REPAIRED = 0.05
 
 
 def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
-    """Return sentences on the repair of spikes.
-
-    Parameters
-    ----------
-    spikes : int
-        Number of spikes that were replaced.
-    repaired, spiked : float
-        Rms height of the scan without and with them [m].
-
-    Returns
-    -------
-    list of str
-        The sentences; none without spikes.
-    """
+    """Return sentences on the repair of spikes."""
     if spikes == 0:
         return []
     change = f"{format_si(spiked, 'length')} with its spikes and {format_si(repaired, 'length')} without"
@@ -50,24 +37,7 @@ def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
 
 
 def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
-    """Return sentences on what the fit does not see, or does not fit.
-
-    Parameters
-    ----------
-    topography : Topography
-        Heights without trend.
-    body : Form
-        The trend.
-    measured : MeasuredSpectrum
-        Spectrum of the heights.
-    fit : SelfAffineFit
-        Its fit.
-
-    Returns
-    -------
-    list of str
-        The sentences.
-    """
+    """Return sentences on what the fit does not see, or does not fit."""
     notes = []
     if "roll_off" not in fit.found and "q0" not in fit.found:
         notes.append(

@@ -71,29 +71,7 @@ def read_text(
     height_unit: str | None = None,
     spacing: str | float | Sequence[str | float] | None = None,
 ) -> Topography:
-    """Read heights from a text file.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    unit : str, optional
-        Unit of positions, and of heights where ``height_unit`` is not given, such as ``"um"``.
-    height_unit : str, optional
-        Unit of heights.
-    spacing : str, float or sequence of two, optional
-        Distance between points, with its unit or in m, where the file has no positions; one for both axes, or one each.
-
-    Returns
-    -------
-    Topography
-        The heights in m.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read, declares no unit, or a row is wrong; the line and the column are named.
-    """
+    """Read heights from a text file."""
     table = _table(path)
     columns = table.values.shape[1]
     if 3 < columns < FEWEST[2] and any(table.names):

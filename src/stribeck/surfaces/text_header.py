@@ -55,23 +55,13 @@ _SIZE = re.compile(
 
 @dataclass(frozen=True)
 class Header:
-    """Declarations above the heights.
+    """Declarations above the heights."""
 
-    Attributes
-    ----------
-    lateral, vertical : str or None
-        Unit of positions and of heights, where a line of its own says it.
-    steps, sizes : dict
-        Distance between points and length of the scan by axis, 0 along x and 1 along y [m], and the line that says so.
-    codes : tuple of str
-        Numbers that stand for no height.
-    """
-
-    lateral: str | None = None
-    vertical: str | None = None
+    lateral: str | None = None  # Unit of positions and of heights, where a line of its own says it
+    vertical: str | None = None  # Unit of positions and of heights, where a line of its own says it
     steps: dict[int, tuple[float, str]] = field(default_factory=dict)
     sizes: dict[int, tuple[float, str]] = field(default_factory=dict)
-    codes: tuple[str, ...] = ()
+    codes: tuple[str, ...] = ()  # Numbers that stand for no height
 
     def spacing(self, path: Path, shape: tuple[int, ...]) -> tuple[tuple[float, str] | None, ...]:
         """Return the distance between points along each axis and the line it is from, None where the header is silent."""

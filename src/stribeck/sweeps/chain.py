@@ -23,33 +23,15 @@ OnRow = Callable[[int, Array, str], object]
 
 @dataclass(frozen=True)
 class Chain:
-    """States to solve one after the other, in a form that travels to other processes.
+    """States to solve one after the other, in a form that travels to other processes."""
 
-    Attributes
-    ----------
-    rows : tuple of int
-        Their numbers in the sweep.
-    groups : tuple of tuple
-        Speed, load and roughness group of each.
-    inputs : dict of str to tuple
-        By the name of the input, its values: those of a contact in SI units, or ``boundary_friction`` and ``beta``.
-    si : bool
-        Which of the two.
-    rtol : float
-        Relative tolerance of each state.
-    physics : Physics
-        Contact law and geometry of all, and the model of the first.
-    parts : Parts
-        Fluid, cavitation, flow factors, solid and motion of all contacts.
-    """
-
-    rows: tuple[int, ...]
-    groups: tuple[tuple[float, float, float], ...]
+    rows: tuple[int, ...]  # Their numbers in the sweep
+    groups: tuple[tuple[float, float, float], ...]  # Speed, load and roughness group of each
     inputs: dict[str, tuple[float, ...]]
-    si: bool
-    rtol: float
-    physics: Physics
-    parts: Parts = DEFAULT
+    si: bool  # Which of the two
+    rtol: float  # Relative tolerance of each state
+    physics: Physics  # Contact law and geometry of all, and the model of the first
+    parts: Parts = DEFAULT  # Fluid, cavitation, flow factors, solid and motion of all contacts
 
     def contact(self, i: int) -> Contact | None:
         """Return the contact of the i-th state, where it has one."""
@@ -72,21 +54,7 @@ class Chain:
 
 
 def solve_chain(chain: Chain, on_row: OnRow) -> None:
-    """Solve the states of a chain in their order.
-
-    Parameters
-    ----------
-    chain : Chain
-        What to solve.
-    on_row : callable
-        ``on_row(row, values, text)`` is called as soon as a state is finished, with what :meth:`Chain.row` makes of it, also
-        where it failed.  What it raises ends the chain.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user interrupted it.
-    """
+    """Solve the states of a chain in their order."""
 
     def on_state(i: int, ended: Ended) -> None:
         on_row(chain.rows[i], *chain.row(i, ended))

@@ -27,21 +27,7 @@ OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
 
 
 def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of each number of a row, in their order.
-
-    Parameters
-    ----------
-    si : bool
-        Whether the states are contacts in SI units, so that films have lengths.
-    physics : Physics
-        Geometry of the states, how their films end, and their contact law: one that knows its spectrum has the real area of
-        contact.
-
-    Returns
-    -------
-    dict of str to tuple
-        By name; the last is the outcome, as a place in :data:`OUTCOMES`.
-    """
+    """Return unit and meaning of each number of a row, in their order."""
     line = physics["geometry"] == "line"
     table = ENDING[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
     found = dict(table.listed)

@@ -26,25 +26,7 @@ LARGEST_RECORD = 1024  # [byte]
 
 @contextmanager
 def locked(folder: Path) -> Iterator[str]:
-    """Hold the lock of a store.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        The store.
-
-    Yields
-    ------
-    str
-        A note on what was found, such as the lock of a sweep that has died; empty if there was nothing.
-
-    Raises
-    ------
-    InputError
-        If another sweep holds it, or the folder cannot be written.
-    MissingExtraError
-        If filelock is not installed.
-    """
+    """Hold the lock of a store."""
     try:
         from filelock import SoftFileLock, Timeout
     except ImportError:
@@ -90,13 +72,7 @@ def _in_use(file: Path) -> str:
 
 
 def _holder(file: Path) -> tuple[int, str] | None:
-    """Return process and host that a lock file names, None if there is no file.
-
-    Raises
-    ------
-    InputError
-        If it is none that a sweep has written.
-    """
+    """Return process and host that a lock file names, None if there is no file."""
     try:
         odd = not stat.S_ISREG(file.lstat().st_mode)  # a pipe would be waited for
         with open(os.devnull if odd else file, encoding="utf-8") as stream:

@@ -25,28 +25,14 @@ RANDOM: tuple[Kind, ...] = KINDS[2:]
 
 @dataclass(frozen=True)
 class Axis:
-    """What one input takes in a design: values that are listed, or a range.
+    """What one input takes in a design: values that are listed, or a range."""
 
-    Attributes
-    ----------
-    name : str
-        The input.
-    values : tuple of float
-        What is listed; empty for a range.
-    low, high : float
-        Ends of a range.
-    points : int
-        Values on a range in a grid; 0 where the design draws them.
-    spacing : {"log", "linear"}
-        In what a range is even.
-    """
-
-    name: str
-    values: tuple[float, ...] = ()
-    low: float = math.nan
-    high: float = math.nan
-    points: int = 0
-    spacing: Literal["log", "linear"] = "log"
+    name: str  # The input
+    values: tuple[float, ...] = ()  # What is listed; empty for a range
+    low: float = math.nan  # Ends of a range
+    high: float = math.nan  # Ends of a range
+    points: int = 0  # Values on a range in a grid; 0 where the design draws them
+    spacing: Literal["log", "linear"] = "log"  # In what a range is even
 
     def __len__(self) -> int:
         """Return the number of values in a grid or a list."""
@@ -69,24 +55,7 @@ class Axis:
 
 
 def points_of(kind: Kind, axes: Sequence[Axis], points: int = 0, seed: int = 0) -> dict[str, Array]:
-    """Return the value of each axis at each state of a design.
-
-    Parameters
-    ----------
-    kind : {"grid", "list", "random", "latin-hypercube", "sobol"}
-        The design.  The states of a grid come in the order of the axes, the last one fastest.
-    axes : sequence of Axis
-        What varies.
-    points : int
-        States of a design at random; a power of two for "sobol".
-    seed : int
-        Of a design at random: the same seed gives the same states.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By the name of the axis, all of one length.
-    """
+    """Return the value of each axis at each state of a design."""
     if kind == "list":
         return {axis.name: axis.every() for axis in axes}
     if kind == "grid":

@@ -33,21 +33,11 @@ LARGEST_CHUNK = 100_000  # [byte]
 
 @dataclass(frozen=True)
 class Rows:
-    """What a store holds of its states.
+    """What a store holds of its states."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (n, columns)
-        Their numbers, nan where a state is not finished.
-    done : ndarray of bool, shape (n,)
-        Which are finished.
-    texts : tuple of str
-        What there is to say about each.
-    """
-
-    values: Array
-    done: Flags
-    texts: tuple[str, ...]
+    values: Array  # Their numbers, nan where a state is not finished
+    done: Flags  # Which are finished
+    texts: tuple[str, ...]  # What there is to say about each
 
 
 class Writer:
@@ -57,13 +47,7 @@ class Writer:
         self.path = path
 
     def __call__(self, row: int, values: Array, text: str) -> None:
-        """Write one state: text and numbers first, then the flag that it is done.
-
-        Raises
-        ------
-        SweepError
-            If the disk does not take it.
-        """
+        """Write one state: text and numbers first, then the flag that it is done."""
         said = _text(text)
         numbers = values.astype("<f8").tobytes()
         try:
@@ -92,23 +76,7 @@ class Writer:
 
 
 def read_rows(path: Path) -> Rows:
-    """Return the finished states of a store; what does not fit its checksum counts as not done.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The store.
-
-    Returns
-    -------
-    Rows
-        What is finished.
-
-    Raises
-    ------
-    InputError
-        If it is no store, is damaged, or holds what belongs to no state.
-    """
+    """Return the finished states of a store; what does not fit its checksum counts as not done."""
     about = describe_store(path)
     n = about["states"]
     values = np.full((n, len(about["values"]["columns"])), np.nan)
@@ -139,13 +107,7 @@ def _finished(path: Path, row: int, columns: int) -> tuple[Array, str] | None:
 
 
 def clean(path: Path, rows: Rows) -> None:
-    """Remove what killed processes left: temporary files, and chunks of states that do not count as done.
-
-    Raises
-    ------
-    InputError
-        If it cannot be removed, or a chunk belongs to no state.
-    """
+    """Remove what killed processes left: temporary files, and chunks of states that do not count as done."""
     with _told(path, "cleared"):
         for array in ("values", "text", "done"):
             for row, name in _chunks(path, array, len(rows.done)).items():

@@ -35,25 +35,7 @@ def seal(store: Path) -> None:
 
 
 def read_sealed(store: Path, name: str) -> bytes:
-    """Return the content of a file of a store, verified.
-
-    Parameters
-    ----------
-    store : pathlib.Path
-        The store.
-    name : str
-        One of :data:`SEALED`.
-
-    Returns
-    -------
-    bytes
-        What was written there when the store was made.
-
-    Raises
-    ------
-    InputError
-        If the file or its checksum cannot be read, or do not fit each other.
-    """
+    """Return the content of a file of a store, verified."""
     sums = _read(store, SUMS, LARGEST_SUMS)
     found = re.search(rf"^([0-9a-f]{{64}})  {re.escape(name)}$", sums.decode("ascii", errors="replace"), re.MULTILINE)
     content = _read(store, name, LARGEST)

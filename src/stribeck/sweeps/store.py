@@ -54,27 +54,7 @@ class SweepError(RuntimeError):
 
 
 def create_or_open(path: PathLike, design: SweepDesign) -> Path:
-    """Make the store of a design, or open the one that is there if it is of the same design and version.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The store, a folder.
-    design : SweepDesign
-        What is swept.
-
-    Returns
-    -------
-    pathlib.Path
-        The store.
-
-    Raises
-    ------
-    InputError
-        If the place is taken, cannot be written, or holds another sweep.
-    MissingExtraError
-        If zarr is not installed.
-    """
+    """Make the store of a design, or open the one that is there if it is of the same design and version."""
     store = path_of(path)
     zarr = _zarr()
     if store.exists():
@@ -147,23 +127,7 @@ def _about(columns: dict[str, tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def describe_store(path: PathLike) -> dict[str, Any]:
-    """Return what a store says of itself: its attributes, and under ``"inputs"`` and ``"values"`` those of its columns.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The store.
-
-    Returns
-    -------
-    dict
-        From its ``zarr.json`` files, and under ``"states"`` their number.
-
-    Raises
-    ------
-    InputError
-        If this is no store of a sweep, or it is not what was written.
-    """
+    """Return what a store says of itself: its attributes, and under ``"inputs"`` and ``"values"`` those of its columns."""
     store = path_of(path)
     try:
         # Whether this is a store at all, before what is in it is compared with its checksums.
@@ -185,25 +149,7 @@ def describe_store(path: PathLike) -> dict[str, Any]:
 
 
 def read_inputs(store: Path, shape: tuple[int, int]) -> Array:
-    """Return the inputs and groups of all states, verified.
-
-    Parameters
-    ----------
-    store : pathlib.Path
-        The store.
-    shape : tuple of int
-        Number of states, and of inputs and groups.
-
-    Returns
-    -------
-    ndarray
-        A column for each.
-
-    Raises
-    ------
-    InputError
-        If they are not what was written.
-    """
+    """Return the inputs and groups of all states, verified."""
     return np.frombuffer(read_sealed(store, "inputs/c/0/0"), dtype="<f8").reshape(shape)
 
 

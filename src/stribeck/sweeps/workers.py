@@ -82,13 +82,7 @@ class _StopWorkError(Exception):
 
 
 def on_processes(path: Path, chains: Chains, workers: int, finished: Finished, pause: Pause) -> None:
-    """Solve the chains on processes of this machine, which write each state as it is finished.
-
-    Raises
-    ------
-    BrokenProcessPool
-        If a process was killed; the others have ended then.
-    """
+    """Solve the chains on processes of this machine, which write each state as it is finished."""
     context = multiprocessing.get_context("spawn")  # a fork would copy locks that threads of this process hold
     stop = context.Event()
     ahead = iter(chains)
@@ -156,17 +150,7 @@ def _solve_here(chain: Chain) -> tuple[int, int]:
 
 
 def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, pause: Pause) -> None:
-    """Solve the chains on a Dask cluster; its workers send each state as it is finished, and this process writes it.
-
-    Raises
-    ------
-    InputError
-        If no scheduler answers, or a worker has another version of this package.
-    MissingExtraError
-        If dask is not installed.
-    SweepError
-        If the scheduler is lost, or a task cannot be run.
-    """
+    """Solve the chains on a Dask cluster; its workers send each state as it is finished, and this process writes it."""
     try:
         from distributed import Client
     except ImportError:

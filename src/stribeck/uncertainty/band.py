@@ -39,20 +39,7 @@ class Band:
     high: Array
 
     def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
-        """Return the ends of the interval of friction at other places.
-
-        Parameters
-        ----------
-        values : ndarray, shape (m,)
-            Speeds, loads or roughnesses, in SI units.
-        friction : ndarray, shape (m,)
-            Size of the friction there [-].
-
-        Returns
-        -------
-        ndarray, ndarray
-            Low and high ends; nan beyond those of the band.
-        """
+        """Return the ends of the interval of friction at other places."""
         at, known = np.log(values), np.log(self.values)
         low, high = (friction * np.interp(at, known, part, left=np.nan, right=np.nan) for part in (self.low, self.high))
         return low, high
@@ -67,28 +54,7 @@ def friction_band(
     *,
     on_point: Callable[[int, int], object] | None = None,
 ) -> Band | None:
-    """Return the 95 % interval of the friction between two speeds, loads or roughnesses, as :func:`stribeck.propagate` has it.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    errors : mapping
-        Standard errors of inputs, as for :func:`stribeck.propagate`.
-    ends : sequence of float
-        Lowest and highest value of what varies, in SI units.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    over : {"speed", "load", "roughness"}
-        What varies.
-    on_point : callable, optional
-        Is called after each point with their number and that of all; an exception that it raises ends the work.
-
-    Returns
-    -------
-    Band or None
-        The band over the points whose states can be solved; None if there are fewer than two.
-    """
+    """Return the 95 % interval of friction between two speeds, loads or roughnesses, as ``propagate`` has it."""
     count = POINTS[contact.groups.geometry]
     found = []
     for i, value in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):

@@ -170,25 +170,7 @@ def propagate(
 
 
 def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
-    """Return the standard error of the logarithm of each uncertain input that a contact keeps.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    errors : mapping
-        As in :func:`propagate`.
-
-    Returns
-    -------
-    dict of str to float
-        By name, in the order of the inputs.
-
-    Raises
-    ------
-    InputError
-        If an input is unknown, its error no positive number, or so large that the input leaves its range.
-    """
+    """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
     rows = fitted_rows(contact.INPUTS)
     found: dict[str, float] = {}
     for name, error in errors.items():
@@ -228,22 +210,7 @@ def _check_range(row: PartInput, value: float, sigma: float) -> None:
 
 
 def moving_with(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
-    """Return the inputs that move together with one.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact.
-    name : str
-        The input.
-    sigmas : mapping
-        The uncertain inputs.
-
-    Returns
-    -------
-    tuple of str
-        The input itself, and beta with the roughness under Persson's law unless beta has an error of its own.
-    """
+    """Return the inputs that move together with one."""
     return ("roughness", "beta") if name == "roughness" and follows_surface(contact, {name, *sigmas}) else (name,)
 
 

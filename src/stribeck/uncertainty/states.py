@@ -62,18 +62,7 @@ TINY = 1e-290
 
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:
-    """Return the films that states of a geometry have, of :data:`NAMES`.
-
-    Parameters
-    ----------
-    geometry : {"line", "point"}
-        The geometry.
-
-    Returns
-    -------
-    tuple of str
-        Their names.
-    """
+    """Return the films that states of a geometry have, of :data:`NAMES`."""
     return tuple(name for name in NAMES if name in OUTPUT_TABLES[geometry].names)
 
 
@@ -85,32 +74,7 @@ def states_of(
     contact: Contact | None = None,
     friction: Callable[[dict[str, Array]], Array] | None = None,
 ) -> tuple[dict[str, Array], str, tuple[str, ...]]:
-    """Return load share, viscous friction and films of samples.
-
-    Parameters
-    ----------
-    groups : Groups
-        The middle.
-    offsets : ndarray, shape (n, 3)
-        Logarithms of each sample's groups of speed, load and roughness over those in the middle.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of solved states.
-    contact : Contact, optional
-        Whose beta, motion and liquid the viscous friction of a ball takes.
-    friction : callable, optional
-        Friction of the samples from what this returns of them, whose interval is bounded by solved states.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
-        ``contact_load_share``, ``viscous``, which is over beta, and the films of :func:`films_of`.
-    str
-        ``"atlas"`` or ``"solver"``.
-    tuple of str
-        What to know of the interval of friction, where it is not as sure as the pages promise.
-    """
+    """Return load share, viscous friction and films of samples."""
     table = atlas.for_groups(groups)
     if table is not None:
         samples = _moved(groups, offsets)
@@ -135,32 +99,7 @@ def states_by_inputs(
     rtol: float,
     friction: Callable[[dict[str, Array]], Array],
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle.
-
-    Parameters
-    ----------
-    contact : Contact
-        The contact in the middle.
-    moves : sequence of tuple of str
-        The inputs that move together, for each independent one.
-    sigmas : ndarray, shape (m,)
-        Standard deviation of the logarithm of each.
-    draws : ndarray, shape (n, m)
-        The samples, in standard deviations.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of solved states.
-    friction : callable
-        As for :func:`states_of`.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
-        As :func:`states_of` returns them.
-    tuple of str
-        As :func:`states_of` returns it.
-    """
+    """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle."""
 
     def at(distances: Mapping[str, float]) -> Array:
         moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})

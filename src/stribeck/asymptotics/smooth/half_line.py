@@ -54,15 +54,9 @@ def _differences(one: Roots, two: Roots, three: Roots) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """The smooth pressure of Hertz's far field at given positions, and its gap.
+    """The smooth pressure of Hertz's far field at given positions, and its gap."""
 
-    Parameters
-    ----------
-    xi : ndarray
-        Positions, the contact at negative ones.
-    """
-
-    xi: Array
+    xi: Array  # Positions, the contact at negative ones
 
     @cached_property
     def _roots(self) -> tuple[Roots, Roots, Roots]:
@@ -99,21 +93,11 @@ class Base:
 
 @dataclass(frozen=True, eq=False)
 class HalfLine:
-    """Panels from ``-reach`` to about ``reach``; beyond them P - P_B is zero.
+    """Panels from ``-reach`` to about ``reach``; beyond them P - P_B is zero."""
 
-    Parameters
-    ----------
-    reach : float
-        Smallest half-width of the box.
-    width : float
-        Width of the panels near the edge.
-    order : int
-        Nodes on each panel.
-    """
-
-    reach: float
-    width: float
-    order: int
+    reach: float  # Smallest half-width of the box
+    width: float  # Width of the panels near the edge
+    order: int  # Nodes on each panel
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -156,27 +140,13 @@ class HalfLine:
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A solved boundary layer.
+    """A solved boundary layer."""
 
-    Attributes
-    ----------
-    line : HalfLine
-        Its panels.
-    constant : float
-        C, the constant of the gap beside the deflection.
-    load : float
-        Integral of P - P_H.
-    excess : ndarray, shape (n,)
-        P - P_B at the nodes.
-    deflection : ndarray, shape (n,)
-        Deflection under it.
-    """
-
-    line: HalfLine
-    constant: float
-    load: float
-    excess: Array
-    deflection: Array
+    line: HalfLine  # Its panels
+    constant: float  # C, the constant of the gap beside the deflection
+    load: float  # Integral of P - P_H
+    excess: Array  # P - P_B at the nodes
+    deflection: Array  # Deflection under it
 
     def gap(self, xi: Array) -> Array:
         """Return the gap H at any positions."""

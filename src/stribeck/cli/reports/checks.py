@@ -18,17 +18,7 @@ STYLES = {"fine": "green", "doubtful": "yellow", "outside": "bold red"}
 
 
 def print_checks(console: Console, checks: Checks, title: str) -> None:
-    """Print whether the model applies and why.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    checks : Checks
-        The checks.
-    title : str
-        Headline.
-    """
+    """Print whether the model applies and why."""
     say(console, checks.headline, STYLES[checks.verdict])
     if title:
         say(console, title, "bold")

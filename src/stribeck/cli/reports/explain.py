@@ -37,33 +37,15 @@ POINTS = 41
 
 @dataclass(frozen=True)
 class Regimes:
-    """Everything about the regime of a contact.
+    """Everything about the regime of a contact."""
 
-    Attributes
-    ----------
-    solution : Solution
-        Its state.
-    sensitivities : dict of str to float
-        Those of its friction.
-    curve : StribeckCurve
-        The curve over the speed through it.
-    margins : RegimeMargins
-        The way to the next regimes.
-    checks : Checks or None
-        Whether the model applies.
-    errors : Uncertainty or None
-        Uncertainty of the results, if inputs have errors.
-    reason : str
-        Why there are no sensitivities; empty where there are some.
-    """
-
-    solution: Solution
-    sensitivities: dict[str, float]
-    curve: StribeckCurve
-    margins: RegimeMargins
-    checks: Checks | None
-    errors: sb.Uncertainty | None
-    reason: str = ""
+    solution: Solution  # Its state
+    sensitivities: dict[str, float]  # Those of its friction
+    curve: StribeckCurve  # The curve over the speed through it
+    margins: RegimeMargins  # The way to the next regimes
+    checks: Checks | None  # Whether the model applies
+    errors: sb.Uncertainty | None  # Uncertainty of the results, if inputs have errors
+    reason: str = ""  # Why there are no sensitivities; empty where there are some
 
 
 class Explanation(str):
@@ -78,25 +60,7 @@ class Explanation(str):
 
 
 def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = None) -> Regimes:
-    """Solve everything about the regime of a case.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    on_point : callable, optional
-        ``on_point(done, total)`` is called as points are finished.
-
-    Returns
-    -------
-    Regimes
-        State, sensitivities, curve, margins and checks.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user interrupted it.
-    """
+    """Solve everything about the regime of a case."""
     contact, rtol, definition = case.contact, case.rtol, case.definition
     solution, sensitivities, reason = sensitivities_if_known(contact, rtol=rtol, definition=definition)
     coarse = scanned_rtol(contact, rtol)
@@ -112,17 +76,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
 
 
 def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
-    """Print everything about the regime of a case.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    found : Regimes
-        What was solved.
-    case : Case
-        The case.
-    """
+    """Print everything about the regime of a case."""
     print_regimes(console, found.solution, found.sensitivities, found.curve, found.margins, case.title, found.checks)
     if found.reason:
         say(console, f"No sensitivities: {found.reason}")

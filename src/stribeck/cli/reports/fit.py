@@ -25,21 +25,7 @@ __all__ = ["fit_json", "print_fit"]
 
 
 def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (), posterior: Posterior | None = None) -> None:
-    """Print a fit: how it ended, the inputs with their intervals, what the residuals say, and notes.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    fit : Fit
-        The fit.
-    title : str
-        Headline; empty for none.
-    files : sequence of str
-        Files that were written.
-    posterior : Posterior, optional
-        The posterior, if it was drawn.
-    """
+    """Print a fit: how it ended, the inputs with their intervals, what the residuals say, and notes."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
@@ -92,24 +78,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
 
 
 def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posterior | None = None) -> dict[str, Any]:
-    """Return a fit with its title, the files written and the posterior.
-
-    Parameters
-    ----------
-    fit : Fit
-        The fit.
-    title : str
-        Headline.
-    files : sequence of str
-        Files that were written.
-    posterior : Posterior, optional
-        The posterior, if it was drawn.
-
-    Returns
-    -------
-    dict
-        Ready for :func:`stribeck.cli.reports.json.dump`.
-    """
+    """Return a fit with its title, the files written and the posterior."""
     found: dict[str, Any] = fit.checks.to_dict() | {"title": title} | fit.to_dict() | {"files": list(files)}
     if posterior is not None:
         names = ("acceptance", "autocorrelation_time", "converged", "message")

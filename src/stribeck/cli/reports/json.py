@@ -28,18 +28,7 @@ __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
 
 
 def dump(content: dict[str, Any]) -> str:
-    """Return content as JSON text; what is not finite becomes null, as JSON knows no nan.
-
-    Parameters
-    ----------
-    content : dict
-        Numbers, text, arrays, sequences and dictionaries of these.
-
-    Returns
-    -------
-    str
-        The text.
-    """
+    """Return content as JSON text; what is not finite becomes null, as JSON knows no nan."""
     return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
 
 
@@ -58,22 +47,7 @@ def _plain(content: Any) -> Any:
 def solution_json(
     solution: BaseSolution, boundary_friction: float | None = None, beta: float | None = None, checks: Checks | None = None
 ) -> dict[str, Any]:
-    """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
-
-    Parameters
-    ----------
-    solution : Solution
-        The state.
-    boundary_friction, beta : float, optional
-        As in :meth:`Solution.friction`.
-    checks : Checks, optional
-        Those of its contact.
-
-    Returns
-    -------
-    dict
-        Ready for :func:`dump`.
-    """
+    """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units."""
     found: dict[str, Any] = checks_json(checks) | solution.to_dict(boundary_friction, beta)
     found["hersey_number"] = hersey_of(solution, beta)
     if solution.contact is not None:
@@ -87,24 +61,7 @@ def solution_json(
 
 
 def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: Checks | None = None) -> dict[str, Any]:
-    """Return a curve with its settings, landmarks and points.
-
-    Parameters
-    ----------
-    curve : StribeckCurve
-        The curve.
-    title : str
-        Headline.
-    files : sequence of str
-        Files that were written.
-    checks : Checks, optional
-        Those of its contact.
-
-    Returns
-    -------
-    dict
-        Ready for :func:`dump`.
-    """
+    """Return a curve with its settings, landmarks and points."""
     names = tuple((curve.solutions[0].outputs if len(curve) else OUTPUT_TABLES[curve.groups.geometry]).listed)
     return {
         **checks_json(checks),
@@ -153,28 +110,7 @@ def regimes_json(
     title: str = "",
     checks: Checks | None = None,
 ) -> dict[str, Any]:
-    """Return the regime of a state, the transitions around it and what moves its friction.
-
-    Parameters
-    ----------
-    solution : Solution
-        The state, of a contact.
-    sensitivities : dict of str to float
-        Those of its friction.
-    curve : StribeckCurve
-        The curve over the speed through it.
-    margins : RegimeMargins
-        The way to the next regimes.
-    title : str
-        Headline.
-    checks : Checks, optional
-        Those of the contact.
-
-    Returns
-    -------
-    dict
-        Ready for :func:`dump`.
-    """
+    """Return the regime of a state, the transitions around it and what moves its friction."""
     assert solution.contact is not None
     friction = solution.friction(definition=curve.definition)
     speed = solution.contact.speed
@@ -215,18 +151,7 @@ def checks_json(checks: Checks | None) -> dict[str, Any]:
 
 
 def law_json(law: AsperityLaw | None) -> dict[str, Any]:
-    """Return name and parameters of a contact law.
-
-    Parameters
-    ----------
-    law : AsperityLaw or None
-        The law; None is the exponential one.
-
-    Returns
-    -------
-    dict
-        ``contact_law`` and ``contact_law_parameters``.
-    """
+    """Return name and parameters of a contact law."""
     if law is None:
         return {"contact_law": "exponential", "contact_law_parameters": {}}
     return {"contact_law": law.name, "contact_law_parameters": law.parameters}

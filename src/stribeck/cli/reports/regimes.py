@@ -41,25 +41,7 @@ def print_regimes(
     title: str,
     checks: Checks | None = None,
 ) -> None:
-    """Print the regime of a contact, its transitions, the margins and the sensitivity of friction.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    solution : BaseSolution
-        The state, of a contact.
-    sensitivities : dict of str to float
-        Those of its friction.
-    curve : StribeckCurve
-        The curve over the speed through it.
-    margins : RegimeMargins
-        The way to the next regimes.
-    title : str
-        Headline.
-    checks : Checks, optional
-        Those of the contact.
-    """
+    """Print the regime of a contact, its transitions, the margins and the sensitivity of friction."""
     contact = solution.contact
     assert contact is not None
     print_head(console, title, contact, solution.groups, checks=checks)
@@ -116,15 +98,7 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
 
 
 def print_uncertainty(console: Console, found: Uncertainty) -> None:
-    """Print the uncertainty of friction, films, transitions and regime.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    found : Uncertainty
-        The propagated errors.
-    """
+    """Print the uncertainty of friction, films, transitions and regime."""
     table = table_of("with errors of the inputs", "value", "95 %", right=(1, 2))
     for each in found.spreads:
         table.add_row(each.label, *each.texts)

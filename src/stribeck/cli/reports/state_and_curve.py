@@ -48,21 +48,7 @@ def print_solution(
     beta: float | None = None,
     checks: Checks | None = None,
 ) -> None:
-    """Print one state as a table with units and errors.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    solution : BaseSolution
-        The state.
-    title : str
-        Headline.
-    boundary_friction, beta : float, optional
-        As in :meth:`Solution.friction`.
-    checks : Checks, optional
-        Those of its contact.
-    """
+    """Print one state as a table with units and errors."""
     print_head(console, title, solution.contact, solution.groups, checks=checks)
     if solution.contact is None:
         dry, slope = (1.0 if value is None else value for value in (boundary_friction, beta))
@@ -138,25 +124,7 @@ def print_curve(
     errors: Uncertainty | None = None,
     verdict: str = "",
 ) -> None:
-    """Print what a curve holds: inputs, regimes, transitions, what errors leave open, error, notes, files.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    curve : StribeckCurve
-        The curve.
-    title : str
-        Headline.
-    files : sequence of str
-        Files that were written.
-    checks : Checks, optional
-        Those of its contact.
-    errors : Uncertainty, optional
-        The propagated errors of its inputs.
-    verdict : str
-        Sentence that says whether the model applies, which stands first unless the checks say more.
-    """
+    """Print what a curve holds: inputs, regimes, transitions, what errors leave open, error, notes, files."""
     if verdict and checks is not None and not checks.first_line:
         say(console, verdict)
     print_head(console, title, curve.contact, curve.groups, curve.over, checks)

@@ -18,17 +18,7 @@ __all__ = ["print_surface"]
 
 
 def print_surface(console: Console, surface: Surface, written: Sequence[str] = ()) -> None:
-    """Print the numbers of a surface with their errors, and what must be known about them.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to print.
-    surface : Surface
-        The surface.
-    written : sequence of str
-        Files that were written.
-    """
+    """Print the numbers of a surface with their errors, and what must be known about them."""
     for line in [*surface_lines(surface), *(f"Written: {name}" for name in written)]:
         say(console, line)
 

@@ -131,18 +131,7 @@ def print_head(
 
 
 def law_sentence(law: AsperityLaw) -> str:
-    """Return name and parameters of a contact law as a sentence.
-
-    Parameters
-    ----------
-    law : AsperityLaw
-        The law.
-
-    Returns
-    -------
-    str
-        Such as ``"Contact law: persson (alpha 2.09, beta 0.0143)."``
-    """
+    """Return name and parameters of a contact law as a sentence."""
     numbers = in_words(law.parameters)
     return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 

@@ -67,15 +67,7 @@ matrix is factorised anew."""
 
 
 class Passing:
-    """The path of gas from torn nodes: downstream from node to node, until one with a film takes it.
-
-    Parameters
-    ----------
-    spread : csc_matrix or None
-        Residual at all nodes by unit gas at each; None if gas stays at its node.
-    torn : ndarray of bool, shape (modes, rings)
-        The torn nodes.
-    """
+    """The path of gas from torn nodes: downstream from node to node, until one with a film takes it."""
 
     def __init__(self, spread: csc_matrix | None, torn: Flags) -> None:
         self.torn, self.spread = torn, None
@@ -189,13 +181,6 @@ def swept(gas: Array, now: Flags, before: Flags) -> Flags:
 
     Behind a line of rupture that lies too far upstream one node a step would heal, with the flow that ends there: that is
     passed on to torn neighbours, whose gas it fills.
-
-    Parameters
-    ----------
-    gas : ndarray, shape (modes, rings)
-        What is missing at the nodes, as residuals; below zero where there is too much.
-    now, before : ndarray of bool
-        The torn nodes by complementarity, and those of the step.
     """
     stays, left, given = before & now, gas.copy(), np.where(before & ~now, gas, 0.0)
     for _ in range(FARTHEST):
@@ -222,28 +207,7 @@ def iterate_cavitated(
     kept: Capacitance | None = None,
     max_steps: int = MOST_STEPS,
 ) -> Iterated:
-    """Return the state of the discrete complementarity problem nearest to ``start``.
-
-    Parameters
-    ----------
-    equations : TornEquations
-        The discretised problem.
-    start : Unknowns
-        First iterate; nodes without a film pressure above the least one are torn at first.
-    tolerance : float
-        Relative error of the gap that the iteration may leave.
-    band : int
-        Band of the preconditioner of the full film.
-    kept : Capacitance, optional
-        Preconditioner of a neighbour on the same mesh.
-    max_steps : int
-        Largest number of steps.
-
-    Returns
-    -------
-    Iterated
-        A failure is returned in its outcome.  The film pressure is the least one at torn nodes, and only there.
-    """
+    """Return the state of the discrete complementarity problem nearest to ``start``."""
     law, least = equations.law, equations.least
     torn = start.fluid <= least
     y = Unknowns(start.gap, np.where(torn, least, start.fluid), start.offset)

@@ -44,18 +44,7 @@ def edge_of(torn: Flags) -> Flags:
 
 
 def outflow(mesh: PolarMesh) -> csc_matrix:
-    """Return the outflow from the cells around the nodes, of a field that moves along x.
-
-    Parameters
-    ----------
-    mesh : PolarMesh
-        The mesh; cells have the area that integrals give their node, half a turn.
-
-    Returns
-    -------
-    csc_matrix, shape (nodes, nodes)
-        Each face takes the field from its node upstream; nothing comes in from beyond the rim.
-    """
+    """Return the outflow from the cells around the nodes, of a field that moves along x."""
     modes, rings = mesh.modes, mesh.rings
     edges = np.sqrt(np.append(0.0, 2.0 * np.cumsum(mesh.ring_weights * mesh.radii)))
     sides = np.arange(modes + 1) * (np.pi / modes)

@@ -25,22 +25,12 @@ POINTS, WEIGHTS = legendre.leggauss(12)
 
 @dataclass(frozen=True, eq=False)
 class Rupture:
-    """The line at which a film ruptures.
+    """The line at which a film ruptures."""
 
-    Attributes
-    ----------
-    rings : ndarray of int
-        Rings that it crosses.
-    angles : ndarray
-        Where it crosses them; nearer to the middle line the film is torn.
-    distances, gaps : ndarray
-        Distances from the middle line, ascending from zero [a], and the gap there over one plus their square.
-    """
-
-    rings: Indices
-    angles: Array
-    distances: Array
-    gaps: Array
+    rings: Indices  # Rings that it crosses
+    angles: Array  # Where it crosses them; nearer to the middle line the film is torn
+    distances: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
+    gaps: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
 
     def gap_at(self, across: Array) -> Array:
         """Return the gap at the line by the distance from the middle line [u_Hz]."""
@@ -48,19 +38,7 @@ class Rupture:
 
 
 def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
-    """Return the line at which a film ruptures; None if it does not.
-
-    Parameters
-    ----------
-    mesh : PolarMesh
-        The mesh.
-    gap, fluid : ndarray, shape (modes, rings)
-        Gap and film pressure at the nodes, zero where the film is torn.
-
-    Notes
-    -----
-    Pressure and its slope vanish at the line: it lies where the root of the pressure, continued from three nodes, does.
-    """
+    """Return the line at which a film ruptures; None if it does not."""
     torn = fluid <= 0.0
     rings = np.flatnonzero(torn[0] & ~torn[-1] & ~torn[-2])
     if not rings.size:

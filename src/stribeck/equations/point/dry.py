@@ -38,22 +38,7 @@ def hertz_gap(r: Array) -> Array:
 
 
 def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12) -> DryContact:
-    """Return the dry contact under a law that has a positive gap at rest.
-
-    Parameters
-    ----------
-    operators : Operators
-        Those of a mesh; only the axisymmetric mode is used.
-    law : ContactLaw
-        Contact pressure from the gap.
-    tolerance : float
-        Size of the last step relative to the gap.
-
-    Returns
-    -------
-    DryContact
-        A failure is in its outcome.
-    """
+    """Return the dry contact under a law that has a positive gap at rest."""
     mesh = operators.mesh
     r, deflection, n = mesh.radii, operators.deflection[0], mesh.rings
     weights, decay = operators.load_row, float(np.max(law.decay_length))

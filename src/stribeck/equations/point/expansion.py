@@ -33,21 +33,11 @@ SHARE = SMOOTH.index("contact_load_share")
 
 
 class Expanded(NamedTuple):
-    """Taylor coefficients about a state, order by order in the first axis.
+    """Taylor coefficients about a state, order by order in the first axis."""
 
-    Attributes
-    ----------
-    unknowns : ndarray, shape (K + 1, 2 nodes + 1)
-        Logarithm of the gap, film pressure, offset.
-    observables : ndarray, shape (K + 1, n)
-        By :data:`SMOOTH`.
-    log_share : ndarray, shape (K + 1,)
-        Of the logarithm of the share of asperities; nan where they carry nothing.
-    """
-
-    unknowns: Array
-    observables: Array
-    log_share: Array
+    unknowns: Array  # Logarithm of the gap, film pressure, offset
+    observables: Array  # By :data:`SMOOTH`
+    log_share: Array  # Of the logarithm of the share of asperities; nan where they carry nothing
 
 
 def as_row(y: Unknowns) -> Array:
@@ -70,30 +60,7 @@ def expand(
     reach: float,
     tolerance: float,
 ) -> Expanded | None:
-    """Return the series of a state whose film does not break.
-
-    Parameters
-    ----------
-    equations : Equations
-        Of the state, of positive speed.
-    y : Unknowns
-        Its solution.
-    preconditioner : BandedModes
-        Of the Jacobian at it.
-    groups_at : callable
-        ``groups_at(t)`` gives the groups at a distance t from the state.
-    order : int
-        The highest order.
-    reach : float
-        Distance up to which the equations are evaluated.
-    tolerance : float
-        Relative residual that GMRES leaves of the first order; that of order k counts less by :data:`WEIGHT` to the k.
-
-    Returns
-    -------
-    Expanded or None
-        None where GMRES does not solve for an order.
-    """
+    """Return the series of a state whose film does not break."""
     op, mesh, shape = equations.operators, equations.operators.mesh, y.gap.shape
     samples, linear = interval(reach, SAMPLES), Linear(equations, y)
     around = [beside(equations, groups_at(t)) for t in samples.places.tolist()]

@@ -33,47 +33,23 @@ class Flow(NamedTuple):
 
 
 class Fluxes(NamedTuple):
-    """Fluxes times the weights of the weak form; mobility and carried amount at the rim.
+    """Fluxes times the weights of the weak form; mobility and carried amount at the rim."""
 
-    Attributes
-    ----------
-    radial : ndarray, shape (modes, panels, degree + 1)
-        Along the radius, panel by panel, as gradients differ on both sides of an edge.
-    angular : ndarray, shape (modes, rings)
-        Across the radius.
-    rim : tuple of ndarray, shape (modes,)
-        Mobility and carried amount there.
-    """
-
-    radial: Array
-    angular: Array
-    rim: tuple[Array, Array]
+    radial: Array  # Along the radius, panel by panel, as gradients differ on both sides of an edge
+    angular: Array  # Across the radius
+    rim: tuple[Array, Array]  # Mobility and carried amount there
 
 
 class FluxSlopes(NamedTuple):
-    """The derivatives of :class:`Fluxes`, with the same weights.
+    """The derivatives of :class:`Fluxes`, with the same weights."""
 
-    Attributes
-    ----------
-    radial_of_pressure, radial_of_gap : ndarray, shape (modes, panels, degree + 1)
-        Along the radius, by the radial derivative of the pressure and by the gap.
-    angular_of_pressure, angular_of_gap : ndarray, shape (modes, rings)
-        Across the radius, by the derivative of the pressure in the angle and by the gap.
-    of_value : tuple of ndarray or None
-        By the pressure itself, along the radius and across it; None for nothing.
-    crossed : ndarray, shape (modes, panels, degree + 1), or None
-        Along the radius by the derivative in the angle, and across it by that in the radius; None for nothing.
-    rim : tuple of ndarray, shape (modes,)
-        Mobility at the rim, and the derivatives of mobility and carried amount by the gap there.
-    """
-
-    radial_of_pressure: Array
-    angular_of_pressure: Array
-    radial_of_gap: Array
-    angular_of_gap: Array
-    of_value: tuple[Array, Array] | None
+    radial_of_pressure: Array  # Along the radius, by the radial derivative of the pressure and by the gap
+    angular_of_pressure: Array  # Across the radius, by the derivative of the pressure in the angle and by the gap
+    radial_of_gap: Array  # Along the radius, by the radial derivative of the pressure and by the gap
+    angular_of_gap: Array  # Across the radius, by the derivative of the pressure in the angle and by the gap
+    of_value: tuple[Array, Array] | None  # By the pressure itself, along the radius and across it; None for nothing
     crossed: Array | None
-    rim: tuple[Array, Array, Array]
+    rim: tuple[Array, Array, Array]  # Mobility at the rim, and the derivatives of mobility and carried amount by the gap there
 
 
 class Beyond(Protocol):
@@ -212,15 +188,9 @@ class PlainPlane(LinearPlane):
 
 @dataclass(frozen=True)
 class NewtonianPlane(LinearPlane):
-    """A Newtonian fluid with laws of viscosity, density and rough flow.
+    """A Newtonian fluid with laws of viscosity, density and rough flow."""
 
-    Parameters
-    ----------
-    film : Newtonian
-        That of the line.
-    """
-
-    film: Newtonian
+    film: Newtonian  # That of the line
 
     def flow(self, gap: Array, pressure: Array) -> Flow:
         """Return the flow at nodes."""

@@ -57,29 +57,15 @@ BENDING = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Iterated:
-    """Where Newton's iteration ended.
+    """Where Newton's iteration ended."""
 
-    Attributes
-    ----------
-    unknowns : Unknowns
-        The last iterate.
-    outcome : Outcome
-        How it ended.
-    steps, krylov_steps, factorisations : int
-        Its cost.
-    left : float
-        Estimated relative error of the gap after the iteration.
-    preconditioner : BandedModes, Capacitance or None
-        The last one, for neighbours.
-    """
-
-    unknowns: Unknowns
-    outcome: Outcome
-    steps: int
-    krylov_steps: int
-    factorisations: int
-    left: float
-    preconditioner: Any
+    unknowns: Unknowns  # The last iterate
+    outcome: Outcome  # How it ended
+    steps: int  # Its cost
+    krylov_steps: int  # Its cost
+    factorisations: int  # Its cost
+    left: float  # Estimated relative error of the gap after the iteration
+    preconditioner: Any  # The last one, for neighbours
 
 
 def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> float:
@@ -113,28 +99,7 @@ def iterate(
     kept: BandedModes | None = None,
     max_steps: int = 40,
 ) -> Iterated:
-    """Return the state of the discrete equations nearest to ``start``.
-
-    Parameters
-    ----------
-    equations : Equations
-        The discretised problem.
-    start : Unknowns
-        First iterate.
-    tolerance : float
-        Relative error of the gap that the iteration may leave.
-    band : int
-        Band of preconditioners that it makes.
-    kept : BandedModes, optional
-        Preconditioner of a neighbour on the same mesh.
-    max_steps : int
-        Largest number of steps.
-
-    Returns
-    -------
-    Iterated
-        A failure is returned in its outcome.
-    """
+    """Return the state of the discrete equations nearest to ``start``."""
     y, law = start, equations.law
     preconditioner = kept
     krylov = factorisations = steps = 0

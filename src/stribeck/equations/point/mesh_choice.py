@@ -99,36 +99,16 @@ class MeshTooLargeError(Exception):
 
 @dataclass(frozen=True)
 class Resolution:
-    """What a mesh resolves.
+    """What a mesh resolves."""
 
-    Attributes
-    ----------
-    halvings : int
-        The smallest panel is 2**-halvings scales wide.
-    doublings : int
-        The scale of the contact is 2**doublings Hertz radii.
-    degree, modes : int
-        Degree of the polynomials, and number of cosines.
-    splits : tuple of float
-        Radii at which panels are split besides [a].
-    closing : tuple of float
-        Radii between which roughness closes the last path of the flow, by pairs: edges of panels [a].
-    farther : int
-        Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity.
-    far_growth : float
-        Largest width of panels beyond twice the scale over their radius.
-    model : Model
-        Fluid, cavitation and solid, whose equations are solved on the mesh.
-    """
-
-    halvings: int
-    doublings: int
-    degree: int
-    modes: int
-    splits: tuple[float, ...] = ()
-    model: Model = ARTICLE
-    farther: int = 0
-    far_growth: float = math.inf
+    halvings: int  # The smallest panel is 2**-halvings scales wide
+    doublings: int  # The scale of the contact is 2**doublings Hertz radii
+    degree: int  # Degree of the polynomials, and number of cosines
+    modes: int  # Degree of the polynomials, and number of cosines
+    splits: tuple[float, ...] = ()  # Radii at which panels are split besides [a]
+    model: Model = ARTICLE  # Fluid, cavitation and solid, whose equations are solved on the mesh
+    farther: int = 0  # Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity
+    far_growth: float = math.inf  # Largest width of panels beyond twice the scale over their radius
     closing: tuple[float, ...] = ()
 
     @property

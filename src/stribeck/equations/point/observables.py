@@ -132,31 +132,15 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
 
 @dataclass(frozen=True, eq=False)
 class FrictionWithin:
-    """The friction integrals of a film up to a radius, less those of a fluid that does not thin far away.
+    """The friction integrals of a film up to a radius, less those of a fluid that does not thin far away."""
 
-    Attributes
-    ----------
-    mesh : PolarMesh
-        The mesh.
-    running : ndarray, shape (3, panels, degree + 1)
-        At the nodes: both parts up to there, and ``-oint h p_f cos(theta) r``.
-    finite : tuple of float
-        The finite parts of both, and what the third is of the far film.
-    beyond : Beyond or None
-        What the film beyond the rim has more than that.
-    offset, speed : float
-        Offset, and speed group.
-    far : FarFilm
-        The logarithms.
-    """
-
-    mesh: PolarMesh
-    running: Array
-    finite: tuple[float, float, float]
-    beyond: Beyond | None
-    offset: float
-    speed: float
-    far: FarFilm
+    mesh: PolarMesh  # The mesh
+    running: Array  # At the nodes: both parts up to there, and `-oint h p_f cos(theta) r`
+    finite: tuple[float, float, float]  # The finite parts of both, and what the third is of the far film
+    beyond: Beyond | None  # What the film beyond the rim has more than that
+    offset: float  # Offset, and speed group
+    speed: float  # Offset, and speed group
+    far: FarFilm  # The logarithms
 
     @classmethod
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:

@@ -49,33 +49,7 @@ def log_derivatives(
     kept: Any = None,
     measure: Measure = observables,
 ) -> dict[str, Array]:
-    """Return the derivatives of all observables along directions.
-
-    Parameters
-    ----------
-    equations : Equations
-        The discretised problem of a state of positive speed.
-    y : Unknowns
-        Its solution.
-    directions : mapping of str to callable
-        The groups after a step of a logarithm, by a name for messages.
-    preconditioner : callable
-        ``preconditioner(linear, kept)`` gives one for a Jacobian, from that of the last Newton step or anew without one.
-    kept : object, optional
-        That of the last Newton step.
-    measure : callable, optional
-        What takes equations and unknowns to the observables.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By the names of the observables, one number for each direction.
-
-    Notes
-    -----
-    They are those of the discrete equations, within 1e-6 of the largest (``test_point_sensitivity.py``); of a film that breaks
-    with the nodes held that are torn.
-    """
+    """Return the derivatives of all observables along directions."""
     linear = equations.linear(y)
     precondition = preconditioner(linear, kept)
     columns: dict[str, list[float]] = {}

@@ -79,22 +79,12 @@ def rule(points: int) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class FlowCurve:
-    """Fluidity as a function of the stress, from a table.
+    """Fluidity as a function of the stress, from a table."""
 
-    Attributes
-    ----------
-    lowest : float
-        Logarithm of the smallest stress of the table.
-    log_fluidity, slopes : ndarray
-        ``ln(x/g)`` and its derivative by ``ln g`` at even spacings; constant slopes at both ends go on.
-    points : int
-        Of the rule across the film that the law needs.
-    """
-
-    lowest: float
-    log_fluidity: Array
-    slopes: Array
-    points: int = POINTS[0]
+    lowest: float  # Logarithm of the smallest stress of the table
+    log_fluidity: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
+    slopes: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
+    points: int = POINTS[0]  # Of the rule across the film that the law needs
 
     def __call__(self, square: Array) -> tuple[Array, Array]:
         """Return ``x/g`` and the derivative of its logarithm by ``ln g`` at squares of stresses."""
@@ -138,48 +128,17 @@ def flow_curve(law: Any) -> FlowCurve:
 
 
 class Column(NamedTuple):
-    """The flow across the film at many nodes; vectors have the shape (2, n), symmetric matrices (3, n): xx, xy, yy.
+    """The flow across the film at many nodes; vectors have the shape (2, n), symmetric matrices (3, n): xx, xy, yy."""
 
-    Attributes
-    ----------
-    mean : ndarray, shape (2, n)
-        T, the mean stress.
-    carried : ndarray, shape (2, n)
-        The moment r_1 of the rate.
-    by_slope : ndarray, shape (3, n)
-        The derivative of r_1 by Q.
-    by_slip : ndarray, shape (2, 2, n)
-        The derivative of r_1 by r_0.
-    ease : ndarray, shape (3, n)
-        The inverse of K_0: the derivative of T by r_0.
-    """
-
-    mean: Array
-    carried: Array
-    by_slope: Array
-    by_slip: Array
-    ease: Array
+    mean: Array  # T, the mean stress
+    carried: Array  # The moment r_1 of the rate
+    by_slope: Array  # The derivative of r_1 by Q
+    by_slip: Array  # The derivative of r_1 by r_0
+    ease: Array  # The inverse of K_0: the derivative of T by r_0
 
 
 def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) -> Column:
-    """Return the flow with a pressure gradient and a slip.
-
-    Parameters
-    ----------
-    law : RateLaw
-        The law.
-    slope : ndarray, shape (2, n)
-        Q.
-    slip : ndarray, shape (2, n)
-        r_0.
-    start : ndarray, shape (2, n), optional
-        Mean stress to start from.
-
-    Returns
-    -------
-    Column
-        nan if the iteration does not end, as for a stress that is not finite.
-    """
+    """Return the flow with a pressure gradient and a slip."""
     return _solved(law, flow_curve(cast("Hashable", law)), slope, slip, start)
 
 

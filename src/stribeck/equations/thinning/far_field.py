@@ -61,22 +61,12 @@ def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
 
 
 class _Film(NamedTuple):
-    """What the film has more than one that does not thin, at the nodes in v.
+    """What the film has more than one that does not thin, at the nodes in v."""
 
-    Attributes
-    ----------
-    pressure, flux : ndarray, shape (nodes, angles)
-        Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2.
-    steepness : ndarray, shape (angles,)
-        Derivative of the pressure's at the rim by ln r, over r**-3.
-    drag : ndarray, shape (nodes,)
-        Of the shear, around the ring.
-    """
-
-    pressure: Array
-    flux: Array
-    steepness: Array
-    drag: Array
+    pressure: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2
+    flux: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2
+    steepness: Array  # Derivative of the pressure's at the rim by ln r, over r**-3
+    drag: Array  # Of the shear, around the ring
 
 
 class FarThinned(BeyondRim):

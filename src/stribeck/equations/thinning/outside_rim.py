@@ -14,14 +14,7 @@ __all__ = ["BeyondRim", "Waves"]
 
 
 class Waves(NamedTuple):
-    """Coefficients of cos k theta, k = 1, 3, 5 and so on: the film far away is odd along the motion.
-
-    Attributes
-    ----------
-    pressure, slope, flux : ndarray, shape (waves,)
-        Pressure, its radial derivative, and the flux along the radius that is more than that of the slope in a fluid that does
-        not thin.
-    """
+    """Coefficients of cos k theta, k = 1, 3, 5 and so on: the film far away is odd along the motion."""
 
     pressure: Array
     slope: Array
@@ -35,22 +28,12 @@ class Waves(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class BeyondRim:
-    """The film of a ball beyond a rim, of a fluid that thins.
+    """The film of a ball beyond a rim, of a fluid that thins."""
 
-    Parameters
-    ----------
-    law : RateLaw
-        The law, its time in Hertz units at this speed.
-    slide : float
-        Half the slide-to-roll ratio.
-    speed, rim : float
-        Speed group, and radius of the rim [a].
-    """
-
-    law: RateLaw
-    slide: float
-    speed: float
-    rim: float
+    law: RateLaw  # The law, its time in Hertz units at this speed
+    slide: float  # Half the slide-to-roll ratio
+    speed: float  # Speed group, and radius of the rim [a]
+    rim: float  # Speed group, and radius of the rim [a]
 
     is_all: ClassVar[bool] = False
     """Whether it is the whole film; else what it has more than that of a fluid that does not thin."""

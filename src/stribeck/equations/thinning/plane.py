@@ -46,15 +46,9 @@ class _Local(NamedTuple):
 
 @dataclass(frozen=True)
 class ThinningPlane:
-    """A shear-thinning fluid between smooth walls.
+    """A shear-thinning fluid between smooth walls."""
 
-    Parameters
-    ----------
-    film : ShearThinning
-        That of the line, at a speed.
-    """
-
-    film: ShearThinning
+    film: ShearThinning  # That of the line, at a speed
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
     def beyond(self, speed: float, rim: float) -> Beyond | None:

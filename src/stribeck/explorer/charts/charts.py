@@ -28,24 +28,7 @@ DEFINITIONS: dict[Definition, str] = {"balanced": "balanced", "published": "as p
 def all_charts(
     answer: Answer, pins: Sequence[tuple[str, Curve, float]], measured: Sequence[Measured], palette: Palette
 ) -> dict[str, Options]:
-    """Return the options of all charts.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-    pins : sequence of (str, Curve, float)
-        Pinned curves: name, curve, Hersey number at 1 m/s.
-    measured : sequence of Measured
-        Measured curves.
-    palette : Palette
-        Colours.
-
-    Returns
-    -------
-    dict of str to dict
-        By their names; the film on the plane of a ball alone.
-    """
+    """Return the options of all charts."""
     return {
         "friction": friction_chart(answer, pins, measured, palette),
         "gap": gap_chart(answer, palette),

@@ -24,22 +24,7 @@ MOST_ROUGH = 5.0
 
 
 def drawing(answer: Answer) -> str:
-    """Return the contact as SVG.
-
-    Parameters
-    ----------
-    answer : Answer
-        What is shown.
-
-    Returns
-    -------
-    str
-        An ``svg`` element without text of the user.
-
-    Notes
-    -----
-    Gap and roughness grow with the logarithm of their length, from 1 nm on; the width of the contact with a/R.
-    """
+    """Return the contact as SVG."""
     contact, solution = answer.inputs.contact, answer.solution
     scales = contact.hertz
     gap = min(_length(max(solution.central_gap, 0.0) * scales.indentation, 3.0), MOST_GAP)

@@ -11,31 +11,19 @@ __all__ = ["DARK", "LIGHT", "PIN_DASHES", "Palette"]
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours of charts.
+    """Colours of charts."""
 
-    Attributes
-    ----------
-    ink, grey, grid, card : str
-        Of lines and text, of what stands back, of grids, of the ground.
-    contact, fluid, mark, point, thin : str
-        Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas.
-    tints : dict of str to str
-        Ground of each regime.
-    pins : tuple of str
-        Of pinned curves.
-    """
-
-    ink: str
-    grey: str
-    grid: str
-    card: str
-    contact: str
-    fluid: str
-    mark: str
-    point: str
-    thin: str
-    tints: dict[str, str]
-    pins: tuple[str, ...]
+    ink: str  # Of lines and text, of what stands back, of grids, of the ground
+    grey: str  # Of lines and text, of what stands back, of grids, of the ground
+    grid: str  # Of lines and text, of what stands back, of grids, of the ground
+    card: str  # Of lines and text, of what stands back, of grids, of the ground
+    contact: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    fluid: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    mark: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    point: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    thin: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    tints: dict[str, str]  # Ground of each regime
+    pins: tuple[str, ...]  # Of pinned curves
 
 
 LIGHT = Palette(

@@ -20,19 +20,7 @@ Options = dict[str, Any]
 
 
 def difference(old: Options, new: Options) -> Options | None:
-    """Return what takes a chart from ``old`` to ``new``.
-
-    Parameters
-    ----------
-    old, new : dict
-        The chart before, which may be empty, and after.
-
-    Returns
-    -------
-    dict, or None
-        The keys that changed; of the series those with another look as a whole, of others the new data or their name alone.
-        None where nothing changed.
-    """
+    """Return what takes a chart from ``old`` to ``new``."""
     if old == new:
         return None
     changed = {key: value for key, value in new.items() if key != "series" and old.get(key) != value}

@@ -22,31 +22,7 @@ POINTS, RTOL = 101, 1e-4
 
 
 def picture(shown: View, what: str, kind: str, go_on: Callable[..., object] | None = None) -> bytes:
-    """Return a picture of the curve, with pinned and measured ones, or of the state.
-
-    Parameters
-    ----------
-    shown : View
-        What is shown.
-    what : {"curve", "state"}
-        Which.
-    kind : {"png", "svg"}
-        Its format.
-    go_on : callable, optional
-        Is called while a curve is solved; an exception that it raises ends the work.
-
-    Returns
-    -------
-    bytes
-        The file.
-
-    Raises
-    ------
-    InputError, SolveError
-        If the curve cannot be solved.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
+    """Return a picture of the curve, with pinned and measured ones, or of the state."""
     figure = figure_of(shown, what, go_on)
     file = io.BytesIO()
     metadata: dict[str, Any] = {"Date": None} if kind == "svg" else {}

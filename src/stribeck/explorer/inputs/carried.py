@@ -56,23 +56,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def model_of_case(case: Case) -> str:
-    """Return the model of a case as JSON: its parts by name, with the numbers of files and of presets that it names.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    str
-        JSON; empty for a cylinder with the exponential law of alpha and beta alone, and a fluid that is always the same.
-
-    Raises
-    ------
-    InputError
-        If the file of a spectrum cannot be read.
-    """
+    """Return the model of a case as JSON: its parts by name, with the numbers of files and of presets that it names."""
     found: dict[str, Any] = self_contained(case.law, case.tables, case.path.parent, case.contact.law)
     if case.law != "exponential" or found:
         found["law"] = case.law
@@ -110,25 +94,7 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
 
 
 def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
-    """Return the contact of a model and of its numbers.
-
-    Parameters
-    ----------
-    model : str
-        What :func:`model_of_case` returns.
-    numbers : mapping
-        The inputs of the geometry in SI units; None for what the contact does without.
-
-    Returns
-    -------
-    Contact
-        The contact.
-
-    Raises
-    ------
-    InputError
-        If the text is no model, or the numbers do not go with it.
-    """
+    """Return the contact of a model and of its numbers."""
     shape = shape_of(model)
     tables = _object("model", model, MODEL) if model else {}
     geometry = check_geometry(tables.get("geometry", "line"))
@@ -150,23 +116,7 @@ def rest_of_case(case: Case) -> str:
 
 
 def shape_of(model: str) -> AsperityLaw | None:
-    """Return the contact law of a model; the same object for the same law.
-
-    Parameters
-    ----------
-    model : str
-        What :func:`model_of_case` returns.
-
-    Returns
-    -------
-    AsperityLaw or None
-        The law; None for the exponential law of alpha and beta alone.
-
-    Raises
-    ------
-    InputError
-        If the text holds no such law.
-    """
+    """Return the contact law of a model; the same object for the same law."""
     if not model:
         return None
     tables = _object("model", model, MODEL)
@@ -248,20 +198,7 @@ def model_changes(model: str, start: str) -> list[str]:
 
 
 def toml_text(tables: dict[str, Any], path: tuple[str, ...] = ()) -> str:
-    """Return tables as TOML.
-
-    Parameters
-    ----------
-    tables : dict
-        Values and tables of values.
-    path : tuple of str
-        Names of the tables around them.
-
-    Returns
-    -------
-    str
-        Lines, each with its end.
-    """
+    """Return tables as TOML."""
     values = {key: value for key, value in tables.items() if not isinstance(value, dict)}
     lines = [f"\n[{'.'.join(map(_key, path))}]\n"] if path and (values or not tables) else []
     lines += [f"{_key(key)} = {_value(value)}\n" for key, value in values.items()]

@@ -107,26 +107,12 @@ def _words(name: str) -> str:
 
 @dataclass(frozen=True)
 class Choice:
-    """One list to choose from.
+    """One list to choose from."""
 
-    Attributes
-    ----------
-    name : str
-        Its name on the page.
-    label : str
-        What is chosen.
-    table : str
-        The table of the case; empty for a key at the top of the model.
-    key : str
-        The key that is chosen; empty where the table alone is the choice.
-    options : mapping
-        What can be chosen, its words, and the keys that it has; the first is that of the article.
-    """
-
-    name: str
-    label: str
-    table: str
-    key: str
+    name: str  # Its name on the page
+    label: str  # What is chosen
+    table: str  # The table of the case; empty for a key at the top of the model
+    key: str  # The key that is chosen; empty where the table alone is the choice
     options: Mapping[str, tuple[str, Keys]]
 
     @property
@@ -245,21 +231,7 @@ def possible(name: str, geometry: str) -> tuple[str, ...]:
 
 
 def state_of(now: Inputs, name: str) -> dict[str, Any]:
-    """Return what a row shows.
-
-    Parameters
-    ----------
-    now : Inputs
-        What is shown.
-    name : str
-        Key of :data:`CHOICES`.
-
-    Returns
-    -------
-    dict
-        ``hidden``, the chosen ``value``, ``options`` as pairs of value and words, and ``details``: the keys of what is chosen
-        with their words, their texts, and what an empty one stands for.
-    """
+    """Return what a row shows."""
     choice, tables = CHOICES[name], tables_of(now.model)
     value = chosen(choice, tables)
     given = tables.get(_where(choice), {})
@@ -277,27 +249,7 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
 
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:
-    """Return the inputs after something was chosen; what it needs has typical values.
-
-    Parameters
-    ----------
-    now : Inputs
-        Those before.
-    name : str
-        Key of :data:`CHOICES`.
-    value : str
-        Key of its options.
-
-    Returns
-    -------
-    Inputs
-        Those after.
-
-    Raises
-    ------
-    InputError
-        If it cannot be chosen, or does not go with the rest.
-    """
+    """Return the inputs after something was chosen; what it needs has typical values."""
     choice, tables = CHOICES[name], tables_of(now.model)
     if value not in choice.options:
         raise InputError(f"{name} = {value!r} must be one of {', '.join(map(repr, choice.options))}.")
@@ -346,29 +298,7 @@ def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
 
 
 def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
-    """Return the inputs after ``text`` was typed for a key of a choice.
-
-    Parameters
-    ----------
-    now : Inputs
-        Those before.
-    name : str
-        Key of :data:`CHOICES`.
-    key : str
-        One of the keys of what is chosen.
-    text : str
-        A number, or one with a unit; empty takes an optional key away.
-
-    Returns
-    -------
-    Inputs
-        Those after; alpha, beta and roughness follow a surface.
-
-    Raises
-    ------
-    InputError
-        The sentence about such a value in a case.
-    """
+    """Return the inputs after ``text`` was typed for a key of a choice."""
     choice, tables = CHOICES[name], tables_of(now.model)
     where, text = _where(choice), text.strip()
     table = {each: value for each, value in tables.get(where, {}).items() if each != key}

@@ -11,46 +11,21 @@ MOST = 100
 
 
 class History:
-    """What a page has shown at rest, and where in it the page is.
-
-    Parameters
-    ----------
-    start : Inputs
-        What it shows first.
-    """
+    """What a page has shown at rest, and where in it the page is."""
 
     def __init__(self, start: Inputs) -> None:
         self.states = [start]
         self.place = 0
 
     def rest(self, now: Inputs) -> None:
-        """Take inputs that have come to rest; what was undone before is then gone, unless these are the same.
-
-        Parameters
-        ----------
-        now : Inputs
-            The inputs.
-        """
+        """Take inputs that have come to rest; what was undone before is then gone, unless these are the same."""
         if now == self.states[self.place]:
             return
         self.states = [*self.states[: self.place + 1], now][-MOST:]
         self.place = len(self.states) - 1
 
     def step(self, way: int, now: Inputs) -> Inputs | None:
-        """Return the inputs one step back or forth, or None if there are none.
-
-        Parameters
-        ----------
-        way : int
-            -1 to undo, 1 to redo.
-        now : Inputs
-            What is shown, which may not have come to rest yet.
-
-        Returns
-        -------
-        Inputs or None
-            What to show.
-        """
+        """Return the inputs one step back or forth, or None if there are none."""
         self.rest(now)
         if not 0 <= self.place + way < len(self.states):
             return None

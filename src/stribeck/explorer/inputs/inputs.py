@@ -52,26 +52,14 @@ GREEK = {"eta": "η", "alpha": "α", "beta": "β", "mu": "µ"}
 
 @dataclass(frozen=True)
 class Field:
-    """A quantity as the page shows it.
+    """A quantity as the page shows it."""
 
-    Attributes
-    ----------
-    label, symbol : str
-        What it is called; the symbol as HTML.
-    low, high : float
-        Ends of its slider, which is logarithmic [SI].
-    units : tuple of str
-        Units to choose from; empty for a bare number.
-    optional : bool
-        Whether its field may be empty.
-    """
-
-    label: str
-    symbol: str
-    low: float
-    high: float
-    units: tuple[str, ...] = ()
-    optional: bool = False
+    label: str  # What it is called; the symbol as HTML
+    symbol: str  # What it is called; the symbol as HTML
+    low: float  # Ends of its slider, which is logarithmic [SI]
+    high: float  # Ends of its slider, which is logarithmic [SI]
+    units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
+    optional: bool = False  # Whether its field may be empty
 
 
 FRICTION = "boundary_friction"
@@ -116,34 +104,16 @@ DIGITS = 3
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a tab shows.
+    """What a tab shows."""
 
-    Attributes
-    ----------
-    contact : Contact
-        The contact.
-    units : mapping of str to str
-        The unit of each field that has one.
-    definition : {"balanced", "published"}
-        The friction by which curves, regimes and margins go.
-    abscissa : {"speed", "hersey"}
-        What the curve is drawn over.
-    title : str
-        Headline.
-    rtol : float
-        Relative tolerance of the states.
-    model, rest : str
-        The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.inputs.carried`.
-    """
-
-    contact: Contact
-    units: Mapping[str, str] = field(default_factory=dict)
-    definition: Definition = "balanced"
-    abscissa: Abscissa = "speed"
-    title: str = ""
-    rtol: float = 1e-6
-    model: str = ""
-    rest: str = ""
+    contact: Contact  # The contact
+    units: Mapping[str, str] = field(default_factory=dict)  # The unit of each field that has one
+    definition: Definition = "balanced"  # The friction by which curves, regimes and margins go
+    abscissa: Abscissa = "speed"  # What the curve is drawn over
+    title: str = ""  # Headline
+    rtol: float = 1e-6  # Relative tolerance of the states
+    model: str = ""  # The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.inputs.carried`
+    rest: str = ""  # The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.inputs.carried`
 
     @property
     def table(self) -> InputTable:
@@ -161,23 +131,7 @@ class Inputs:
 
 
 def from_case(case: Case) -> Inputs:
-    """Return the inputs of a case, each in the unit in which it reads best.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-
-    Returns
-    -------
-    Inputs
-        All that the case holds.
-
-    Raises
-    ------
-    InputError
-        If the case holds something that the page cannot show.
-    """
+    """Return the inputs of a case, each in the unit in which it reads best."""
     model = model_of_case(case)
     numbers = {name: getattr(case.contact, name) for name in case.contact.INPUTS.names}
     contact = contact_of(model, numbers)
@@ -188,27 +142,7 @@ def from_case(case: Case) -> Inputs:
 
 
 def with_model(inputs: Inputs, model: str, **numbers: float | None) -> Inputs:
-    """Return the inputs with another model, and with some of their numbers changed.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        Those before.
-    model : str
-        The model, as in :mod:`stribeck.explorer.inputs.carried`.
-    **numbers : float or None
-        Inputs in SI units.
-
-    Returns
-    -------
-    Inputs
-        Those after; between a cylinder and a ball the load changes so that the Hertz pressure stays.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not go with the model.
-    """
+    """Return the inputs with another model, and with some of their numbers changed."""
     geometry: Geometry = tables_of(model).get("geometry", "line")
     before = inputs.contact
     table = INPUT_TABLES[geometry]
@@ -254,27 +188,7 @@ def value_of(inputs: Inputs, name: str) -> float:
 
 
 def typed(inputs: Inputs, name: str, text: str) -> Inputs:
-    """Return the inputs after ``text`` was typed into a field.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        Those before.
-    name : str
-        Key of :data:`FIELDS` or :data:`GROUP_FIELDS`.
-    text : str
-        A number, which is in the unit of the field, or a number with a unit, which the field then takes.
-
-    Returns
-    -------
-    Inputs
-        Those after.
-
-    Raises
-    ------
-    InputError
-        The sentence that the command line prints for such a value.
-    """
+    """Return the inputs after ``text`` was typed into a field."""
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, read_number(name, _with_point(name, _present(name, text))))
     value, unit = read_field(inputs, name, text)
@@ -283,29 +197,7 @@ def typed(inputs: Inputs, name: str, text: str) -> Inputs:
 
 
 def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]:
-    """Return the value in SI units of what was typed into a field, and its unit.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        Those before, in whose unit a bare number is.
-    name : str
-        Key of :data:`FIELDS`.
-    text : str
-        What was typed.
-
-    Returns
-    -------
-    float or None
-        The value; None for an empty field that may be empty.
-    str
-        The unit; empty for a bare number.
-
-    Raises
-    ------
-    InputError
-        As :func:`typed`.
-    """
+    """Return the value in SI units of what was typed into a field, and its unit."""
     text, shown, table = _with_point(name, text.strip()), inputs.fields[name], inputs.table
     if not text and shown.optional:
         return table.quantities[name].default, inputs.units.get(name, "")

@@ -25,60 +25,25 @@ MOST_PINS = 6
 
 @dataclass(frozen=True)
 class Pin:
-    """A curve that was kept for comparison.
+    """A curve that was kept for comparison."""
 
-    Attributes
-    ----------
-    name : str
-        What it is called.
-    contact : Contact
-        Its contact.
-    definition : {"balanced", "published"}
-        Its friction.
-    model : str
-        Its model, as in :mod:`stribeck.explorer.inputs.carried`.
-    """
-
-    name: str
-    contact: Contact
-    definition: Definition
-    model: str = ""
+    name: str  # What it is called
+    contact: Contact  # Its contact
+    definition: Definition  # Its friction
+    model: str = ""  # Its model, as in :mod:`stribeck.explorer.inputs.carried`
 
 
 @dataclass(frozen=True)
 class Opened:
-    """What an address asks for.
+    """What an address asks for."""
 
-    Attributes
-    ----------
-    inputs : Inputs
-        The inputs; where the address is wrong, those that it should have changed.
-    pins : tuple of Pin
-        The pinned curves.
-    problems : dict of str to tuple of str
-        What is wrong: for each key the text received and the sentence about it.
-    """
-
-    inputs: Inputs
-    pins: tuple[Pin, ...]
-    problems: dict[str, tuple[str, str]]
+    inputs: Inputs  # The inputs; where the address is wrong, those that it should have changed
+    pins: tuple[Pin, ...]  # The pinned curves
+    problems: dict[str, tuple[str, str]]  # What is wrong: for each key the text received and the sentence about it
 
 
 def encode(inputs: Inputs, pins: Sequence[Pin] = ()) -> str:
-    """Return the query string, without question mark, that :func:`decode` reads back to the same values.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What is shown.
-    pins : sequence of Pin
-        The pinned curves.
-
-    Returns
-    -------
-    str
-        The keys of a case file with their values, ``definition``, ``abscissa``, ``title`` and a ``pin`` for each pinned curve.
-    """
+    """Return the query string, without question mark, that :func:`decode` reads back to the same values."""
     # Empty ones too: whoever opens the link may have started with a case that has them.
     items = [(name, getattr(inputs, name)) for name in ("model", "title", "rest")]
     items += [(name, exact_text(inputs, name)) for name in inputs.fields]
@@ -94,20 +59,7 @@ def encode(inputs: Inputs, pins: Sequence[Pin] = ()) -> str:
 
 
 def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
-    """Refuse what no address can hold.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What would be shown.
-    pins : sequence of Pin
-        The pinned curves.
-
-    Raises
-    ------
-    InputError
-        If its address would be longer than browsers take.
-    """
+    """Refuse what no address can hold."""
     length = len(encode(inputs, pins))
     if length > LONGEST:
         parts = {"the title": inputs.title, "the contact law": inputs.model, "notes and [fit]": inputs.rest}
@@ -121,20 +73,7 @@ def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
 
 
 def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
-    """Return what a query string asks for, beginning with ``start``.
-
-    Parameters
-    ----------
-    items : iterable of (str, str)
-        Keys and values, unquoted.
-    start : Inputs
-        The default.
-
-    Returns
-    -------
-    Opened
-        Inputs, pins, and a sentence for each value that cannot be used.
-    """
+    """Return what a query string asks for, beginning with ``start``."""
     given = list(items)
     problems: dict[str, tuple[str, str]] = {}
     pins: list[Pin] = []

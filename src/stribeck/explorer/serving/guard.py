@@ -48,23 +48,7 @@ WITHOUT_TOKEN = (
 
 
 def check_host(host: str) -> str:
-    """Return an address of this machine; refuse one that others reach.
-
-    Parameters
-    ----------
-    host : str
-        The address to listen on.
-
-    Returns
-    -------
-    str
-        The same.
-
-    Raises
-    ------
-    InputError
-        If it is no loopback address.
-    """
+    """Return an address of this machine; refuse one that others reach."""
     try:
         own = host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -82,17 +66,7 @@ class TooLarge(Exception):  # noqa: N818
 
 
 class Guard:
-    """ASGI application around another one, which lets pass what belongs to the user's own browser.
-
-    Parameters
-    ----------
-    app : callable
-        The application.
-    token : str
-        The token of the address.
-    port : int
-        The port, which tells cookies of several explorers apart.
-    """
+    """ASGI application around another one, which lets pass what belongs to the user's own browser."""
 
     def __init__(self, app: Any, token: str, port: int) -> None:
         self.app, self.token = app, token

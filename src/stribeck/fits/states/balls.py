@@ -45,22 +45,7 @@ OnState = Callable[[int], object]
 
 
 def lattice_parts(starts: Array, varies: Array, definition: Definition) -> PartsOf:
-    """Return the function that reads states of balls off lattices of solved states, made where they are asked for.
-
-    Parameters
-    ----------
-    starts : ndarray, shape (m, 3)
-        ln of speed, load and relative roughness of a state of each curve.
-    varies : ndarray of bool, shape (3,)
-        Which of these the fit changes.  A start is in the middle of a cell along those, on a node along the others.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-
-    Returns
-    -------
-    callable
-        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
-    """
+    """Return the function that reads states of balls off lattices of solved states, made where they are asked for."""
     lattices: list[Lattice] = []
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
@@ -86,18 +71,6 @@ def curve_parts(definition: Definition, rtol: float) -> PartsOf:
 
     Between solved speeds a curve is interpolated with its derivatives; loads and roughnesses within a hundredth of a curve are
     reached from there to first order.
-
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of each state.
-
-    Returns
-    -------
-    callable
-        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
     """
     curves: list[Lattice] = []
 

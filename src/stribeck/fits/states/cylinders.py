@@ -36,20 +36,7 @@ NEAR = 0.3
 
 
 def solved_parts(definition: Definition, rtol: float) -> PartsOf:
-    """Return the function that solves states, those that differ in speed alone as one curve.
-
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of each state.
-
-    Returns
-    -------
-    callable
-        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
-    """
+    """Return the function that solves states, those that differ in speed alone as one curve."""
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         speed, load, roughness = (np.broadcast_to(g, groups.shape) for g in (groups.speed, groups.load, groups.roughness))

@@ -17,41 +17,14 @@ __all__ = ["Between"]
 
 @dataclass(eq=False)
 class Between:
-    """Reads curves between the inputs at which they were solved, and solves them where that leaves doubt.
+    """Reads curves between the inputs at which they were solved, and solves them where that leaves doubt."""
 
-    Parameters
-    ----------
-    solve : callable
-        What solves the states.
-    doubt : float
-        Largest doubt with which a curve is read; at 0 all are solved.
-    known : dict
-        What was solved of each curve; may be shared.
-    """
-
-    solve: PartsOf
-    doubt: float
+    solve: PartsOf  # What solves the states
+    doubt: float  # Largest doubt with which a curve is read; at 0 all are solved
     known: dict[int, tuple[Scattered, list[FrictionParts]]] = field(default_factory=dict)
 
     def at(self, curve: int, place: Array, solved: Callable[[], FrictionParts], moving: Indices) -> FrictionParts:
-        """Return the parts of one curve.
-
-        Parameters
-        ----------
-        curve : int
-            Number of the curve.
-        place : ndarray, shape (m,)
-            The inputs that move its states.
-        solved : callable
-            Solves the curve there; its slopes are along all free inputs.
-        moving : ndarray of int, shape (m,)
-            Rows of those inputs in the slopes.
-
-        Returns
-        -------
-        FrictionParts
-            With the slopes along the free inputs.
-        """
+        """Return the parts of one curve."""
         doubt = self.known[curve][0].doubt(place) if curve in self.known else math.inf
         if doubt > self.doubt:
             here = solved()

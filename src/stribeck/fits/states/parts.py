@@ -20,43 +20,21 @@ __all__ = ["FrictionParts", "Made", "ModelChange", "PartsOf"]
 
 @dataclass(frozen=True)
 class FrictionParts:
-    """The contributions to the friction of n states, and their derivatives.
+    """The contributions to the friction of n states, and their derivatives."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (1 + parts, n)
-        Contact load share, and the observables that the rule of the geometry names [-].
-    slopes : ndarray, shape (1 + parts, 3 + changes, n)
-        Derivatives of each by the logarithms of the groups of speed, load and roughness, and along changes of the model [-].
-    errors : ndarray, shape (1 + parts, n)
-        Estimated absolute error of the contact load share, and errors of the others as a solution states them.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    """
-
-    values: Array
+    values: Array  # Contact load share, and the observables that the rule of the geometry names [-]
     slopes: Array
-    errors: Array
-    definition: Definition
+    errors: Array  # Estimated absolute error of the contact load share, and errors of the others as a solution states them
+    definition: Definition  # Definition of the viscous friction
 
 
 class ModelChange(NamedTuple):
-    """What a free input changes of the model, in Hertz units.
+    """What a free input changes of the model, in Hertz units."""
 
-    Attributes
-    ----------
-    input : int
-        Number of the input.
-    below, above : Model
-        The model at two values of its logarithm.
-    width : float
-        Their distance.
-    """
-
-    input: int
-    below: Model
-    above: Model
-    width: float
+    input: int  # Number of the input
+    below: Model  # The model at two values of its logarithm
+    above: Model  # The model at two values of its logarithm
+    width: float  # Their distance
 
 
 PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
@@ -64,17 +42,7 @@ PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
 
 
 class Made:
-    """What gives the parts, made anew where it is unpickled: what it keeps of solved states stays behind.
-
-    Parameters
-    ----------
-    make : callable
-        ``make(*of, **here)`` returns what gives them.
-    *of
-        Its arguments.
-    **here
-        Those that are not pickled, such as what reports progress.
-    """
+    """What gives the parts, made anew where it is unpickled: what it keeps of solved states stays behind."""
 
     def __init__(self, make: Callable[..., PartsOf], *of: Any, **here: Any) -> None:
         self.recipe = (make, *of)

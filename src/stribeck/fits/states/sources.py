@@ -34,37 +34,14 @@ BALL_RTOL = 1e-4
 
 
 class Ways(NamedTuple):
-    """How the states of a fit are obtained.
+    """How the states of a fit are obtained."""
 
-    Attributes
-    ----------
-    quick, solved : callable or Between
-        For the search, and for the values that the fit returns.
-    """
-
-    quick: PartsOf | Between
-    solved: PartsOf | Between
+    quick: PartsOf | Between  # For the search, and for the values that the fit returns
+    solved: PartsOf | Between  # For the search, and for the values that the fit returns
 
 
 def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
-    """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states.
-
-    Parameters
-    ----------
-    model : FrictionModel
-        What is fitted.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of solved states.
-    on_state : callable
-        Called with the number of states so far after each one that takes long to solve.
-
-    Returns
-    -------
-    Ways
-        The functions.
-    """
+    """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states."""
     return WAYS[model.contact.groups.geometry](model, definition, rtol, on_state)
 
 

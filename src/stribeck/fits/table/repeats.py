@@ -47,24 +47,12 @@ Row = tuple[str, int, float, float, float, dict[str, float]]
 
 @dataclass(frozen=True)
 class Averaged:
-    """Rows in which repeats have been averaged.
+    """Rows in which repeats have been averaged."""
 
-    Attributes
-    ----------
-    rows : list of tuple
-        The rows: curve, number, speed, friction, its standard error, inputs; all of them where nothing repeats.
-    notes : tuple of str
-        What was put together and left out, or why not.
-    run_in : tuple of int
-        Numbers of the rows that look like run-in.
-    has_errors : bool
-        Whether the rows are means with their errors.
-    """
-
-    rows: list[Row]
-    notes: tuple[str, ...]
-    run_in: tuple[int, ...]
-    has_errors: bool = True
+    rows: list[Row]  # The rows: curve, number, speed, friction, its standard error, inputs; all of them where nothing repeats
+    notes: tuple[str, ...]  # What was put together and left out, or why not
+    run_in: tuple[int, ...]  # Numbers of the rows that look like run-in
+    has_errors: bool = True  # Whether the rows are means with their errors
 
 
 @dataclass(frozen=True)
@@ -83,32 +71,7 @@ class _Step:
 
 
 def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged:
-    r"""Average rows at the same speed of a curve: their mean and its standard error.
-
-    Parameters
-    ----------
-    rows : sequence of tuple
-        Curve, number, speed, friction, error and inputs of each row, in the order in which they were measured.
-    runs : sequence of str
-        The run of each row; all empty if the file has none.
-    keep_run_in : bool
-        Whether runs that look like run-in are kept.
-
-    Returns
-    -------
-    Averaged
-        Means, and what was left out; the rows as they are where fewer than three share a speed.
-
-    Notes
-    -----
-    Deviations of rows from the mean of their step, over that mean, are taken for a series with autocorrelations
-    :math:`\rho^k`, alike in all steps: :math:`\rho` is that whose expected correlation of neighbours about the mean of so
-    short a step is the one found, and the variance is freed of the part that the means take. The largest error over series of
-    single rows and of blocks of 2, 4, ... rows counts (H. Flyvbjerg and H. Petersen, J. Chem. Phys. 91 (1989) 461), so that
-    white noise hides no slow change. Steps too short for blocks may remember longer than themselves, up to all rows of the
-    pass; errors of 10 rows at 0.9 are still about a fifth too small. Where a speed is passed more than once the scatter of
-    passes gives an error too, and the larger one holds.
-    """
+    r"""Average rows at the same speed of a curve: their mean and its standard error."""
     steps, starting, ramped = _steps(rows, runs)
     means = [step.mean for step in steps]
     marked, sentences = _run_in(means, _counted(means, [step.run for step in steps]))

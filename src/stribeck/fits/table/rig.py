@@ -107,57 +107,17 @@ NEXT_LEVEL = 1.1
 
 
 class Prepared(NamedTuple):
-    """A table with friction and speed.
+    """A table with friction and speed."""
 
-    Attributes
-    ----------
-    table : TextTable
-        With columns ``friction`` and ``sum of speeds [m/s]`` added where they had to be made.
-    said : tuple of str
-        What was made of what, one sentence each.
-    run : str
-        Header of the column that numbers the runs; empty if there is none.
-    settings : FitSettings
-        Without the units of what was made.
-    found : tuple of str
-        What columns of a rig there are.
-    """
-
-    table: TextTable
-    said: tuple[str, ...]
-    run: str
-    settings: FitSettings
-    found: tuple[str, ...]
+    table: TextTable  # With columns `friction` and `sum of speeds [m/s]` added where they had to be made
+    said: tuple[str, ...]  # What was made of what, one sentence each
+    run: str  # Header of the column that numbers the runs; empty if there is none
+    settings: FitSettings  # Without the units of what was made
+    found: tuple[str, ...]  # What columns of a rig there are
 
 
 def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> Prepared:
-    """Return a table with friction and speed computed from what a rig measured.
-
-    Parameters
-    ----------
-    table : TextTable
-        The cells.
-    settings : FitSettings
-        The ``[fit]`` table, whose columns are believed.
-    known : callable
-        Whether the table has a column of a meaning, ``"friction"`` or ``"speed"``, as it is.
-
-    Returns
-    -------
-    Prepared
-        The table, and what was made of what.
-
-    Raises
-    ------
-    InputError
-        If a sliding speed leaves the sum open, or a cell is no number.
-
-    Notes
-    -----
-    A normal force or a slide-to-roll ratio is the load or the ratio of its curve, for a ball: the median of what was measured.
-    Where it was set to several values there are as many curves.  The load of a cylinder is per length: there the force names
-    the curve alone.
-    """
+    """Return a table with friction and speed computed from what a rig measured."""
     found = _rig_columns(table, settings)
     said = []
     ours = set()

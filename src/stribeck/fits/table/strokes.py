@@ -34,29 +34,7 @@ class _Kind:
 
 
 def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
-    """Return the table without rows at rest and reversals, if its signs are directions of strokes.
-
-    Parameters
-    ----------
-    table : TextTable
-        The cells.
-    abscissa : str
-        Column of the speed.
-    friction : sequence of str
-        Columns of friction.
-    settings : FitSettings
-        Whether signs are directions.
-
-    Returns
-    -------
-    TextTable
-        The table; what was left out is in its notes.
-
-    Raises
-    ------
-    InputError
-        If there are such rows, or negative ones, and the settings do not say that signs are directions.
-    """
+    """Return the table without rows at rest and reversals, if its signs are directions of strokes."""
     speeds = _numbers(table, abscissa)
     frictions = {name: _numbers(table, name) for name in friction}
     coded = np.isin(speeds, CODES)

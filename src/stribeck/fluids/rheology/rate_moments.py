@@ -37,18 +37,10 @@ POLISH = 3
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Moments of one flow curve.
-
-    Parameters
-    ----------
-    stress : callable
-        ``stress(rate)`` returns stress and slope at rates > 0; Newtonian, one times the rate, below the first.
-    smallest : float
-        Natural logarithm of the rate below which the curve is that of viscosity one to rounding.
-    """
+    """Moments of one flow curve."""
 
     stress: Callable[[Array], tuple[Array, Array]]
-    smallest: float
+    smallest: float  # Natural logarithm of the rate below which the curve is that of viscosity one to rounding
 
     @cached_property
     def count(self) -> int:

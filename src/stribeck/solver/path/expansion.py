@@ -68,18 +68,9 @@ Direction = tuple[float, float, float]
 
 
 class Expanded(NamedTuple):
-    """Taylor coefficients about a state, order by order in the first axis.
+    """Taylor coefficients about a state, order by order in the first axis."""
 
-    Attributes
-    ----------
-    unknowns : ndarray, shape (K + 1, unknowns)
-        Coefficients of the unknowns, with the logarithm of the gap.
-    observables, logs : ndarray, shape (K + 1, n)
-        Coefficients of the observables without the minimum gap; in ``logs`` those of the logarithm of the asperities'
-        share, else nan.
-    """
-
-    unknowns: Array
+    unknowns: Array  # Coefficients of the unknowns, with the logarithm of the gap
     observables: Array
     logs: Array
 
@@ -141,30 +132,7 @@ class _Contact:
 def expand_article(
     equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
 ) -> Expanded:
-    """Return the series of a state with the film of the article.
-
-    Parameters
-    ----------
-    equations : Equations
-        Of the state.
-    y : ndarray
-        Its unknowns, converged.
-    inverse : Inverse
-        That of the Jacobian at it.
-    groups : Groups
-        Its groups.
-    direction : tuple of float
-        Derivatives of ln(speed), ln(load), ln(roughness).
-    shifts : ndarray, shape (order + 1,)
-        Series of the shift of the gap, see :func:`stribeck.solver.at_rest.with_positive_gap`.
-    order : int
-        The highest order.
-
-    Returns
-    -------
-    Expanded
-        The coefficients.
-    """
+    """Return the series of a state with the film of the article."""
     op, at = equations.operators, equations.layout
     start, units = _started(equations, y)
     w = np.zeros((order + 1, at.size))
@@ -292,22 +260,7 @@ def expand_any_film(
     models: Sequence[Model],
     order: int,
 ) -> Expanded:
-    """Return the series of a state with any film, by sampling the residual.
-
-    Parameters
-    ----------
-    equations, y, inverse, groups, direction, shifts, order
-        As for :func:`expand_article`.
-    samples : Samples
-        Where along the path.
-    models : sequence of Model
-        The model at each sample; empty if it does not vary.
-
-    Returns
-    -------
-    Expanded
-        The coefficients.
-    """
+    """Return the series of a state with any film, by sampling the residual."""
     start, units = _started(equations, y)
     around, load = around_state(equations, groups, direction, samples.places, models)
     powers = samples.powers(order)

@@ -81,30 +81,14 @@ MOST_INTERVALS = 500
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
-    """Taylor coefficients of observables about a solved state, order by order in the first axis.
+    """Taylor coefficients of observables about a solved state, order by order in the first axis."""
 
-    Attributes
-    ----------
-    coordinate : float
-        Where the state is.
-    point : object
-        The state, as its problem knows it.
-    series : ndarray, shape (K + 1, n)
-        Coefficients of the observables.
-    logs : ndarray, shape (K + 1, n)
-        Coefficients of their logarithms; nan where there are none.
-    errors : ndarray, shape (n,)
-        Estimated errors at the state, in units of the scales of :class:`Problem`.
-    radius : float
-        Estimate of the radius of convergence.
-    """
-
-    coordinate: float
-    point: Any
-    series: Array
-    logs: Array
-    errors: Array
-    radius: float
+    coordinate: float  # Where the state is
+    point: Any  # The state, as its problem knows it
+    series: Array  # Coefficients of the observables
+    logs: Array  # Coefficients of their logarithms; nan where there are none
+    errors: Array  # Estimated errors at the state, in units of the scales of :class:`Problem`
+    radius: float  # Estimate of the radius of convergence
 
     @property
     def order(self) -> int:
@@ -312,21 +296,11 @@ class _Pieces:
 
 @dataclass(frozen=True, eq=False)
 class SolvedPath:
-    """What lies along a path, ascending, and how it ended.
+    """What lies along a path, ascending, and how it ended."""
 
-    Attributes
-    ----------
-    problem : Problem
-        What was followed.
-    intervals : tuple of Interval
-        Between neighbouring solved states; of a single state, from it to itself.
-    outcome : Outcome
-        CONVERGED if the path reaches the end asked for.
-    """
-
-    problem: Problem
-    intervals: tuple[Interval, ...]
-    outcome: Outcome
+    problem: Problem  # What was followed
+    intervals: tuple[Interval, ...]  # Between neighbouring solved states; of a single state, from it to itself
+    outcome: Outcome  # CONVERGED if the path reaches the end asked for
 
     @cached_property
     def expansions(self) -> tuple[Expansion, ...]:
@@ -376,28 +350,7 @@ def follow(
     on_interval: Callable[[float, float], object] | None = None,
     until: Callable[[Expansion], bool] | None = None,
 ) -> SolvedPath:
-    """Return the path between ``start`` and ``end``.
-
-    Parameters
-    ----------
-    problem : Problem
-        What is followed.
-    start : float or Expansion
-        Where the path begins, or the state there, which is then not solved again.
-    end : float
-        Where it ends, on either side.
-    rtol : float
-        Error allowed, in units of the scales.
-    on_interval : callable, optional
-        ``on_interval(low, high)`` is called when the path is known between these too.
-    until : callable, optional
-        The path ends at a state of which ``until(expansion)`` is true, before the end.
-
-    Returns
-    -------
-    SolvedPath
-        As far as it was reached.
-    """
+    """Return the path between ``start`` and ``end``."""
     found: list[Interval] = []  # in the order of the march
     alone: tuple[Interval, ...] = ()
     outcome = Outcome.CONVERGED

@@ -126,11 +126,6 @@ def solve_level(
     """Return the state of one speed and law on a mesh, from unknowns on that or another mesh.
 
     Where there is a preconditioner, the start is the better one of these unknowns and those ``predicted`` on the mesh.
-
-    Raises
-    ------
-    MeshTooLargeError
-        If the mesh takes more than ``largest`` bytes.
     """
     band = band_for(speed, law, resolution.model)
     if bytes_of(resolution, band) > largest:

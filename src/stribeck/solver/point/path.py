@@ -69,17 +69,7 @@ def similar(states: Iterable[PointState], groups: Groups) -> PointState | None:
 
 
 class NeighbourSolver:
-    """Solves the states of a coordinate in any order, and keeps them.
-
-    Parameters
-    ----------
-    groups_at : callable
-        ``groups_at(s)`` gives the groups at coordinate s.
-    rtol : float
-        Relative tolerance of each state.
-    like : sequence of PointState
-        States near the first one.
-    """
+    """Solves the states of a coordinate in any order, and keeps them."""
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, like: Sequence[PointState] = ()) -> None:
         self.groups_at, self.rtol, self.like = groups_at, rtol, like

@@ -58,20 +58,7 @@ SIZE = (10.0, 8.6)
 
 
 def interference(gap: Any, index: float = INDEX) -> Array:
-    """Return the colours that a film shows between a coated glass and a reflecting ball.
-
-    Parameters
-    ----------
-    gap : array_like
-        Film thickness [m].
-    index : float
-        Refractive index of the fluid [-].
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        Red, green and blue, 0 to 1.
-    """
+    """Return the colours that a film shows between a coated glass and a reflecting ball."""
     path = index * np.maximum(np.asarray(gap, dtype=float), 0.0)[..., None]
     waves = np.array(BANDS)
     fading = np.exp(-np.square(2 * math.pi * path * BANDWIDTH / waves**2) / 4)

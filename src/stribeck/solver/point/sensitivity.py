@@ -29,22 +29,7 @@ GROUPS = ("speed", "load", "roughness")
 
 
 def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables) -> dict[str, Array]:
-    """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness).
-
-    Parameters
-    ----------
-    state : PointState
-        A converged state of positive speed, as the solver returned it.
-    by : sequence of str
-        The groups that are wanted; the derivatives with respect to the others are zero.
-    measure : callable, optional
-        What takes equations and unknowns to the observables.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (3,)
-        By the names of the observables, the other two groups and the model held; zero with respect to a group that is zero.
-    """
+    """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness)."""
     groups = state.groups
     alive = {name: partial(_moved, groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
     if not alive:
@@ -58,22 +43,7 @@ def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Me
 def derivatives_along(
     state: PointState, directions: Mapping[str, Direction], measure: Measure = observables
 ) -> dict[str, Array]:
-    """Return the derivatives of all observables along directions.
-
-    Parameters
-    ----------
-    state : PointState
-        As for :func:`state_derivatives`.
-    directions : mapping of str to callable
-        The groups, with their model, after a step of a logarithm.
-    measure : callable, optional
-        As for :func:`state_derivatives`.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By the names of the observables, one number for each direction.
-    """
+    """Return the derivatives of all observables along directions."""
     pair = state.work
     assert isinstance(pair, Pair)
     level = pair.fine

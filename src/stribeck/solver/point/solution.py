@@ -390,27 +390,7 @@ def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
 
 
 def finish_point(state: PointState, contact: Contact | None, on_failure: str = "raise") -> PointSolution:
-    """Return a state as a solution, or raise the error of its outcome.
-
-    Parameters
-    ----------
-    state : PointState
-        What was reached.
-    contact : Contact or None
-        The contact in SI units it came from.
-    on_failure : {"raise", "return"}
-        What to do where the tolerance was not reached.
-
-    Returns
-    -------
-    PointSolution
-        The solution.
-
-    Raises
-    ------
-    SolveError
-        If the state failed, unless ``on_failure`` is ``"return"`` and there is one to return.
-    """
+    """Return a state as a solution, or raise the error of its outcome."""
     is_there = all(math.isfinite(state.values.get(name, math.nan)) for name in OBSERVABLES)
     solution = solution_of(state, contact) if is_there else None
     if solution is not None and (solution.outcome.ok or on_failure == "return"):

@@ -54,25 +54,7 @@ SMALLEST_ESTIMATE = 0.01
 
 
 def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
-    """Return the state of ``groups``, from the dry contact or the rigid ball.
-
-    Parameters
-    ----------
-    groups : Groups
-        One state of the point geometry; speed, roughness or both may be zero.
-    rtol : float
-        Largest estimated error of shares, central gap, central pressure, offset and friction; 1e-8 to 1e-2.
-
-    Returns
-    -------
-    PointState
-        A failure is returned in its outcome, not raised.
-
-    Raises
-    ------
-    InputError
-        Where the groups are not one state of a ball, or the tolerance is out of range.
-    """
+    """Return the state of ``groups``, from the dry contact or the rigid ball."""
     check(groups, rtol)
     if groups.is_hertzian:
         return _hertz(groups, rtol)
@@ -103,33 +85,7 @@ def solve_from(
     line: Sequence[tuple[float, PointState]] = (),
     predicted: Unknowns | None = None,
 ) -> PointState:
-    """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves.
-
-    Parameters
-    ----------
-    neighbour : PointState
-        A solved state; its operators and its preconditioner are used again.  The contact law must be the same;
-        the nearer it is, the cheaper.
-    groups : Groups
-        One state of the point geometry.
-    rtol : float
-        As for :func:`solve_cold`.
-    line : sequence of (float, PointState)
-        States, and the weights with which they predict this one; none by default.
-    predicted : Unknowns, optional
-        About the state, on the finer mesh of the neighbour; of a film that does not break.
-
-    Returns
-    -------
-    PointState
-        A failure is returned in its outcome, not raised.  Where the neighbour is so far that its mesh does not serve, a cold
-        start is tried first; else where the path from it fails.
-
-    Raises
-    ------
-    InputError
-        Where the groups are not one state of a ball, or the tolerance is out of range.
-    """
+    """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves."""
     check(groups, rtol)
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
@@ -165,19 +121,11 @@ def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
 
 
 class Ending(NamedTuple):
-    """How states of a film that ends in one way are refined.
+    """How states of a film that ends in one way are refined."""
 
-    Attributes
-    ----------
-    refine, follow : callable
-        From a first state, and from a neighbour's meshes, to a state on two meshes.
-    holds : callable
-        Whether the errors of such a pair hold a tolerance along a path.
-    """
-
-    refine: Callable[..., Pair | Outcome]
-    follow: Callable[..., Pair | None]
-    holds: Callable[[Pair, float], bool]
+    refine: Callable[..., Pair | Outcome]  # From a first state, and from a neighbour's meshes, to a state on two meshes
+    follow: Callable[..., Pair | None]  # From a first state, and from a neighbour's meshes, to a state on two meshes
+    holds: Callable[[Pair, float], bool]  # Whether the errors of such a pair hold a tolerance along a path
 
 
 def _refine_full(

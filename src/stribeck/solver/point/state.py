@@ -35,71 +35,33 @@ friction."""
 
 
 class PointFields(NamedTuple):
-    """Fields of a state at given positions, each of the broadcast shape of x and y.
+    """Fields of a state at given positions, each of the broadcast shape of x and y."""
 
-    Attributes
-    ----------
-    gap : ndarray
-        Gap [u_Hz].
-    contact_pressure, fluid_pressure : ndarray
-        The two parts of the pressure [p_Hz].
-    """
-
-    gap: Array
-    contact_pressure: Array
-    fluid_pressure: Array
+    gap: Array  # Gap [u_Hz]
+    contact_pressure: Array  # The two parts of the pressure [p_Hz]
+    fluid_pressure: Array  # The two parts of the pressure [p_Hz]
 
 
 @dataclass(frozen=True, eq=False)
 class PointState:
-    """A state of the point contact.
+    """A state of the point contact."""
 
-    Attributes
-    ----------
-    groups : Groups
-        The state that was solved.
-    rtol : float
-        The relative tolerance asked for.
-    outcome : Outcome
-        How the solve ended; where it is not ``ok`` the values are not to be used, and may be nan.
-    values : mapping of str to float
-        The observables by :data:`OBSERVABLES`.
-    absolute_errors : mapping of str to float
-        Their estimated absolute errors.
-    scales : mapping of str to float
-        Scale of each error: one for the shares, else about the observable itself.
-    identity_error : float
-        ``J_balanced - J_published - J_pcx + 0.4 pi lambda``, zero but for the errors of mesh and iteration.
-    load_error : float
-        Error of the load carried by the pressures, relative to the load.
-    mesh : object
-        Discretisation: ``mesh.radii`` (Nr,) [a] and ``mesh.angles`` (Nt,) [radian] of the nodes, ``mesh.size`` their number.
-    nodal_gap, nodal_contact_pressure, nodal_fluid_pressure : ndarray, shape (Nt, Nr)
-        Fields at the nodes.
-    fields : callable
-        ``fields(x, y)`` gives :class:`PointFields` anywhere: interpolated on the mesh, the rigid far field beyond it.
-    newton_steps, krylov_steps : int
-        Steps of Newton's iteration, and of GMRES in them.
-    work : object
-        Operators and preconditioner from which neighbours start; None if dropped.
-    """
-
-    groups: Groups
-    rtol: float
-    outcome: Outcome
-    values: Mapping[str, float]
-    absolute_errors: Mapping[str, float]
-    scales: Mapping[str, float]
-    identity_error: float
-    load_error: float
+    groups: Groups  # The state that was solved
+    rtol: float  # The relative tolerance asked for
+    outcome: Outcome  # How the solve ended; where it is not `ok` the values are not to be used, and may be nan
+    values: Mapping[str, float]  # The observables by :data:`OBSERVABLES`
+    absolute_errors: Mapping[str, float]  # Their estimated absolute errors
+    scales: Mapping[str, float]  # Scale of each error: one for the shares, else about the observable itself
+    identity_error: float  # `J_balanced - J_published - J_pcx + 0.4 pi lambda`, zero but for the errors of mesh and iteration
+    load_error: float  # Error of the load carried by the pressures, relative to the load
     mesh: Any = field(repr=False)
-    nodal_gap: Array = field(repr=False)
-    nodal_contact_pressure: Array = field(repr=False)
-    nodal_fluid_pressure: Array = field(repr=False)
+    nodal_gap: Array = field(repr=False)  # Fields at the nodes
+    nodal_contact_pressure: Array = field(repr=False)  # Fields at the nodes
+    nodal_fluid_pressure: Array = field(repr=False)  # Fields at the nodes
     fields: Callable[[Array, Array], PointFields] = field(repr=False)
-    newton_steps: int = 0
-    krylov_steps: int = 0
-    work: Any = field(default=None, repr=False)
+    newton_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
+    krylov_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
+    work: Any = field(default=None, repr=False)  # Operators and preconditioner from which neighbours start; None if dropped
 
     @property
     def errors(self) -> dict[str, float]:

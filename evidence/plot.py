@@ -73,7 +73,7 @@ def plot_error_maps(
     Parameters
     ----------
     maps : sequence of (Formula, xarray.Dataset)
-        Formulas, and what :func:`stribeck.evidence.error_maps.error_map` returned for them.  More than three loads make a map
+        Formulas, and what :func:`evidence.error_maps.error_map` returned for them.  More than three loads make a map
         of what does not depend on the speed.
 
     Notes

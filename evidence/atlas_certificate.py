@@ -1,6 +1,6 @@
 """The errors of a table of the atlas, on states solved from cold that were not used to make it.
 
-``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the errors that docs/atlas.md
+``make certificate`` (``python -m evidence.atlas_certificate``) prints the errors that docs/atlas.md
 sums up, and draws its map.
 """
 
@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from evidence.atlas_states import FROM, groups_of
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TABLES, Box, TableRow
@@ -24,7 +25,6 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.evidence.atlas_states import FROM, groups_of
 from stribeck.solver.solve import solve
 
 RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5, "ball-persson": 1e-5, "ball-exit": 1e-4}
@@ -78,26 +78,14 @@ FRICTIONS = 4
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Errors of a table on random states.
+    """Errors of a table on random states."""
 
-    Attributes
-    ----------
-    row : TableRow
-        The table.
-    speed, load, relative_roughness : ndarray, shape (n,)
-        The states.
-    contact_share : ndarray, shape (n,)
-        Solved load share of the asperities.
-    errors : ndarray, shape (n, len(quantities(row)))
-        Relative errors; nan where a load share is too small to count.
-    """
-
-    row: TableRow
-    speed: Array
-    load: Array
-    relative_roughness: Array
-    contact_share: Array
-    errors: Array
+    row: TableRow  # The table
+    speed: Array  # The states
+    load: Array  # The states
+    relative_roughness: Array  # The states
+    contact_share: Array  # Solved load share of the asperities
+    errors: Array  # Relative errors; nan where a load share is too small to count
 
     @property
     def box(self) -> Box:

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from evidence import ball
+from evidence.formulas import FIELDS, LOCATED, MEASURED, OF_STATE, RTOL, field_error, state_of
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.contacts.scaling import SCALINGS
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.evidence import ball
-from stribeck.evidence.formulas import FIELDS, LOCATED, MEASURED, OF_STATE, RTOL, field_error, state_of
 from stribeck.files.datasets import import_xarray
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.point.state import PointState
@@ -56,19 +56,7 @@ SMOOTH_LOAD = 0.1
 
 
 def kind_of(formula: Formula[Any]) -> str:
-    """Return the kind of a formula, by the groups on which its error depends, as a key of :data:`AXES`.
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-
-    Returns
-    -------
-    str
-        Its plane, or ``"located"`` where it predicts what is located on a curve over the speed; for the ball the same
-        in words.
-    """
+    """Return the kind of a formula, by the groups on which its error depends, as a key of :data:`AXES`."""
     if formula.geometry == "point":
         return {"smooth": "smooth ball", "rest": "ball at rest", "mixed": "any ball"}[formula.plane]
     return "located" if formula.predicts in LOCATED else formula.plane
@@ -86,35 +74,6 @@ def error_map(
     r"""Return the error of a formula relative to the solver over a grid of states.
 
     .. math:: \epsilon = \frac{f - s}{s}, \qquad \epsilon = \frac{\max_x |f - s|}{\max_x |s|} \text{ for a field}
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-    load, relative_roughness, speed : float or array_like, shape (n,), optional
-        The grid [-], ascending; by default that of :data:`AXES`, as on validity.md.  What the error does not depend on is
-        not used: of formulas for smooth contacts all but the speed, of those at rest and of located quantities the speed.
-    predicts : str, optional
-        Key of :data:`MEASURED` to judge by, where the options make the formula predict something else.
-    **options
-        Arguments of the formula beside the groups; boundary_friction, beta and definition hold for the solver too.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``error``, signed but for a field, nan where formula or solver has no value, and ``valid``, whether a state is in the
-        formula's range, over those of load, relative_roughness and speed on which the error depends; needs the extra ``data``.
-
-    Raises
-    ------
-    InputError
-        If an axis is not made of ascending numbers, positive but for a speed of zero, or ``predicts`` is unknown.
-    MissingExtraError
-        If xarray is not installed.
-
-    Notes
-    -----
-    States are solved to ``rtol`` 1e-7, along rows over the speed.  On rows fields are good to 1e-4 between the nodes.
     """
     if predicts is not None and predicts not in MEASURED:
         raise InputError(f"predicts = {show(predicts)}; it must be one of {', '.join(MEASURED)}.")
@@ -130,27 +89,7 @@ def error_maps(
     relative_roughness: ArrayLike | None = None,
     speed: ArrayLike | None = None,
 ) -> dict[str, xarray.Dataset]:
-    """Return the maps of several formulas, each state being solved once for all of them.
-
-    Parameters
-    ----------
-    formulas : sequence of Formula
-        The formulas.
-    load, relative_roughness, speed : float or array_like, shape (n,), optional
-        As in :func:`error_map`.
-
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        What :func:`error_map` returns, by name of the formula.
-
-    Raises
-    ------
-    InputError
-        If an axis is not made of ascending numbers, positive but for a speed of zero.
-    MissingExtraError
-        If xarray is not installed.
-    """
+    """Return the maps of several formulas, each state being solved once for all of them."""
     grid = {"load": load, "relative_roughness": relative_roughness, "speed": speed}
     found: dict[str, xarray.Dataset] = {}
     for kind in AXES:

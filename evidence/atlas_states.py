@@ -41,26 +41,14 @@ SEPARATIONS = np.geomspace(1e-4, 60.0, 600)
 
 @dataclass(frozen=True)
 class Plan:
-    """How the states of a table are solved.
-
-    Attributes
-    ----------
-    rtol, coarse_rtol, film_rtol : float
-        Tolerances of the states of the table, of the curves that find the ends of segments, and of smooth films.
-    coarse_nodes : tuple of int
-        Nodes of a region in roughness and load of these curves.
-    coarse_step : float
-        Their step in the logarithm of the speed.
-    films : tuple of int
-        Pieces of the smooth films, and nodes of a piece.
-    """
+    """How the states of a table are solved."""
 
     rtol: float = 1e-6
     coarse_rtol: float = 1e-4
     film_rtol: float = 1e-7
-    coarse_nodes: tuple[int, int] = (14, 12)
-    coarse_step: float = 0.35
-    films: tuple[int, int] = (8, 20)
+    coarse_nodes: tuple[int, int] = (14, 12)  # Nodes of a region in roughness and load of these curves
+    coarse_step: float = 0.35  # Their step in the logarithm of the speed
+    films: tuple[int, int] = (8, 20)  # Pieces of the smooth films, and nodes of a piece
 
 
 PLANS = {

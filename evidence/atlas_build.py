@@ -1,4 +1,4 @@
-"""Making a table of the atlas from solved states: ``make atlas``, or ``python -m stribeck.evidence.atlas_build NAME``.
+"""Making a table of the atlas from solved states: ``make atlas``, or ``python -m evidence.atlas_build NAME``.
 
 First coarse curves over the speed find where the segments of :mod:`stribeck.atlas.grid` end, as polynomials in load and
 roughness.  Then a curve for each node in load and roughness is solved at the nodes of all segments.  Finished parts
@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
 from stribeck._types import Array
 from stribeck.atlas.grid import (
     BREAK_TERMS,
@@ -36,7 +37,6 @@ from stribeck.atlas.grid import (
 )
 from stribeck.atlas.table import STEP, pack, solver_hash
 from stribeck.atlas.tables import TABLES, TableRow
-from stribeck.evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
 
 NEGLIGIBLE = 2e-8
 """Size of coefficients below which a polynomial is left out."""
@@ -177,20 +177,7 @@ def tasks_of_pieces(grid: Grid) -> Iterable[tuple[int, int, int]]:
 
 
 def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
-    """Make a table and write it.
-
-    Parameters
-    ----------
-    row : TableRow
-        The table.
-    target : Path
-        The file.
-    folder : Path
-        Where finished lines are kept, in a folder for each solver. A table with changed regions or nodes in roughness
-        reuses the lines that it had.
-    workers : int
-        Processes.
-    """
+    """Make a table and write it."""
     begun, plan, regions = time.monotonic(), PLANS[row.name], row.grid.regions
     folder = folder / solver_hash()[:8]
     folder.mkdir(parents=True, exist_ok=True)

@@ -111,22 +111,7 @@ JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
 def largest_errors(
     name: str, ratios: tuple[float, ...] = RATIOS, points: tuple[int, int] = (16, 13)
 ) -> tuple[list[float], list[float]]:
-    """Return the largest and the median error of a formula at each beta/mu0, over its range in the groups.
-
-    Parameters
-    ----------
-    name : str
-        Key of :data:`JUDGED`.
-    ratios : tuple of float
-        beta/mu0 [-].
-    points : tuple of int
-        Loads and relative roughnesses, spread over the range with its ends; ten times as many speeds as loads.
-
-    Returns
-    -------
-    largest, median : list of float
-        Relative errors [-], those where formula and solver have a value.
-    """
+    """Return the largest and the median error of a formula at each beta/mu0, over its range in the groups."""
     formula, options = JUDGED[name]
     located = formula.predicts.endswith("_at_minimum")
     errors = _of_minimum(formula, points) if located else _of_states(formula, points, **options)

@@ -1,6 +1,6 @@
 """The solver of the ball as the reference for its formulas: states, rows of them over the speed, and their observables.
 
-Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point geometry.
+Source: none; the counterpart of :mod:`evidence.formulas` for the point geometry.
 """
 
 from __future__ import annotations

@@ -89,11 +89,6 @@ def wall_constant(turning: bool = False) -> float:
     r"""Return K of :math:`\tfrac{8}{15} \ln(1/\epsilon) + K + O(\epsilon \ln \epsilon)`, the force at small gaps.
 
     For a turning sphere K' of :math:`\tfrac{2}{15} \ln(1/\epsilon) + K'`, against the motion of its lowest point.
-
-    Notes
-    -----
-    A fit of forces at eight gaps with the terms e ln(e), e, e**2 ln(e) and e**2 of the gap e; it moves
-    by 1e-6 where gaps or terms are left out, and finds 0.1707 for the coefficient of e ln(1/e), 64/375.
     """
     gaps = np.cosh(ANGLES) - 1
     sign, coefficient = (-1, 2 / 15) if turning else (1, 8 / 15)

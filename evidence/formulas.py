@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from evidence import ball
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.friction import DEFINITIONS, Definition
@@ -21,7 +22,6 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.evidence import ball
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
@@ -118,20 +118,7 @@ MEASURED: dict[str, Callable[..., float]] = {
 
 
 def judged_groups(formula: Formula[Any], groups: Groups) -> Groups:
-    """Return the groups at which a formula is judged: with roughness or speed zero if it is about the limit.
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-    groups : Groups
-        Any state.
-
-    Returns
-    -------
-    Groups
-        The state to solve.
-    """
+    """Return the groups at which a formula is judged: with roughness or speed zero if it is about the limit."""
     if formula.plane == "smooth":
         return replace(groups, roughness=0.0)
     return replace(groups, speed=0.0) if formula.plane == "rest" else groups
@@ -141,20 +128,6 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     r"""Return the error of a formula relative to the solver at one state.
 
     .. math:: \epsilon = \frac{f - s}{s}, \qquad \epsilon = \frac{\max_x |f - s|}{\max_x |s|} \text{ for a field}
-
-    Parameters
-    ----------
-    formula : Formula
-        The formula.
-    groups : Groups
-        One state.
-    **options
-        Arguments of the formula beside the groups; boundary_friction, beta and definition hold for the solver too.
-
-    Returns
-    -------
-    float
-        The error, signed but for a field; nan where the solver has no such quantity.
     """
     state = judged_groups(formula, groups)
     if formula.predicts in FIELDS:
