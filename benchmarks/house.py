@@ -82,13 +82,11 @@ def module_name(tree: Path, path: Path) -> str:
 
 
 def imports(path: Path, known: set[str]) -> set[str]:
-    """Return the modules of the package that a file imports when it runs."""
+    """Return the modules of the package that a file imports, for its types too."""
     body: list[ast.AST] = [parsed(path)]
     found: set[str] = set()
     while body:
         node = body.pop()
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            continue
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:

@@ -60,6 +60,8 @@ class BatchSolution(Exported, Shown, ByValue):
         balls in a fluid that thins or in liquid that ends near the contact; else empty.
     """
 
+    _picture = "stribeck.batches.plot.plot_batch"
+
     groups: Groups
     contacts: Contacts | None
     dims: tuple[str, ...]
@@ -246,11 +248,6 @@ class BatchSolution(Exported, Shown, ByValue):
             return "1"
         first: Contact = self.contacts.ravel()[0]
         return unit_of(name, first.INPUTS)
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.batches.plot import plot_batch
-
-        return plot_batch(self, path, **options)
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"

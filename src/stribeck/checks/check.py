@@ -101,6 +101,8 @@ class Checks(Exported):
         By name of a check, the fact that must be given for it.
     """
 
+    _picture = "stribeck.checks.plot.plot_checks"
+
     checks: tuple[Check, ...]
     unsolved: tuple[str, ...] = ()
     missing: Mapping[str, str] = field(default_factory=dict)
@@ -258,11 +260,6 @@ class Checks(Exported):
         }
         names: dict[str, Column] = {"check": ("check", listed([each.name for each in self.checks]), "1", "what is checked")}
         return new_dataset(columns, names, {"title": "Whether the model applies", "headline": self.headline})
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.checks.plot import plot_checks
-
-        return plot_checks(self, path, **options)
 
     def __str__(self) -> str:
         """Return headline and table as text."""

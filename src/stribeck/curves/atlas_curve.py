@@ -52,6 +52,8 @@ class Mark:
 class AtlasCurve(Drawn, Shown):
     """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields."""
 
+    _picture = "stribeck.curves.plot.plot_atlas_curve"
+
     over: str  # What varies
     values: Array  # Where the points lie, ascending: the group [-], or SI units where the curve has a contact
     groups_at: Callable[[Array], Groups]  # The groups at an array of such values
@@ -153,11 +155,6 @@ class AtlasCurve(Drawn, Shown):
         """Whether the contact law is outside its range at each point while asperities matter there."""
         viscous = atlas.friction_terms(self.groups, self._inputs(self.groups), "balanced")[1]
         return where_law_is_in_doubt(self.groups, self.contact, viscous, (self.boundary_friction, self.beta))
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.curves.plot import plot_atlas_curve
-
-        return plot_atlas_curve(self, path, **options)
 
     def _card(self) -> Card:
         low, high = (self._where(value) for value in (self.values[0], self.values[-1]))

@@ -66,6 +66,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         Points asked for.
     """
 
+    _picture = "stribeck.curves.plot.plot_curve"
+
     over: Over
     values: Array
     contact: Contact | None
@@ -453,11 +455,6 @@ class StribeckCurve(Exported, Shown, ByValue):
             raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
         films = [si_films(solution) for solution in self.solutions]
         return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.curves.plot import plot_curve
-
-        return plot_curve(self, path, **options)
 
     def _card(self) -> Card:
         if not len(self):

@@ -86,6 +86,8 @@ class Comparison(Exported, Shown):
         What could not be fitted, and why.
     """
 
+    _picture = "stribeck.experiments.plot.plot_comparison"
+
     candidates: tuple[Candidate, ...]
     failed: dict[str, str]
 
@@ -163,11 +165,6 @@ class Comparison(Exported, Shown):
         names: dict[str, Column] = {"law": ("law", listed([each.name for each in self.candidates]), "1", "law or model")}
         failed = "\n".join(f"{name}: {why}" for name, why in self.failed.items())
         return new_dataset(columns, names, {"title": "Comparison of fits", "sentence": self.sentence, "failed": failed})
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.experiments.plot import plot_comparison
-
-        return plot_comparison(self, path, **options)
 
 
 @answers_typos

@@ -110,6 +110,8 @@ class Plan(Exported, Shown):
         Kind of the load, of a cylinder or a ball.
     """
 
+    _picture = "stribeck.experiments.plot.plot_plan"
+
     runs: tuple[NextRun, ...]
     before: dict[str, float]
     noise: float
@@ -173,11 +175,6 @@ class Plan(Exported, Shown):
         number: dict[str, Column] = {"run": ("run", np.arange(1, len(self.runs) + 1), "1", "number of the run")}
         before = {f"error_before_{name}": error for name, error in self.before.items()}
         return new_dataset(columns, number, {"title": "What to measure next", "noise": self.noise, **before})
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.experiments.plot import plot_plan
-
-        return plot_plan(self, path, **options)
 
 
 @one_blas_thread

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from stribeck.files.datasets import write_csv, write_netcdf
 from stribeck.files.writing import PathLike
@@ -16,9 +17,10 @@ __all__ = ["Drawn", "Exported"]
 
 
 class Drawn:
-    """A result that draws itself, by its ``_draw``."""
+    """A result that draws itself, by the function that ``_picture`` names."""
 
-    _draw: Callable[..., Figure]
+    # By name: a picture needs the result, and a result that imported its picture would need matplotlib.
+    _picture: ClassVar[str]
 
     def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False, **options: Any) -> Figure:
         """Draw the result.
@@ -45,7 +47,9 @@ class Drawn:
         InputError
             If there is nothing to draw, or the file cannot be written, or exists and ``force`` is not given.
         """
-        return self._draw(path, ax=ax, force=force, **options)
+        module, _, name = self._picture.rpartition(".")
+        figure: Figure = getattr(import_module(module), name)(self, path, ax=ax, force=force, **options)
+        return figure
 
 
 class Exported(Drawn):

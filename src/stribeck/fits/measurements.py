@@ -70,6 +70,8 @@ class Measurements(Exported, Shown, ByValue):
         Rows of the file that look like run-in.
     """
 
+    _picture = "stribeck.fits.plot.plot_measurements"
+
     abscissa: Abscissa
     values: Array
     friction: Array
@@ -121,11 +123,6 @@ class Measurements(Exported, Shown, ByValue):
         """
         rows: dict[str, Column] = {"row": ("row", self.rows, "1", "row of the file")}
         return new_dataset(self.columns(), rows, {"title": "Measured friction", "file": self.path})
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.fits.plot import plot_measurements
-
-        return plot_measurements(self, path, **options)
 
 
 @answers_typos

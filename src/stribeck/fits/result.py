@@ -142,6 +142,8 @@ class Fit(Exported, Shown, ByValue):
         Predictions of all rows that were made.
     """
 
+    _picture = "stribeck.fits.plot.plot_fit"
+
     inputs: tuple[FittedInput, ...]
     outcome: FitOutcome
     contact: Contact
@@ -338,11 +340,6 @@ class Fit(Exported, Shown, ByValue):
         values |= {f"{each.label} interval_95": np.array(each.interval_95) for each in self.inputs}
         coords: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}
         return new_dataset(columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value} | values)
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.fits.plot import plot_fit
-
-        return plot_fit(self, path, **options)
 
     def _card(self) -> Card:
         rows = [

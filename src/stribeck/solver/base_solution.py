@@ -52,6 +52,8 @@ class Profile(Exported, Shown, ByValue):
         Which of the two units hold.
     """
 
+    _picture = "stribeck.solver.plot.plot_fields"
+
     x: Array
     gap: Array
     contact_pressure: Array
@@ -80,11 +82,6 @@ class Profile(Exported, Shown, ByValue):
             "x": ("x", self.x, UNITS[self.unit][0], "position along the contact; fluid enters from the left")
         }
         return new_dataset(columns_of(self, "x"), x, {"title": "Fields along a lubricated rough contact"})
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.solver.plot import plot_fields
-
-        return plot_fields(self, path, **options)
 
 
 def columns_of(fields: Any, dims: str | Sequence[str]) -> dict[str, Column]:

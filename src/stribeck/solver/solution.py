@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -76,6 +76,8 @@ class Solution(BaseSolution):
     -----
     Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
     """
+
+    _picture = "stribeck.solver.plot.plot_profile"
 
     groups: Groups
     contact: Contact | None
@@ -298,8 +300,3 @@ class Solution(BaseSolution):
         numbers = {name: value for name, value in self.to_dict().items() if isinstance(value, float | int | str)}
         numbers |= {f"friction_{each}": self.friction(definition=each).total for each in DEFINITIONS}
         return (own if self.contact is None else self.to_si()).to_dataset().assign_attrs(numbers)
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.solver.plot import plot_profile
-
-        return plot_profile(self, path, **options)

@@ -57,6 +57,8 @@ class Surface(Drawn, Shown):
         What must be known before the numbers are used.
     """
 
+    _picture = "stribeck.surfaces.plot.plot_surface"
+
     topography: Topography
     shape: Form
     measured: MeasuredSpectrum
@@ -67,11 +69,6 @@ class Surface(Drawn, Shown):
     height_with_spikes: float
     window: Window = "hann"
     notes: tuple[str, ...] = field(default=())
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.surfaces.plot import plot_surface
-
-        return plot_surface(self, path, **options)
 
     @property
     def rms_height(self) -> float:

@@ -50,6 +50,8 @@ class Sweep(Exported, Shown, ByValue):
         What was found when it began, such as the lock of a sweep that had died.
     """
 
+    _picture = "stribeck.sweeps.plot.plot_sweep"
+
     path: Path
     about: dict[str, Any] = field(repr=False)
     rows: Rows = field(repr=False)
@@ -122,23 +124,6 @@ class Sweep(Exported, Shown, ByValue):
                 "design": self.about["design"],
             },
         )
-
-    def _draw(self, path: Any, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw friction over the first input that varies, a point for each finished state."""
-        from stribeck.files import pictures
-
-        data, name = self.to_dataset(), self.about["varied"][0]
-        name = name if name in data else f"{name}_group"
-        x, y = np.asarray(data[name].values, dtype=float), data.friction_balanced.values
-        figure, (ax,) = pictures.new_figure((7.0, 4.6), [], title=self.about["title"] or "Sweep", ax=ax)
-        ax.plot(x, y, ".", color=pictures.INK, ms=4)
-        for which, values in (("x", x), ("y", y)):
-            if np.nanmin(values, initial=np.inf) > 0:
-                pictures.make_logarithmic(ax, which, values[np.isfinite(values)])
-        unit = data[name].attrs["units"]
-        ax.set_xlabel(f"{name.replace('_', ' ')}{'' if unit == '1' else f' ({unit})'}")
-        ax.set_ylabel(r"friction coefficient $\mu$")
-        return pictures.finish_figure(figure, path, force)
 
     def _card(self) -> Card:
         rows = [

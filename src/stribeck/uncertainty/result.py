@@ -97,6 +97,8 @@ class Uncertainty(Exported):
         Where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty.
     """
 
+    _picture = "stribeck.uncertainty.plot.plot_uncertainty"
+
     contact: Contact
     errors: dict[str, float]
     spreads: tuple[Spread, ...]
@@ -179,11 +181,6 @@ class Uncertainty(Exported):
             names,
             {"title": "Propagated errors of a state", "method": self.method, "notes": "\n".join(self.notes), **about},
         )
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.uncertainty.plot import plot_uncertainty
-
-        return plot_uncertainty(self, path, **options)
 
     def __str__(self) -> str:
         """Return the table as text."""

@@ -64,6 +64,8 @@ class Field(Exported, Shown, ByValue):
         Which of the two units hold.
     """
 
+    _picture = "stribeck.solver.point.plot.plot_field"
+
     x: Array
     y: Array
     gap: Array
@@ -108,11 +110,6 @@ class Field(Exported, Shown, ByValue):
         }
         return new_dataset(columns_of(self, dims), coords, {"title": "Fields on the plane of a lubricated rough contact"})
 
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.solver.point.plot import plot_field
-
-        return plot_field(self, path, **options)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PointSolution(BaseSolution):
@@ -143,6 +140,8 @@ class PointSolution(BaseSolution):
     -----
     Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
     """
+
+    _picture = "stribeck.solver.point.plot.plot_point_solution"
 
     groups: Groups
     contact: Contact | None
@@ -364,11 +363,6 @@ class PointSolution(BaseSolution):
         from stribeck.solver.point.dataset import field_dataset
 
         return field_dataset(self, points, reach)
-
-    def _draw(self, path: Any, **options: Any) -> Any:
-        from stribeck.solver.point.plot import plot_point_solution
-
-        return plot_point_solution(self, path, **options)
 
 
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
