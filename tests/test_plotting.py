@@ -11,7 +11,6 @@ import pytest
 from command_line import HEAVY, PDMS, call, run_python
 
 import stribeck as sb
-from stribeck.curves.plot import plot_curve, plot_profile
 
 SIGNATURES = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -86,7 +85,7 @@ def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
 
 
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
-    axes = plot_curve(curve).axes[0]
+    axes = curve.plot().axes[0]
     for label, values in (("from asperities", curve.friction_contact), ("from the fluid", curve.friction_viscous)):
         np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
         np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
@@ -96,7 +95,7 @@ def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(
 
 
 def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
-    axes = plot_curve(curve).axes[1]
+    axes = curve.plot().axes[1]
     drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
     assert set(zip(curve.hydrodynamic_friction, np.asarray(curve.friction), strict=True)) <= drawn
     law = line(axes, "as smooth surfaces")
@@ -104,20 +103,20 @@ def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the
 
 
 def test_the_upper_axis_turns_hersey_numbers_into_speeds(curve):
-    figure = plot_curve(curve)
+    figure = curve.plot()
     figure.canvas.draw()
     [upper] = figure.axes[0].child_axes
     np.testing.assert_allclose(upper.get_xlim(), curve.values[[0, -1]], rtol=1e-12)
     assert upper.get_xlabel() == "sliding speed $U$ (m/s)"
     ball = sb.load_case(PDMS.with_name("rubber_ball.toml")).contact
-    drawn = plot_curve(sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3)).axes[0]
+    drawn = sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3).plot().axes[0]
     assert drawn.get_xlabel() == "Hersey number $ηUR/F_N$"
     drawn.figure.canvas.draw()
     np.testing.assert_allclose(drawn.child_axes[0].get_xlim(), (0.05, 0.2), rtol=1e-12)
 
 
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
-    axes = plot_curve(curve).axes[0]
+    axes = curve.plot().axes[0]
     mark = line(axes, "minimum")
     hersey = curve.contact.viscosity * curve.minimum.value / curve.contact.load
     np.testing.assert_allclose(mark.get_xdata(), hersey, rtol=1e-12)
@@ -127,7 +126,7 @@ def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
 
 
 def test_regimes_are_shaded_between_the_transitions(curve):
-    axes = plot_curve(curve).axes[0]
+    axes = curve.plot().axes[0]
     assert [text.get_text() for text in axes.texts] == ["boundary", "mixed", "hydrodynamic"]
     spans = [patch for patch in axes.patches if patch.get_zorder() == 0]
     per_hersey = curve.contact.load / curve.contact.viscosity
@@ -138,20 +137,20 @@ def test_regimes_are_shaded_between_the_transitions(curve):
 def test_a_curve_over_load_or_roughness_has_it_as_abscissa():
     for over, unit in (("load", "N/m"), ("roughness", "m")):
         curve = KINDS[f"over {over}"]()
-        axes = plot_curve(curve).axes[0]
+        axes = curve.plot().axes[0]
         assert set(curve.values) <= set(line(axes, "friction").get_xdata())
         assert axes.get_xlabel().startswith(over) and axes.get_xlabel().endswith(f"({unit})")
 
 
 def test_where_the_hydrodynamic_law_says_nothing_the_shares_of_the_load_are_shown():
     curve = KINDS["over roughness"]()
-    axes = plot_curve(curve).axes[1]
+    axes = curve.plot().axes[1]
     np.testing.assert_array_equal(line(axes, "from the fluid").get_ydata(), curve.observable("fluid_load_share"))
     assert axes.get_ylabel() == "share of the load"
 
 
 def test_a_profile_shows_the_fields_in_si_units(solution):
-    above, below = plot_profile(solution).axes
+    above, below = solution.plot().axes
     gap = line(above, "gap")
     fields = solution.to_si(gap.get_xdata() * 1e-6)
     assert above.get_ylabel() == "gap $h$ (µm)"
@@ -165,7 +164,7 @@ def test_a_profile_shows_the_fields_in_si_units(solution):
 def test_a_profile_reaches_as_far_as_the_pressure(solved):
     for groups in ((1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)):
         found = solved(*groups)
-        axes = plot_profile(found).axes[1]
+        axes = found.plot().axes[1]
         share = np.abs(found.pressure) / np.abs(found.pressure).max()
         assert np.abs(found.x[share > 0.03]).max() < axes.get_xlim()[1]
 
@@ -174,7 +173,7 @@ def test_a_profile_reaches_as_far_as_the_pressure(solved):
 
 
 def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
-    found = words(plot_curve(curve, title="A title"))
+    found = words(curve.plot(title="A title"))
     for part in ("A title", "$R$ = 10 mm", "= 2.7 MPa", "$F_N$ = 30 N/m", "= 50 mPa·s", "exponential contact law"):
         assert part in found
     for part in ("viscous friction: balanced", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
@@ -183,15 +182,15 @@ def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
 
 
 def test_where_the_law_is_beyond_its_range_the_picture_says_so(curve, heavy):
-    hatched = [patch.get_label() for patch in plot_curve(heavy).axes[0].collections]
+    hatched = [patch.get_label() for patch in heavy.plot().axes[0].collections]
     assert "contact law outside its range" in hatched
-    assert "outside its range, as asperities cannot carry this load" in words(plot_curve(heavy))
-    [strip] = [c for c in plot_curve(curve, abscissa="speed").axes[0].collections if "outside" in c.get_label()]
+    assert "outside its range, as asperities cannot carry this load" in words(heavy.plot())
+    [strip] = [c for c in curve.plot(abscissa="speed").axes[0].collections if "outside" in c.get_label()]
     low, high = strip.get_datalim(strip.axes.transData).intervalx
     beyond = curve.values[np.array([any("beyond" in note for note in each.notes) for each in curve.solutions])]
     assert low < beyond.min() <= beyond.max() < high < 3 * beyond.max()
     inside = curve_of(PDMS, speed=("0.1 mm/s", "3 mm/s"), points=3)
-    assert not any("outside" in c.get_label() for c in plot_curve(inside).axes[0].collections)
+    assert not any("outside" in c.get_label() for c in inside.plot().axes[0].collections)
 
 
 def test_an_interrupted_curve_says_how_many_points_it_has():
@@ -199,7 +198,7 @@ def test_an_interrupted_curve_says_how_many_points_it_has():
         if done == 2:
             raise KeyboardInterrupt
 
-    found = words(plot_curve(sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=5, on_point=stop)))
+    found = words(sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=5, on_point=stop).plot())
     assert "2 of 5 points" in found
     assert "Interrupted; the finished points are kept" in found
 
@@ -259,7 +258,7 @@ def test_the_command_leaves_the_notes_out_of_the_picture_and_prints_them(tmp_pat
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_texts_lie_inside_the_picture_and_apart_from_one_another(kind):
-    figure = plot_curve(KINDS[kind](), title="A title")
+    figure = KINDS[kind]().plot(title="A title")
     figure.canvas.draw()
     renderer = figure.canvas.get_renderer()
     boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts(figure)]
@@ -281,12 +280,12 @@ def test_texts_lie_inside_the_picture_and_apart_from_one_another(kind):
 
 @pytest.mark.parametrize("groups", [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)])
 def test_a_profile_of_any_state_can_be_drawn(solved, groups, tmp_path):
-    plot_profile(solved(*groups), tmp_path / "profile.png")
+    solved(*groups).plot(tmp_path / "profile.png")
     assert (tmp_path / "profile.png").stat().st_size > 10_000
 
 
 def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
-    lines = plot_curve(curve).axes[0].lines[:3]
+    lines = curve.plot().axes[0].lines[:3]
     assert len({str(each.get_linestyle()) for each in lines}) == 3
     assert len({each.get_color() for each in lines}) == 3
 
@@ -311,24 +310,24 @@ def test_an_unknown_ending_is_one_sentence(curve, tmp_path):
 def test_an_existing_picture_is_kept_unless_forced(curve, solution, tmp_path):
     path = tmp_path / "picture.png"
     path.write_text("precious")
-    for draw in (lambda **force: plot_curve(curve, path, **force), lambda **force: plot_profile(solution, path, **force)):
+    for draw in (lambda **force: curve.plot(path, **force), lambda **force: solution.plot(path, **force)):
         with pytest.raises(sb.InputError, match="exists already and is kept"):
             draw()
         assert path.read_text() == "precious"
-    plot_profile(solution, path, force=True)
+    solution.plot(path, force=True)
     assert path.read_bytes().startswith(SIGNATURES[".png"])
 
 
 def test_a_missing_matplotlib_is_one_sentence_with_the_remedy(curve, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     with pytest.raises(sb.InputError, match=r"needs matplotlib; install it with: pip install 'stribeck\[plot\]'\."):
-        plot_curve(curve)
+        curve.plot()
 
 
 def test_drawing_changes_no_settings(curve, solution):
     before = dict(matplotlib.rcParams)
-    plot_curve(curve)
-    plot_profile(solution)
+    curve.plot()
+    solution.plot()
     assert dict(matplotlib.rcParams) == before
 
 
@@ -345,12 +344,12 @@ def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
 
 @pytest.mark.parametrize("title", ["costs $5", r"$\frac{1$", "a # b % c & d"])
 def test_a_title_is_taken_by_the_letter(curve, tmp_path, title):
-    figure = plot_curve(curve, tmp_path / "curve.png", title=title)
+    figure = curve.plot(tmp_path / "curve.png", title=title)
     assert title in words(figure)
 
 
 def test_a_long_title_is_cut_to_the_width_of_the_picture(curve, solution):
-    for figure in (plot_curve(curve, title=60 * "very long "), plot_profile(solution, title=60 * "very\nlong ")):
+    for figure in (curve.plot(title=60 * "very long "), solution.plot(title=60 * "very\nlong ")):
         figure.canvas.draw()
         [title] = [text for text in figure.texts if text.get_text().startswith("very long")]
         assert title.get_text().endswith("…")

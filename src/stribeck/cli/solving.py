@@ -89,9 +89,7 @@ def solve_command(
     solution = sb.solve(problem, rtol=tolerance, law=law, **parts)
     title = loaded.title if loaded else ""
     for picture in pictures:
-        from stribeck.curves.plot import plot_profile
-
-        plot_profile(solution, picture, force=force, title=title, notes=not no_notes)
+        solution.plot(picture, force=force, title=title, notes=not no_notes)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
     from stribeck.cli.reports.words import conversions_json, print_conversions

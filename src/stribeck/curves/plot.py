@@ -31,7 +31,7 @@ from stribeck.files.pictures import (
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import DIMENSIONS, InputError, show
-from stribeck.solver.plot import law_text, plot_profile
+from stribeck.solver.plot import law_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from stribeck.curves.atlas_curve import AtlasCurve
     from stribeck.curves.result import StribeckCurve
 
-__all__ = ["hatch_law_in_doubt", "plot_atlas_curve", "plot_curve", "plot_profile"]
+__all__ = ["hatch_law_in_doubt", "plot_atlas_curve", "plot_curve"]
 
 Abscissa = Literal["hersey", "speed"]
 

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stribeck.solver.point.solution import PointSolution
 
 __all__ = [
     "axis_in_si",
@@ -53,7 +52,7 @@ __all__ = [
 
 @picture()
 def plot_profile(
-    solution: Solution | PointSolution,
+    solution: Solution,
     path: PathLike | None = None,
     *,
     ax: Axes | None = None,
@@ -61,19 +60,15 @@ def plot_profile(
     title: str = "",
     notes: bool = True,
 ) -> Figure:
-    """Draw gap and pressures along the contact, of a ball on its plane too, in SI units where the solution has a contact.
+    """Draw gap and pressures along the contact, in SI units where the solution has a contact.
 
     Parameters
     ----------
-    solution : Solution or PointSolution
+    solution : Solution
         The state.
     ax : matplotlib.axes.Axes, optional
         Axes to draw the pressures into, instead of a new figure.
     """
-    if not isinstance(solution, Solution):
-        from stribeck.solver.point.plot import plot_point_solution
-
-        return plot_point_solution(solution, path, force=force, title=title, notes=notes)
     caption = caption_of(solution, notes)
     figure, (*above, below) = new_figure((7.5, 6.0), *caption, rows=2, title=title or "Gap and pressure", ax=ax)
     x = _positions(solution)
