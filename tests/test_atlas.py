@@ -16,11 +16,10 @@ from evidence.atlas_states import groups_of, speed_range
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
-from stribeck.contact_laws.persson import persson_law
-from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.surfaces import SelfAffine, persson_law
 
 DEFINITIONS = ("published", "balanced")
 FUNCTIONS = (

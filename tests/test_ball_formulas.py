@@ -12,10 +12,9 @@ from scipy.special import k0, k1, kn
 
 import stribeck as sb
 from evidence.formulas import relative_error
-from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, point
+from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, film_layers, point
 from stribeck.asymptotics.point import boundary, film, friction, hertz, regressions, rest, rigid, sharing, slow_contact
 from stribeck.asymptotics.point.logarithm import far_integral
-from stribeck.asymptotics.smooth import film_layers
 from stribeck.solver.point.solve import solve_cold
 
 SMOOTH = {

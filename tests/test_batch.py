@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import Outcome
 from stribeck.batches import chain
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import cold_start
 

@@ -11,10 +11,9 @@ from scipy.integrate import quad
 
 import stribeck as sb
 from evidence.formulas import relative_error
-from stribeck.asymptotics.dry import hertz, rest
-from stribeck.asymptotics.formula import Formula, OutOfRangeWarning
-from stribeck.asymptotics.rough import boundary, perturbation, slow_contact
-from stribeck.quantities.units import InputError
+from stribeck import InputError
+from stribeck.asymptotics import Formula, OutOfRangeWarning, boundary, hertz, perturbation, rest
+from stribeck.asymptotics.rough import slow_contact
 
 MODULES = (hertz, rest, perturbation, boundary)
 FORMULAS = [

@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.cases.case import Case, CurveSettings
-from stribeck.cases.reading import load_case
-from stribeck.contacts.line import InputError, LineContact
+from stribeck import Case, InputError, LineContact, load_case
+from stribeck.cases.case import CurveSettings
 from stribeck.quantities.inputs import QUANTITIES
 
 EXAMPLES = sorted(

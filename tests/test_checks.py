@@ -9,9 +9,9 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
+from stribeck import FiniteSurface
 from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of, checks_of_curve
-from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.facts import fact_values
 from stribeck.surfaces import SelfAffine, persson_law

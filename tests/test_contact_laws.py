@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from stribeck import Groups
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
 
 pytestmark = pytest.mark.quick
 

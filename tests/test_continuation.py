@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
+from stribeck import Outcome
 from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.numerics.newton import Dense, StepControl, root_find
-from stribeck.quantities.outcome import Outcome
 
 pytestmark = pytest.mark.quick
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from stribeck import Groups
 from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.unknowns import Layout
 from stribeck.numerics.panels import Mesh

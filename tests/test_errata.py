@@ -14,10 +14,8 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 import stribeck as sb
+from stribeck.asymptotics import boundary, edge_layer, hydrodynamic, load_sharing, mixed, perturbation, rest, transitions
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.asymptotics.dry import rest
-from stribeck.asymptotics.rough import boundary, load_sharing, mixed, perturbation, transitions
-from stribeck.asymptotics.smooth import edge_layer, hydrodynamic
 from stribeck.equations.observables import friction_integrands
 from stribeck.regimes.weakening import weakening
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import Outcome
 from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Operators
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import refinement
 from stribeck.solver.cold_start import cold_start

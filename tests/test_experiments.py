@@ -10,8 +10,9 @@ from command_line import EXAMPLES, call
 from fit_data import TRUE, exact, measured, noisy
 
 import stribeck as sb
-from stribeck.experiments.compare import CAVEATS, Candidate, Comparison, _aicc
-from stribeck.experiments.next_runs import NextRun, Plan, _information, _row
+from stribeck import Comparison, Plan
+from stribeck.experiments.compare import CAVEATS, Candidate, _aicc
+from stribeck.experiments.next_runs import NextRun, _information, _row
 
 
 @pytest.fixture(scope="module")

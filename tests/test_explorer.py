@@ -41,7 +41,7 @@ from stribeck.explorer.scans import read_scan, with_scan
 from stribeck.explorer.serving.pools import Threads, run
 from stribeck.quantities import units
 from stribeck.quantities.formats import format_si
-from stribeck.solids.viscoelastic import Prony
+from stribeck.solids import Prony
 
 START = server.example()
 PROFILE = (EXAMPLES / "cylinder_profile.csv").read_bytes()

@@ -15,13 +15,12 @@ from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 from rich.console import Console
 
 import stribeck as sb
+from stribeck import FitSettings
 from stribeck.cases.fit_settings import OF_CONTACT as FREE
-from stribeck.cases.fit_settings import FitSettings, Prior
+from stribeck.cases.fit_settings import Prior
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.cli.reports.fit import print_fit
-from stribeck.contact_laws.persson import persson_law
-from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
 from stribeck.fits.fit import _places
 from stribeck.fits.free_inputs import free_inputs
@@ -31,6 +30,7 @@ from stribeck.fits.objective import objective
 from stribeck.fits.posterior import draw_posterior
 from stribeck.fits.states.cylinders import solved_parts
 from stribeck.fits.states.sources import atlas_parts
+from stribeck.surfaces import SelfAffine, persson_law
 
 START = TRUE.replace(boundary_friction=0.3, roughness="2 um", modulus="1.5 MPa")
 NEAR = START.replace(modulus=TRUE.modulus)

@@ -5,7 +5,7 @@ import pytest
 from fit_data import TRUE, measured
 
 import stribeck as sb
-from stribeck.cases.fit_settings import FitSettings
+from stribeck import FitSettings
 from stribeck.fits.case_file import write_fitted_case
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel

@@ -10,14 +10,22 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 import stribeck as sb
-from stribeck.fluids import local_flow
-from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium, medium_width
-from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, mean_width, nominal_separation
+from stribeck.fluids import (
+    Barus,
+    Carreau,
+    Cross,
+    DowsonHigginson,
+    EffectiveMedium,
+    Eyring,
+    PatirCheng,
+    PowerLaw,
+    Roelands,
+    local_flow,
+)
+from stribeck.fluids.effective_medium import PERCOLATION, medium_width
+from stribeck.fluids.flow_factors import FLOOR, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.eyring import Eyring
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())

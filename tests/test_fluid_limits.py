@@ -9,7 +9,7 @@ import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.state import mesh_for
-from stribeck.solids.viscoelastic import hysteresis_friction
+from stribeck.solids import hysteresis_friction
 from stribeck.solver.solve import solved_point
 
 GROUPS = sb.Groups(1e-3, 0.1, 1e-4)

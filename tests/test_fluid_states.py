@@ -10,16 +10,12 @@ import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import friction_scale
+from stribeck.fluids import Barus, Carreau, DowsonHigginson, EffectiveMedium, Eyring, PatirCheng, Roelands
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.effective_medium import EffectiveMedium
-from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.eyring import Eyring
-from stribeck.fluids.rheology.rate_laws import Carreau
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.solids.layer import Layer
+from stribeck.solids import Layer
 from stribeck.solver.cold_start import path_of_article
 from stribeck.solver.homotopy import WAYS, _blended, _newtonian
 

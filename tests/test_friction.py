@@ -5,7 +5,7 @@ import inspect
 import pytest
 
 import stribeck as sb
-from stribeck.cases.case import Case
+from stribeck import Case
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.inputs.inputs import Inputs

@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stribeck import Groups
+from stribeck import Groups, InputError
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.quantities.units import InputError
 
 pytestmark = pytest.mark.quick
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import hydrodynamic
 
 C = hydrodynamic.FILM_CONSTANT
 SPEEDS = np.geomspace(1e-10, 1e8, 55)

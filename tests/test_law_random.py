@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contact_laws.persson import persson_law
-from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.quantities.outcome import Outcome
+from stribeck import Outcome
+from stribeck.surfaces import SelfAffine, persson_law
 
 SEED = 15_485_863
 

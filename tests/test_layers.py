@@ -7,9 +7,7 @@ from scipy.optimize import minimize_scalar
 
 import stribeck as sb
 from evidence.formulas import relative_error
-from stribeck.asymptotics import constants
-from stribeck.asymptotics.formula import OutOfRangeWarning
-from stribeck.asymptotics.smooth import edge_layer, film_layers
+from stribeck.asymptotics import OutOfRangeWarning, constants, edge_layer, film_layers
 from stribeck.numerics.newton import StepControl, root_find
 
 LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}

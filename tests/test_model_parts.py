@@ -21,14 +21,15 @@ from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import mesh_for, solve_state
+from stribeck.fluids import Barus, DowsonHigginson
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, check_range
+from stribeck.fluids.rheology.viscosity import check_range
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
-from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.layer import Layer, transfer
+from stribeck.solids import HalfPlane, Layer
+from stribeck.solids.layer import transfer
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.solve import spiked
 

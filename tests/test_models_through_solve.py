@@ -12,12 +12,12 @@ from test_fluid_states import film_of
 
 import stribeck as sb
 import stribeck.equations.state
+from stribeck import Outcome
 from stribeck.contacts.model import Model
+from stribeck.fluids import Barus
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.viscosity import Barus
-from stribeck.quantities.outcome import Outcome
-from stribeck.solids.layer import Layer
+from stribeck.solids import Layer
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import RefinedState
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.linalg import lu_solve
 from scipy.sparse.linalg import gmres
 
+from stribeck import Outcome
 from stribeck.numerics.newton import LU, Dense, StepControl, relative_size, root_between, root_find
-from stribeck.quantities.outcome import Outcome
 
 pytestmark = pytest.mark.quick
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from stribeck import Groups
 from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
 from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import friction_integrals, friction_integrands, friction_scale, gradients, observables

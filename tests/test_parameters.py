@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.contacts.line import Groups, InputError, LineContact
+from stribeck import Groups, InputError, LineContact
 from stribeck.contacts.parts import Parts
 from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from stribeck import Outcome
 from stribeck.numerics.series import radius
-from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path.path import Expansion, Interval, follow
 
 pytestmark = pytest.mark.quick

@@ -10,8 +10,7 @@ from scipy.integrate import quad
 from scipy.special import erf, exp1
 
 import stribeck as sb
-from stribeck.contact_laws.persson import PerssonLaw, persson_law
-from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
+from stribeck.surfaces import PerssonLaw, SelfAffine, Spectrum, persson_law
 
 ROLLED = SelfAffine(h_rms=1.0, q0=1.0, q1=1e3, hurst=0.8, roll_off=5.0)
 EVERYWHERE = np.concatenate((np.geomspace(1e-300, 1e-3, 500), np.geomspace(1.1e-3, 60, 1500)))

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics.rough import load_sharing, transitions
+from stribeck import Outcome
+from stribeck.asymptotics import load_sharing, transitions
 from stribeck.files import datasets as store
-from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.weakening import roughness_without_minimum, weakening
 
 pytest.importorskip("xarray")

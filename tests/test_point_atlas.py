@@ -10,8 +10,8 @@ import pytest
 import stribeck as sb
 from evidence.atlas_certificate import compare, quantities, random_states, solved
 from evidence.atlas_states import groups_of
+from stribeck import FitSettings
 from stribeck.atlas.tables import TABLES
-from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities

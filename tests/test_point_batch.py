@@ -85,7 +85,7 @@ def test_a_ball_follows_its_neighbour(monkeypatch):
 
 
 def test_a_ball_that_cannot_be_solved_has_its_outcome_and_no_numbers(monkeypatch):
-    from stribeck.quantities.outcome import Outcome
+    from stribeck import Outcome
     from stribeck.solver.point.solve import _failed
 
     monkeypatch.setattr(path, "next_state", lambda start, groups, rtol: _failed(groups, rtol, Outcome.STALLED))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import Groups
 from stribeck.contacts.cut_off import CAVITATED, RUPTURE
-from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.cavitated import swept
 from stribeck.equations.cavities.wake import rupture_line, shear_missing

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import Outcome
 from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import continued
 from stribeck.equations.point.observables import SMOOTH
-from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold
 

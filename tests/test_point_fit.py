@@ -8,8 +8,8 @@ from ball_data import BALL as TRUE
 from command_line import call
 
 import stribeck as sb
+from stribeck import FitSettings
 from stribeck.batches.lattice import Lattice
-from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import sources

@@ -9,8 +9,8 @@ from ball_data import BALL
 from test_point_fit import made_up, measured
 
 import stribeck as sb
+from stribeck import FitSettings
 from stribeck.batches.kept import KeptStates, between
-from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
@@ -18,7 +18,7 @@ from stribeck.fits.states import sources
 from stribeck.fits.states.balls import kept_balls
 from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.sources import Ways
-from stribeck.fluids.rheology.rate_laws import Carreau
+from stribeck.fluids import Carreau
 from stribeck.fluids.shear_thinning import ShearThinning
 
 SPEEDS = BALL.speed * np.geomspace(0.5, 4.0, 4)

@@ -7,17 +7,16 @@ import pytest
 from scipy.special import j0, jv
 
 import stribeck as sb
+from stribeck import Groups
 from stribeck.contact_laws.exponential import ExponentialLaw
-from stribeck.contacts.groups import Groups
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
-from stribeck.fluids.effective_medium import EffectiveMedium
-from stribeck.fluids.flow_factors import PatirCheng
+from stribeck.fluids import Barus, DowsonHigginson, EffectiveMedium, PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.solids.layer import Layer, transfer
+from stribeck.solids import Layer
+from stribeck.solids.layer import transfer
 from stribeck.solids.layer_plane import layer_by_mode
 from stribeck.solver.point.solve import solve_cold
 

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from stribeck.contacts.groups import Groups, contact_law
-from stribeck.quantities.outcome import Outcome
+from stribeck import Groups, Outcome
+from stribeck.contacts.groups import contact_law
 from stribeck.solver.point import refinement, start
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes

@@ -8,7 +8,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import stribeck as sb
-from stribeck.contacts.groups import Groups
+from stribeck import Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.reformation import outflow

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contact_laws.persson import persson_law
-from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.solver.point.sensitivity import GROUPS, state_derivatives
 from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.surfaces import SelfAffine, persson_law
 
 SURFACE = persson_law(SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
 STATES = {

@@ -8,10 +8,9 @@ import pytest
 from scipy.integrate import trapezoid
 
 import stribeck as sb
+from stribeck import Groups, Outcome
 from stribeck.contacts.cut_off import log_cut_offs
-from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.solution import finish_point, solution_of
 from stribeck.solver.point.state import PointFields, PointObservables, PointState
 

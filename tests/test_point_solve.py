@@ -8,14 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stribeck import surfaces
-from stribeck.contacts.groups import Groups
+from stribeck import Groups, InputError, Outcome, SolveError, solve, surfaces
 from stribeck.equations.point.observables import observables
-from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
 from stribeck.solver.point.level import solve_level
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.solve import SolveError, solve
 
 DATA = json.loads((Path(__file__).parent / "data" / "point_states.json").read_text())
 MINIMUM = ("minimum_gap", "minimum_gap_on_axis")

@@ -8,8 +8,8 @@ import pytest
 from numpy.polynomial import legendre
 
 import stribeck as sb
+from stribeck import Groups
 from stribeck.contact_laws.exponential import ExponentialLaw
-from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
 from stribeck.equations.point.observables import FrictionWithin, observables
 from stribeck.equations.point.planes import plane_of
@@ -17,11 +17,9 @@ from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.equations.thinning.column import column, flow_curve
 from stribeck.equations.thinning.far_field_of_power_law import KNOWN, FarPower, similar
+from stribeck.fluids import Barus, Carreau, Cross, DowsonHigginson, Eyring, PowerLaw
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
-from stribeck.fluids.rheology.eyring import Eyring
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solver.point.level import solve_level

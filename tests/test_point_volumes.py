@@ -13,7 +13,7 @@ from scipy.sparse.linalg import spsolve
 
 import stribeck as sb
 from stribeck.equations.point.observables import FrictionWithin
-from stribeck.fluids.rheology.rate_laws import PowerLaw
+from stribeck.fluids import PowerLaw
 
 INNER, OUTER, RINGS, ANGLES = 0.03, 80.0, 80, 32
 Z, WEIGHTS = (0.5 * each[:, None] for each in np.polynomial.legendre.leggauss(24))

@@ -13,7 +13,8 @@ from command_line import call, case_text
 from fit_data import exact
 
 import stribeck as sb
-from stribeck.cases.fit_settings import FitSettings, check_fit_table
+from stribeck import FitSettings
+from stribeck.cases.fit_settings import check_fit_table
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)

@@ -18,11 +18,10 @@ from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators, OperatorsOfRows
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
+from stribeck.solids import HalfPlane, Layer, Prony, StandardLinearSolid, TwoBodies, hysteresis_friction
 from stribeck.solids import layer as bonded
-from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.layer import REACH, Layer, smooth_kernel
-from stribeck.solids.two_bodies import TwoBodies
-from stribeck.solids.viscoelastic import Memory, Prony, StandardLinearSolid, creep_of_relaxation, hysteresis_friction
+from stribeck.solids.layer import REACH, smooth_kernel
+from stribeck.solids.viscoelastic import Memory, creep_of_relaxation
 from stribeck.solver.cold_start import cold_start
 
 FINE = Mesh(np.concatenate([[-256, -128, -64, -32, -16, -8], np.arange(-4, 4.01, 0.125), [8, 16, 32, 64, 128, 256.0]]), 12)

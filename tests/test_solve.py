@@ -9,9 +9,9 @@ import pytest
 from numpy.polynomial import legendre
 
 import stribeck as sb
+from stribeck import Outcome
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import deflection_operator

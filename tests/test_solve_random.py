@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.quantities.outcome import Outcome
+from stribeck import Outcome
 from stribeck.quantities.outputs import NAMES
 
 SEED = 27_644_437

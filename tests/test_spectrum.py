@@ -7,9 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.cases.rough_surface import RoughSurface
-from stribeck.contact_laws.persson import persson_law
-from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
+from stribeck.surfaces import RoughSurface, SelfAffine, Spectrum, persson_law
 
 SHAPES = [
     SelfAffine(h_rms=1e-6, q0=1e4, q1=1e8, hurst=0.8),

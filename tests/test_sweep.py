@@ -18,9 +18,9 @@ from command_line import SCRIPT, SWEEP, call, environment
 from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, finish, same_rows, write
 
 import stribeck as sb
+from stribeck import Outcome
 from stribeck.batches import chain as sweep_chain
 from stribeck.quantities.inputs import INPUTS
-from stribeck.quantities.outcome import Outcome
 from stribeck.sweeps.lock import LOCK
 
 LONG = RANDOM.format(kind="sobol", points=1024)

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics import OutOfRangeWarning
+from stribeck.asymptotics import OutOfRangeWarning, mixed, transitions
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
-from stribeck.asymptotics.rough import mixed, transitions
 from stribeck.asymptotics.rough.perturbation import phi
 from stribeck.regimes.weakening import roughness_without_minimum
 

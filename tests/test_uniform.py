@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics.formula import OutOfRangeWarning
-from stribeck.asymptotics.rough import load_sharing, perturbation, uniform
-from stribeck.asymptotics.smooth import hydrodynamic, wedge
+from stribeck.asymptotics import OutOfRangeWarning, hydrodynamic, load_sharing, perturbation, uniform, wedge
 
 STATES = 120
 SPEEDS = np.geomspace(1e-9, 1e2, 12)

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stribeck import InputError
 from stribeck.quantities.formats import format_factor, format_percent, format_si
-from stribeck.quantities.units import DIMENSIONS, InputError, to_si
+from stribeck.quantities.units import DIMENSIONS, to_si
 
 pytestmark = pytest.mark.quick
 

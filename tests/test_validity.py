@@ -15,10 +15,7 @@ from evidence.ball import OBSERVED
 from evidence.coefficients import JUDGED, RATIOS, largest_errors
 from evidence.error_maps import AXES, error_map, error_maps, kind_of
 from evidence.formulas import LOCATED, MEASURED, OF_STATE, relative_error
-from stribeck.asymptotics import FORMULAS, Limit
-from stribeck.asymptotics.dry import hertz, rest
-from stribeck.asymptotics.rough import boundary, load_sharing, transitions, uniform
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import FORMULAS, Limit, boundary, hertz, hydrodynamic, load_sharing, rest, transitions, uniform
 from stribeck.contacts.scaling import SCALINGS
 
 pytest.importorskip("xarray")
