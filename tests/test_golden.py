@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 import pytest
-from golden.observed import GROWTH, faults, observed
+from golden.observed import GROWTH, PLACES, faults, observed
 
 ROWS = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 CHUNKS = 48
@@ -35,6 +35,8 @@ def test_a_value_off_by_three_errors_and_an_error_that_grew_are_faults(change, t
     row = next(row for row in ROWS if row["words"] == {"outcome": "CONVERGED"})
     assert faults(row["case"], row, row) == []
     for name, old in row["values"].items():
+        if name in PLACES and told == "the stated error":
+            continue
         [fault] = faults(row["case"], row, {**row, "values": {**row["values"], name: change(*old)}})
         assert told in fault and name in fault and str(row["case"]["speed"]) in fault
 
