@@ -8,7 +8,7 @@ from stribeck import Groups, Outcome
 from stribeck.contacts.groups import contact_law
 from stribeck.solver.point import refinement, start
 from stribeck.solver.point.path import NeighbourSolver
-from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes
+from stribeck.solver.point.refinement import MINIMUM_RTOL_FACTOR_ON_PATH, choose_next_meshes, follow, mesh_for_neighbour
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -52,14 +52,14 @@ def test_from_a_neighbour_that_is_far_a_state_costs_no_more_than_a_cold_one(stat
 def test_a_mesh_far_finer_than_a_tolerance_needs_is_left(state):
     groups = ball(9e-3)
     fine = solve_cold(groups, 1e-7)
-    wanted, keeps = meshes_for(1e-2, contact_law(groups), fine.work, 1e-3)
+    wanted, keeps = mesh_for_neighbour(1e-2, contact_law(groups), fine.work, 1e-3)
     assert not keeps
     assert wanted.mesh.size < 0.7 * fine.mesh.size
-    assert meshes_for(1e-2, contact_law(groups), state.work, state.work.total) == (state.work.fine.resolution, True)
+    assert mesh_for_neighbour(1e-2, contact_law(groups), state.work, state.work.total) == (state.work.fine.resolution, True)
 
 
 def test_a_state_that_misses_its_tolerance_is_compared_with_the_next_finer_mesh_alone(state, monkeypatch):
-    wanted, coarse = next_meshes(state.work, 0.3 * state.work.total, 5, PATH_SLACK)
+    wanted, coarse = choose_next_meshes(state.work, 0.3 * state.work.total, 5, MINIMUM_RTOL_FACTOR_ON_PATH)
     assert coarse is state.work.fine
     assert (wanted.degree, wanted.modes) == (coarse.resolution.degree + 2, 2 * math.ceil(0.7 * coarse.resolution.modes))
     solved = []

@@ -10,7 +10,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.cavities.cavitated import TornEquations
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.cavities.cavitated import follow_cavitated, holds_torn, is_torn, refine_cavitated
+from stribeck.solver.cavities.cavitated import follow_cavitated, holds_cavitated, is_cavitated, refine_cavitated
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, holds_along_path, refine
 
@@ -42,7 +42,7 @@ def refine_reforming(
     torn = refine_cavitated(speed, law, guess, rtol, model, known)
     if not isinstance(torn, Pair):
         return torn
-    if torn.outcome.ok and not is_torn(torn):
+    if torn.outcome.ok and not is_cavitated(torn):
         return _full(speed, law, torn.fine.named(full.resolution.model), rtol, model) or torn
     reaches_rim = bool((torn.fine.unknowns.fluid[:, -1] <= model.cavity_pressure).any())
     return replace(torn, outcome=Outcome.MESH_LIMIT) if reaches_rim else torn
@@ -60,7 +60,7 @@ def follow_reforming(
         line = ()
     if breaks:
         found = follow_cavitated(speed, law, neighbour, rtol, line)
-        if found is None or is_torn(found):
+        if found is None or is_cavitated(found):
             return found
         return _full(speed, law, found.fine.named(full_model(model)), rtol, model)
     full = full_model(model)
@@ -76,7 +76,7 @@ def follow_reforming(
 def holds_reforming(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state along a path hold a tolerance."""
     breaks = isinstance(pair.fine.equations, TornEquations)
-    return holds_torn(pair, rtol) if breaks else holds_along_path(pair, rtol)
+    return holds_cavitated(pair, rtol) if breaks else holds_along_path(pair, rtol)
 
 
 def _full(speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None) -> Pair | None:

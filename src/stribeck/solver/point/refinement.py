@@ -37,79 +37,49 @@ from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
+from stribeck.solver.refinement import newton_tolerance
 
-WASTE = 0.03
-"""Estimated error over the tolerance below which a neighbour's mesh is tested for being finer than necessary."""
-
-SAVED = 0.4
-"""Memory of a coarser mesh over that of the neighbour's below which new operators pay off."""
-
-AHEAD = 0.2
-"""Speed over that of the state for which panels are made along a path to slower ones."""
-
-PART = 0.35
-"""Stated error over the difference between the two meshes: the finer one is better than this."""
-
-TURNED, TURNED_PART, ABOUT_CLOSED = 1.0, 0.25, (0.8, 1.3)
-"""The same near where roughness closes the flow, and the smallest error of one observable over the largest; that of the
-load over that of the last coefficients of the pressure on panels there; and the gaps that are near, over that at which the
-flow closes."""
-
-TURNED_MOMENT = {"J_published": 1.25, "J_pcx": 1.0, "J_poiseuille": 0.3}
-"""That of friction integrals over the moment of these coefficients: it is a small difference of two halves."""
-
-TELLING, NARROWEST_TURNED = 0.1, 0.05
-"""Part that panels have in these errors from which they are halved, and their width over the scale above which they are."""
-
-COMPANY, THINNED_COMPANY = 0.1, 1.0
-"""Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
-
-CENTRAL = {"central_gap": 0.5, "central_pressure": 2.0}
-"""Stated error of gap and pressure at the centre over the last coefficients of their series on the first panel, where no
-node lies at the centre and the equations for the pressure weigh it with the radius."""
-
-UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
-"""Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over
-the sum of the angular one, continued as a geometric series."""
-
-PLACE, LOWER = ("minimum_radius", "minimum_angle"), 0.5
-"""Stated error of the place of the minimum film over how far from there the gap rises by the error of that film, at least:
-it moved by up to 0.47 of that, and two meshes may agree by chance."""
-
-THINNED_MINIMUM, THINNED, THINNED_DRAG, THINNED_FRICTION = 1.5, 1.5e-3, 3e-2, 2.0
-"""Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it,
-and of friction, as the viscosity has peaks where hardly anything is sheared; and that of friction over the others'."""
-
-NEARLY_ROLLING, MOST_OVER_SLIDE = 0.25, 4.0
-"""Half the slide-to-roll ratio below which these errors of friction grow as one over it, and by how much at most."""
-
-CUSP = 4e-3
-"""Least stated error of the minimum film, times the number of angles, where the viscosity has a cusp, or no bound, at places
-that are not sheared."""
-
-SLOWEST_DECAY = 0.02
-"""Smallest rate at which the coefficients are taken to fall."""
-
-MINIMUM_SLACK, PATH_SLACK = 100.0, 1000.0
-"""Tolerance of the minimum film over that of the other observables: of a cold state, and along a path."""
-
-PANEL_RATE = 1.49
-"""Logarithm by which one degree more reduces the error of a pressure that has a square root at one panel's distance."""
-
-FINER_DEGREE, FINER_MODES = 2, 1.4
-"""Additional degree of the finer of two meshes, and the ratio of their numbers of modes."""
-
-THICK = 0.05
-"""Film above which the degree of a first mesh does not fall: the pressures of thick films are of order one."""
-
-MOST_DEGREE = 18
-MOST_ROUNDS = 6
-
-ROUNDING = 0.03
-"""Rounding of the friction over the tolerance above which it may keep the error above the tolerance."""
-
-LARGE = 200_000_000
-"""Memory of the finer mesh from which the preconditioners of coarser ones are not kept for neighbours."""
+COARSEN_BELOW = 0.03  # Stated error over rtol below which a coarser mesh than the neighbour's is looked for
+COARSEN_MEMORY_RATIO = 0.4  # A coarser mesh is built only if it needs less than this fraction of the memory
+MESH_FOR_SPEED_RATIO = 0.2  # Along a path to lower speeds, the mesh is made for this fraction of the current speed
+SAFETY = 0.35  # Stated error over the difference between the two meshes: the finer one is better than their difference
+SAFETY_AT_KINK = 1.0  # Replaces SAFETY and the error floor where roughness closes the flow: two meshes share the kink's error
+KINK_LOAD_SAFETY = 0.25  # Error floor over the load of the last pressure coefficients on panels at the kink
+PERCOLATION_BAND = (0.8, 1.3)  # Gaps over the closing gap between which the mobility turns sharply
+# Error of each friction integral over the moment of the last pressure coefficients at the kink: a difference of two halves.
+KINK_MOMENT_SAFETY = {"J_published": 1.25, "J_pcx": 1.0, "J_poiseuille": 0.3}
+SPLIT_FRACTION = 0.1  # A panel is split if it contributes more than this fraction of the truncation error
+MIN_PANEL_AT_KINK = 0.05  # Width over the contact's scale below which panels at the kink are no longer split
+# Two meshes may agree by accident in one number, hardly in all: the least error of each observable over the largest of all.
+ERROR_FLOOR_RATIO = 0.1  # Newtonian films
+ERROR_FLOOR_RATIO_THINNING = 1.0  # Shear-thinning films (test_point_thinning)
+# Error over the last radial coefficients on the first panel: no node lies at the centre.
+CENTRE_SAFETY = {"central_gap": 0.5, "central_pressure": 2.0}
+SAFETY_TRUNCATION_ANGLE = 5.0  # Error of the minimum film over the last two angular coefficients
+SAFETY_TRUNCATION_RADIUS = 0.5  # Error of the minimum film over the last two radial coefficients
+SAFETY_TRUNCATION_SERIES = 0.4  # Error of the minimum film over the geometric series that continues the angular one
+MINIMUM_POSITION = ("minimum_radius", "minimum_angle")
+POSITION_SAFETY = 0.5  # Least error of the minimum's position over the distance at which the gap rises by its own error
+# Shear-thinning: extra safety, as the viscosity varies sharply where the shear rate vanishes (test_point_thinning).
+THINNING_MINIMUM_SAFETY = 1.5  # Truncation error of the minimum film over that of a Newtonian film
+THINNING_FLOOR_RATIO = 1.5e-3  # Least error of every observable over the truncation error of the minimum film
+THINNING_DRAG_FLOOR_RATIO = 3e-2  # Least error of the friction integrals over the truncation error of the minimum film
+THINNING_FRICTION_SAFETY = 2.0  # Least error of the friction integrals over the least error of the other observables
+SMALL_SLIP = 0.25  # Half the slide-to-roll ratio below which errors of thinning drag grow as one over the slip
+MAX_SLIP_AMPLIFICATION = 4.0  # Largest such growth
+# Least error of the minimum film times the modes, where the viscosity has no plateau at low rates and so a cusp at rate zero.
+CUSP_ERROR_TIMES_MODES = 4e-3
+MIN_DECAY_RATE = 0.02  # Smallest decay of angular coefficients per mode that a fit may give, or the series would not end
+MINIMUM_RTOL_FACTOR = 100.0  # Tolerance of the minimum film over rtol, of a cold state
+MINIMUM_RTOL_FACTOR_ON_PATH = 1000.0  # Tolerance of the minimum film over rtol, along a path
+DEGREE_LOG_GAIN = 1.49  # ln of the error reduction by one degree: a square root at one panel's distance
+FINER_DEGREE_STEP = 2  # Degrees by which the finer mesh of a pair exceeds the coarser one
+FINER_MODES_RATIO = 1.4  # Modes of the finer mesh of a pair over those of the coarser one
+FULL_DEGREE_FILM = 0.05  # Film above which the first degree no longer falls: pressures of thick films are of order one
+MAX_DEGREE = 18
+MAX_REFINEMENTS = 6
+ROUNDING_RTOL_FRACTION = 0.03  # Rounding of friction over rtol above which rounding is the outcome of a missed tolerance
+DROP_FACTORS_ABOVE_BYTES = 200_000_000  # Memory of the finer mesh above which factors of coarser meshes are dropped
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,12 +96,12 @@ class Pair:
     krylov_steps: int
 
     def named(self, model: Model) -> Pair:
-        """Return the pair as one from which states of a model start."""
+        """Return the pair relabelled with a model whose states start from it."""
         return replace(self, coarse=self.coarse.named(model), fine=self.fine.named(model))
 
     @property
     def total(self) -> float:
-        """Largest error relative to its scale, but for those of the minimum film."""
+        """Largest error over its scale among all observables but the minimum film."""
         return max(self.errors[name] / self.scales[name] for name in self.errors if name not in MINIMA)
 
     @property
@@ -141,12 +111,12 @@ class Pair:
 
     @property
     def is_enclosed(self) -> bool:
-        """Whether edges of panels enclose where roughness closes the flow: two degrees do not tell the error of a kink."""
+        """Whether panel edges enclose the gap at which roughness closes the flow, as degrees alone cannot measure a kink."""
         now = self.fine.resolution
         return with_closing(now, self.fine.mesh, self.fine.unknowns.gap) == now
 
     def holds(self, rtol: float, slack: float) -> bool:
-        """Return whether the errors hold a tolerance, that of the minimum film one that is larger by ``slack``."""
+        """Return whether all errors hold a tolerance, and that of the minimum film ``slack`` times the tolerance."""
         return self.is_enclosed and self.total <= rtol and self.minimum <= slack * rtol
 
 
@@ -158,7 +128,7 @@ def modal_amplitudes(level: Level) -> Array:
 
 
 def modes_for(level: Level, amplitude: float) -> int:
-    """Return the number of modes from which on their amplitudes are below a bound, by their geometric decay."""
+    """Return the number of modes whose geometrically decaying amplitudes exceed a bound."""
     found = modal_amplitudes(level)
     below = np.flatnonzero(found > amplitude)
     last = int(below[-1]) + 1 if below.size else 1
@@ -167,23 +137,21 @@ def modes_for(level: Level, amplitude: float) -> int:
     half = slice(max(2, found.size // 2), found.size - 1)
     m = np.arange(found.size)[half]
     rate, level_at = np.polyfit(m, np.log(np.maximum(found[half], 1e-300)), 1)
-    rate = min(rate, -SLOWEST_DECAY)
+    rate = min(rate, -MIN_DECAY_RATE)
     return int(math.ceil((math.log(amplitude) - level_at) / rate))
 
 
-def unseen_in_angle(level: Level) -> float:
-    """Return an estimate of the truncation error of the minimum film's series in the angle, relative to the film.
-
-    It is the last coefficients, or the geometric series that continues them; in thin films these fall slowly.
-    """
+def angular_truncation_error(level: Level) -> float:
+    """Return the relative truncation error of the minimum film by the end of its angular series."""
     mesh, h = level.mesh, level.unknowns.gap
     near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
     found = (np.abs(mesh.to_modes @ h) / h.min(axis=0))[:, near].max(axis=1)
     half = slice(max(2, found.size // 2), found.size - 1)
     m = np.arange(found.size)[half]
     rate = -np.polyfit(m, np.log(np.maximum(found[half], 1e-300)), 1)[0] if m.size > 1 else 1.0
-    beyond = float(found[-2:].max()) / -math.expm1(-max(rate, SLOWEST_DECAY))
-    return max(UNSEEN * float(modal_amplitudes(level)[-2:].max()), UNSEEN_SERIES * beyond)
+    # In thin films coefficients fall so slowly that the series beyond the last one counts.
+    beyond = float(found[-2:].max()) / -math.expm1(-max(rate, MIN_DECAY_RATE))
+    return max(SAFETY_TRUNCATION_ANGLE * float(modal_amplitudes(level)[-2:].max()), SAFETY_TRUNCATION_SERIES * beyond)
 
 
 def legendre_tail(level: Level) -> float:
@@ -200,17 +168,14 @@ def centre_tails(level: Level) -> Array:
     return np.asarray(np.abs(mesh.legendre(fields)[:, 0, -2:]).max(axis=1))
 
 
-def near_closing(level: Level) -> Array:
-    """Return load and moment of the last Legendre coefficients of the pressure on panels, where roughness closes the flow.
-
-    There the mobility turns sharply, and two meshes may err by the same.  Of shape (2, panels), the load over that of the
-    contact; zero elsewhere.
-    """
+def kink_tails(level: Level) -> Array:
+    """Return load and moment of the last pressure coefficients on panels where roughness closes the flow, shape (2, n)."""
     mesh, closed_at = level.mesh, closed_gap(level.resolution.model.film)
     found = np.zeros((2, mesh.panels))
     if closed_at is None:
         return found
-    low, high = ABOUT_CLOSED
+    # The mobility turns sharply there, so that two meshes may share their error.
+    low, high = PERCOLATION_BAND
     gap = mesh.scattered(level.unknowns.gap) / closed_at
     near = (gap.min(axis=(0, 2)) < high) & (gap.max(axis=(0, 2)) > low)
     first_two = mesh.to_modes[:2] @ (level.unknowns.fluid + level.contact_pressure)
@@ -220,22 +185,19 @@ def near_closing(level: Level) -> Array:
     return found
 
 
-def halved_near_closing(found: Resolution, mesh: PolarMesh, parts: Array) -> Resolution:
-    """Return a resolution with the wide panels halved that leave most of an error, by ``parts`` of it on the panels."""
-    wide = np.diff(mesh.edges) > NARROWEST_TURNED * 2.0**found.doublings
-    middles = 0.5 * (mesh.edges[1:] + mesh.edges[:-1])[wide & (parts > TELLING * parts.sum())]
+def split_at_kink(found: Resolution, mesh: PolarMesh, parts: Array) -> Resolution:
+    """Return a resolution with the wide panels split that contribute most to an error with ``parts`` on the panels."""
+    wide = np.diff(mesh.edges) > MIN_PANEL_AT_KINK * 2.0**found.doublings
+    middles = 0.5 * (mesh.edges[1:] + mesh.edges[:-1])[wide & (parts > SPLIT_FRACTION * parts.sum())]
     return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
 
 
 def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
-    """Return the scales of errors: one for shares, a radius or an angle, else about the observable itself.
-
-    That of friction is ``drag`` at least.
-    """
+    """Return the scales of errors: one for shares, a radius or an angle, at least ``drag`` for friction, else the value."""
     friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed, drag) if speed > 0 else 1.0
     found = {}
     for name, value in values.items():
-        if name.endswith("share") or name in ("minimum_radius", "minimum_angle"):
+        if name.endswith("share") or name in MINIMUM_POSITION:
             found[name] = 1.0
         elif name.startswith("J_"):
             found[name] = friction
@@ -250,30 +212,30 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, fine.equations.speed, fine.equations.drag_beyond)
-    kinked = float(near_closing(fine)[1].sum())
-    part = TURNED if kinked > 0.0 else PART
+    kinked = float(kink_tails(fine)[1].sum())
+    part = SAFETY_AT_KINK if kinked > 0.0 else SAFETY
     errors = {name: part * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
     # Interpolated minima of two meshes may agree by chance: the truncation of the series bounds their error from below.
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    for name, factor in TURNED_MOMENT.items():
+    for name, factor in KINK_MOMENT_SAFETY.items():
         errors[name] = max(errors[name], factor * kinked)
     beyond = fine.equations.doubt_beyond(fine.unknowns)
     for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
         errors[name] += beyond
-    for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
+    for (name, factor), tail in zip(CENTRE_SAFETY.items(), centre_tails(fine), strict=True):
         errors[name] = max(errors[name], factor * float(tail))
-    unseen = UNSEEN_RADIAL * legendre_tail(fine)
+    unseen = SAFETY_TRUNCATION_RADIUS * legendre_tail(fine)
     if fine.equations.speed > 0:
-        unseen += unseen_in_angle(fine)
+        unseen += angular_truncation_error(fine)
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in MINIMA)
-    least = (TURNED if kinked > 0.0 else COMPANY) * widest
+    least = (SAFETY_AT_KINK if kinked > 0.0 else ERROR_FLOOR_RATIO) * widest
     if fine.resolution.model.film.uses_speed:
-        unseen *= THINNED_MINIMUM
-        least = max(THINNED_COMPANY * widest, THINNED * unseen)
-        widest = max(widest, THINNED * unseen / COMPANY)
+        unseen *= THINNING_MINIMUM_SAFETY
+        least = max(ERROR_FLOOR_RATIO_THINNING * widest, THINNING_FLOOR_RATIO * unseen)
+        widest = max(widest, THINNING_FLOOR_RATIO * unseen / ERROR_FLOOR_RATIO)
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
     # Differences of the terms of a sum may cancel by chance where their errors do not.
     errors["J_balanced"] = max(errors["J_balanced"], math.hypot(errors["J_couette"], errors["J_poiseuille"]))
@@ -281,25 +243,26 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     film = fine.resolution.model.film
     if film.uses_speed:
         # By the identity of the integrals the moment of the contact pressure is the difference of both drags.
-        errors["J_pcx"] = max(errors["J_pcx"], max(THINNED_FRICTION * least, THINNED_DRAG * unseen) * scales["J_pcx"])
+        drag = max(THINNING_FRICTION_SAFETY * least, THINNING_DRAG_FLOOR_RATIO * unseen)
+        errors["J_pcx"] = max(errors["J_pcx"], drag * scales["J_pcx"])
         # Drag is the stress over the slide.
-        drag = max(THINNED_FRICTION * least, THINNED_DRAG * unseen)
-        drag *= min(MOST_OVER_SLIDE, max(1.0, NEARLY_ROLLING / abs(film.slide))) if film.slide else 1.0
+        drag *= min(MAX_SLIP_AMPLIFICATION, max(1.0, SMALL_SLIP / abs(film.slide))) if film.slide else 1.0
         for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
             errors[name] = max(errors[name], drag * scales[name])
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
-    gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
+    gained = 2.0 * min(SAFETY, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
-        errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, COMPANY * widest) * scales[name])
+        errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, ERROR_FLOOR_RATIO * widest) * scales[name])
     if isinstance(film, ShearThinning) and film.law.plateau < 1:
         for name in ("minimum_gap", "minimum_gap_on_axis", "minimum_radius"):
-            errors[name] = max(errors[name], CUSP / fine.mesh.modes * scales[name])
-    for name in ("minimum_radius", "minimum_angle"):
+            errors[name] = max(errors[name], CUSP_ERROR_TIMES_MODES / fine.mesh.modes * scales[name])
+    for name in MINIMUM_POSITION:
         errors[name] = max(4.0 * errors[name], unseen * (2.0 if fine.resolution.model.film.uses_speed else 1.0))
     place = values["minimum_radius"], values["minimum_angle"]
-    for name, reach in zip(PLACE, reach_of(fine.mesh, fine.unknowns.gap, *place, errors["minimum_gap"]), strict=True):
-        errors[name] = max(errors[name], LOWER * reach)
+    rises = reach_of(fine.mesh, fine.unknowns.gap, *place, errors["minimum_gap"])
+    for name, reach in zip(MINIMUM_POSITION, rises, strict=True):
+        errors[name] = max(errors[name], POSITION_SAFETY * reach)
     errors["minimum_angle"] = angle_error(values, errors)
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
@@ -310,53 +273,53 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
 
 
 def angle_error(values: dict[str, float], errors: dict[str, float]) -> float:
-    """Return the error of the angle of the minimum: at least that of its place as seen from the centre; there any angle is."""
+    """Return the error of the minimum's angle, at least the error of its radius as seen from the centre."""
     seen = errors["minimum_radius"] / max(values["minimum_radius"], errors["minimum_radius"] / math.pi, 1e-300)
     return min(math.pi, max(errors["minimum_angle"], seen))
 
 
 def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: float = 1.0) -> Resolution:
-    """Return the finer of the two meshes to begin with, for speeds down to ``ahead`` times that of the level."""
+    """Return the finer of the first two meshes, for speeds down to ``ahead`` times that of the level."""
     film = float(level.unknowns.gap[:, 0].mean())
     carried = min(1.0, float(level.contact_pressure[:, 0].mean()))
-    scale = min(THICK, film + 0.3 * carried)
-    degree = math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
-    modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * slack * rtol / UNSEEN), 8)
+    scale = min(FULL_DEGREE_FILM, film + 0.3 * carried)
+    degree = math.ceil(math.log(0.25 / (rtol * scale)) / DEGREE_LOG_GAIN)
+    for_minimum = modes_for(level, 0.5 * slack * rtol / SAFETY_TRUNCATION_ANGLE)
+    modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), for_minimum, 8)
     if level.contact_pressure.max() < 1e-3:
         width = layout(ahead * level.equations.speed, level.equations.law, level.resolution.model)[0] / EDGE
         modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
-    degree = min(MOST_DEGREE, max(7, degree))
-    return affordable(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
+    degree = min(MAX_DEGREE, max(7, degree))
+    return limit_modes(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
 
 
 def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None) -> Pair | Outcome:
-    """Return a state on two meshes whose estimated error holds a tolerance, or the best that was found.
-
-    ``known`` is the state with a larger error, as found along a path.
-    """
-    slack = MINIMUM_SLACK if known is None else PATH_SLACK
+    """Return a state on two meshes that holds a tolerance, or the best found, from a guess or a ``known`` pair on a path."""
+    slack = MINIMUM_RTOL_FACTOR if known is None else MINIMUM_RTOL_FACTOR_ON_PATH
     band = band_for(speed, law, guess.resolution.model)
     tolerance = newton_tolerance(rtol)
     best = known
     coarse: Level | None = None
     try:
         if known is None:
-            guess = split(guess, speed, law)
+            guess = solve_on_split_panels(guess, speed, law)
             wanted = first_resolution(guess, rtol, band, slack)
         else:
             # An edge within the contact may have moved to a wide panel, where more of all else would be needed.
-            wanted, guess = better_split(known.fine), known.fine
+            wanted, guess = improved_panels(known.fine), known.fine
             if wanted == known.fine.resolution:
-                wanted, coarse = next_meshes(known, rtol, band, slack)
-        for _ in range(MOST_ROUNDS):
+                wanted, coarse = choose_next_meshes(known, rtol, band, slack)
+        for _ in range(MAX_REFINEMENTS):
             if coarse is None:
                 coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
                 guess = coarse if best is None else guess
             if not coarse.outcome.ok:
                 return coarse.outcome if best is None else best
-            if bytes_of(wanted, band) > LARGE:
-                coarse, guess = bare(coarse), bare(guess)
-                best = None if best is None else replace(best, coarse=bare(best.coarse), fine=bare(best.fine))
+            if bytes_of(wanted, band) > DROP_FACTORS_ABOVE_BYTES:
+                coarse, guess = without_preconditioner(coarse), without_preconditioner(guess)
+                if best is not None:
+                    levels = without_preconditioner(best.coarse), without_preconditioner(best.fine)
+                    best = replace(best, coarse=levels[0], fine=levels[1])
             fine = solve_level(wanted, speed, law, guess.unknowns, guess.mesh, tolerance)
             if not fine.outcome.ok:
                 return fine.outcome if best is None else best
@@ -367,9 +330,9 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
                 return pair
             before, guess = wanted, fine
             if not pair.is_enclosed:
-                wanted, coarse = better_split(fine), None
+                wanted, coarse = improved_panels(fine), None
                 continue
-            wanted, coarse = next_meshes(pair, rtol, band, slack)
+            wanted, coarse = choose_next_meshes(pair, rtol, band, slack)
             if wanted.splits == before.splits and wanted.degree <= before.degree and wanted.modes <= before.modes:
                 break
     except MeshTooLargeError as problem:
@@ -381,26 +344,26 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
         return best
     # The moment of the contact pressure is a small difference of two halves, each of order one.
     lost = float(np.finfo(float).eps) / best.scales["J_pcx"]
-    return replace(best, outcome=Outcome.ROUNDING if lost > ROUNDING * rtol else Outcome.REFINEMENT_LIMIT)
+    return replace(best, outcome=Outcome.ROUNDING if lost > ROUNDING_RTOL_FRACTION * rtol else Outcome.REFINEMENT_LIMIT)
 
 
-def bare(level: Level) -> Level:
-    """Return a state without its preconditioner, which is most of its memory."""
+def without_preconditioner(level: Level) -> Level:
+    """Return a state without its preconditioner, the largest part of its memory."""
     return replace(level, iterated=replace(level.iterated, preconditioner=None))
 
 
-def better_split(level: Level) -> Resolution:
-    """Return the resolution of a state with edges where the flow closes, or the panels halved that resolve it poorly."""
+def improved_panels(level: Level) -> Resolution:
+    """Return the resolution of a state with panel edges where the flow closes, else with poorly resolved panels split."""
     placed = with_closing(level.resolution, level.mesh, level.unknowns.gap)
     if placed != level.resolution:
         return placed
     return split_where_poor(level.resolution, level.mesh, level.unknowns.fluid, level.contact_pressure)
 
 
-def split(guess: Level, speed: float, law: ContactLaw) -> Level:
-    """Return a state on panels, halved where they resolve its pressures poorly."""
-    for _ in range(MOST_ROUNDS):
-        better = better_split(guess)
+def solve_on_split_panels(guess: Level, speed: float, law: ContactLaw) -> Level:
+    """Return a guess solved again on panels split until they resolve its pressures."""
+    for _ in range(MAX_REFINEMENTS):
+        better = improved_panels(guess)
         if better == guess.resolution:
             break
         on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
@@ -410,30 +373,25 @@ def split(guess: Level, speed: float, law: ContactLaw) -> Level:
     return guess
 
 
-def next_meshes(pair: Pair, rtol: float, band: int, slack: float) -> tuple[Resolution, Level | None]:
-    """Return the next mesh, and the state on the one that it is compared with, if that is solved already."""
-    now, wanted = pair.fine.resolution, finer(pair, rtol, band, slack)
+def choose_next_meshes(pair: Pair, rtol: float, band: int, slack: float) -> tuple[Resolution, Level | None]:
+    """Return the next finer mesh, and the state on its coarser companion if that is solved already."""
+    now, wanted = pair.fine.resolution, next_resolution(pair, rtol, band, slack)
     if wanted.splits != now.splits:
         return wanted, None
-    nested = replace(now, degree=now.degree + FINER_DEGREE, modes=2 * math.ceil(0.5 * FINER_MODES * now.modes))
-    enough = wanted.degree <= nested.degree <= MOST_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MOST_MODES
+    nested = replace(now, degree=now.degree + FINER_DEGREE_STEP, modes=2 * math.ceil(0.5 * FINER_MODES_RATIO * now.modes))
+    enough = wanted.degree <= nested.degree <= MAX_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MOST_MODES
     if wanted != now and enough and bytes_of(nested, band) <= MOST_BYTES:
         return nested, pair.fine
     return wanted, None
 
 
-def newton_tolerance(rtol: float) -> float:
-    """Return the relative error of the gap that Newton's iteration may leave."""
-    return max(1e-11, 1e-2 * rtol)
-
-
-def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
-    """Return the next mesh: more modes if their amplitudes explain the error, else a higher degree."""
+def next_resolution(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
+    """Return the next mesh, with more modes if their amplitudes explain the error, else a higher degree."""
     now, fine = pair.fine.resolution, pair.fine
     modes, degree = now.modes, now.degree
-    turning = near_closing(fine)[1]
-    if TURNED_MOMENT["J_published"] * turning.sum() > rtol * pair.scales["J_published"]:
-        halved = halved_near_closing(now, fine.mesh, turning)
+    turning = kink_tails(fine)[1]
+    if KINK_MOMENT_SAFETY["J_published"] * turning.sum() > rtol * pair.scales["J_published"]:
+        halved = split_at_kink(now, fine.mesh, turning)
         if halved != now:
             return halved
     if pair.total > rtol:
@@ -442,21 +400,21 @@ def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
         if amplitude**1.5 > rtol:
             modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * rtol**0.5))
         if amplitude**2 < 0.3 * pair.total:
-            degree += max(1, min(4, math.ceil(more / PANEL_RATE)))
+            degree += max(1, min(4, math.ceil(more / DEGREE_LOG_GAIN)))
         if now.model.film.uses_speed:  # the angles at which hardly anything is sheared show in the viscosity, not in the gap
-            modes, degree = max(modes, math.ceil(FINER_MODES * now.modes)), min(degree, now.degree + FINER_DEGREE)
+            modes, degree = max(modes, math.ceil(FINER_MODES_RATIO * now.modes)), min(degree, now.degree + FINER_DEGREE_STEP)
     allowed = slack * rtol
     if pair.minimum > allowed:
-        if UNSEEN_RADIAL * legendre_tail(fine) > 0.3 * allowed:
+        if SAFETY_TRUNCATION_RADIUS * legendre_tail(fine) > 0.3 * allowed:
             degree += 2
-        if unseen_in_angle(fine) > 0.3 * allowed or degree == now.degree:
-            modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * allowed / UNSEEN))
+        if angular_truncation_error(fine) > 0.3 * allowed or degree == now.degree:
+            modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * allowed / SAFETY_TRUNCATION_ANGLE))
     modes = min(modes, 2 * now.modes)
-    return affordable(replace(now, degree=min(MOST_DEGREE, degree), modes=2 * math.ceil(0.5 * modes)), band)
+    return limit_modes(replace(now, degree=min(MAX_DEGREE, degree), modes=2 * math.ceil(0.5 * modes)), band)
 
 
-def affordable(wanted: Resolution, band: int) -> Resolution:
-    """Return a resolution with as many of its modes as memory and :data:`MOST_MODES` allow."""
+def limit_modes(wanted: Resolution, band: int) -> Resolution:
+    """Return a resolution with at most as many modes as memory and :data:`MOST_MODES` allow."""
     wanted = replace(wanted, modes=min(wanted.modes, MOST_MODES))
     while bytes_of(wanted, band) > MOST_BYTES and wanted.modes > 16:
         wanted = replace(wanted, modes=2 * ((wanted.modes - 1) // 2))
@@ -465,7 +423,7 @@ def affordable(wanted: Resolution, band: int) -> Resolution:
 
 def holds_along_path(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state along a path hold a tolerance."""
-    return pair.holds(rtol, PATH_SLACK)
+    return pair.holds(rtol, MINIMUM_RTOL_FACTOR_ON_PATH)
 
 
 def follow(
@@ -476,14 +434,13 @@ def follow(
     line: Sequence[tuple[float, Pair]] = (),
     predicted: Unknowns | None = None,
 ) -> Pair | None:
-    """Return the state of a neighbour's meshes at other groups, or None if it is not reached from there.
+    """Return the state of other groups from a neighbour, on its meshes where they fit; None if the iteration fails.
 
-    ``line`` holds the neighbours and weights whose sum predicts the state, ``predicted`` is a prediction on the finer mesh of
-    the neighbour; the meshes change where those of the neighbour do not fit.
+    ``line`` holds weights and states whose sum predicts this one, ``predicted`` a prediction on the neighbour's finer mesh.
     """
     tolerance = newton_tolerance(rtol)
     # With series, a path takes steps of more than that factor.
-    wanted, keeps = meshes_for(speed, law, neighbour, rtol, AHEAD if predicted is None else 1.0)
+    wanted, keeps = mesh_for_neighbour(speed, law, neighbour, rtol, MESH_FOR_SPEED_RATIO if predicted is None else 1.0)
     kept_coarse, kept_fine = (
         (level.iterated.preconditioner if keeps else None) for level in (neighbour.coarse, neighbour.fine)
     )
@@ -513,20 +470,21 @@ def follow(
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
-def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float, part: float = AHEAD) -> tuple[Resolution, bool]:
-    """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour.
-
-    On the way to slower speeds a new mesh serves down to ``part`` of the speed.
-    """
+def mesh_for_neighbour(
+    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, part: float = MESH_FOR_SPEED_RATIO
+) -> tuple[Resolution, bool]:
+    """Return the finer mesh for a state from a neighbour, good to ``part`` of the speed, and whether it is the old one."""
     now, fine = neighbour.fine.resolution, neighbour.fine
     band = band_for(speed, law, now.model)
     ahead = part * speed if speed < fine.equations.speed else speed
-    wasteful = neighbour.total < WASTE * rtol and neighbour.minimum < WASTE * PATH_SLACK * rtol
+    wasteful = (
+        neighbour.total < COARSEN_BELOW * rtol and neighbour.minimum < COARSEN_BELOW * MINIMUM_RTOL_FACTOR_ON_PATH * rtol
+    )
     if fits(now, speed, law) and not wasteful:
         return now, True
-    leaner = first_resolution(fine, rtol, band, PATH_SLACK, ahead / fine.equations.speed)
+    leaner = first_resolution(fine, rtol, band, MINIMUM_RTOL_FACTOR_ON_PATH, ahead / fine.equations.speed)
     if fits(now, speed, law):
-        saved = bytes_of(leaner, band) < SAVED * bytes_of(now, band)
+        saved = bytes_of(leaner, band) < COARSEN_MEMORY_RATIO * bytes_of(now, band)
         return (leaner, False) if saved else (now, True)
     found = resolution(ahead, law, leaner.degree, leaner.modes, now.model)
     if found.doublings == now.doublings:

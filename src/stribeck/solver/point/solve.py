@@ -29,12 +29,13 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.cavities.cavitated import follow_cavitated, holds_torn, refine_cavitated
+from stribeck.solver.cavities.cavitated import follow_cavitated, holds_cavitated, refine_cavitated
 from stribeck.solver.cavities.reforming import follow_reforming, full_model, holds_reforming, refine_reforming
 from stribeck.solver.point.level import Level
-from stribeck.solver.point.refinement import Pair, follow, holds_along_path, newton_tolerance, pair_of, refine
+from stribeck.solver.point.refinement import Pair, follow, holds_along_path, pair_of, refine
 from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import PointFields, PointState
+from stribeck.solver.refinement import newton_tolerance
 
 RTOL_RANGE = (1e-8, 1e-2)
 """Tolerances that a solve takes."""
@@ -137,7 +138,7 @@ def _refine_full(
 
 ENDINGS = {
     Cavitation.NONE: Ending(_refine_full, follow, holds_along_path),
-    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, holds_torn),
+    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, holds_cavitated),
     Cavitation.REFORM: Ending(refine_reforming, follow_reforming, holds_reforming),
 }
 """How states are refined, by how the film ends."""

@@ -21,17 +21,12 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.refinement import Pair
 
-WITHOUT_TOLERANCE = MINIMA
-"""Observables with stated errors that do not count in :attr:`PointState.error_estimate`: rtol does not limit them."""
-
-LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
-"""More of them where the film breaks: the streaks of the wake are less accurate than the film, and so is the moment of a thin
-contact whose panels the line of rupture crosses."""
-
-
-OWN = ("J_couette", "J_poiseuille", "J_balanced", "J_published")
-"""Friction integrals whose errors are stated relative to themselves; that of J_pcx, which vanishes in full films, to the
-friction."""
+WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
+# Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
+# the rupture line crosses, are less accurate than the film.
+LOOSE_OBSERVABLES = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
+# Friction integrals whose errors are relative to themselves; J_pcx vanishes in full films, so its scale is the friction.
+SELF_SCALED = ("J_couette", "J_poiseuille", "J_balanced", "J_published")
 
 
 class PointFields(NamedTuple):
@@ -70,23 +65,21 @@ class PointState:
 
     @property
     def relative_errors(self) -> dict[str, float]:
-        """The same as a solution states them: those of shear and pressure flow relative to themselves.
-
-        Their scale is the whole friction, which may be many times the part.
-        """
-        own = {name: abs(self.values[name]) for name in OWN if self.values[name] != 0}
+        """Estimated errors as a solution states them, with shear and pressure flow relative to themselves."""
+        # The scale of both is the whole friction, which may be many times the part.
+        own = {name: abs(self.values[name]) for name in SELF_SCALED if self.values[name] != 0}
         return {name: error / own.get(name, self.scales[name]) for name, error in self.absolute_errors.items()}
 
     @property
     def error_estimate(self) -> float:
-        """Largest of these, but for those that :data:`WITHOUT_TOLERANCE` and :data:`LOOSE_WHERE_TORN` name."""
+        """Largest estimated error among the observables that rtol limits."""
         is_full = self.groups.model.cavitation is Cavitation.NONE
-        apart = WITHOUT_TOLERANCE if is_full else (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN)
+        apart = WITHOUT_TOLERANCE if is_full else (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES)
         return max((error for name, error in self.errors.items() if name not in apart), default=math.nan)
 
     @property
     def lowest_pressure(self) -> float:
-        """The lowest film pressure at the nodes [p_Hz]."""
+        """Lowest film pressure at the nodes [p_Hz]."""
         return float(self.nodal_fluid_pressure.min())
 
     @property
@@ -125,7 +118,7 @@ class PointObservables:
 
     @classmethod
     def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
-        """Return those of a state, and of the contact's motion and liquid."""
+        """Return the observables of a state for the motion and the liquid of a contact."""
         values = {name: float(state.values[name]) for name in OBSERVABLES}
         wetted, slide_to_roll = None, 2.0 * state.groups.model.film.slide
         if isinstance(contact, PointContact):
@@ -160,12 +153,10 @@ class PointObservables:
         return float(found)
 
     def drags_along(self, slope: float) -> bool:
-        """Return whether the friction up to a wetted radius acts along the motion beside a wall at rest: it is unresolved.
-
-        In a film much thicker than the parabola rises up to there it is a small difference.
-        """
-        is_told = self._wetted_radius is None or self._slide_to_roll != PURE_SLIDING or not self._groups.speed > 0
-        return not is_told and not self.integral(slope) > 0
+        """Return whether the friction up to a wetted radius has the wrong sign, and so is unresolved."""
+        # In a film much thicker than the parabola's rise up to there friction is a small difference.
+        is_certain = self._wetted_radius is None or self._slide_to_roll != PURE_SLIDING or not self._groups.speed > 0
+        return not is_certain and not self.integral(slope) > 0
 
     @property
     def sliding(self) -> float:
@@ -181,7 +172,7 @@ class PointObservables:
         return 1.5 / math.pi * slope * self.integral(slope, definition)
 
     def viscous_error(self, beta: float, errors: dict[str, float], definition: Definition = "balanced") -> float:
-        """Return the absolute error of the same from those of the finite parts."""
+        """Return the absolute error of the viscous friction coefficient from the errors of the finite parts."""
         error = errors["J_pcx"] if definition == "published" else 0.0
         if self._slide_to_roll == PURE_SLIDING:
             error += errors["J_balanced"]
