@@ -135,3 +135,29 @@ def test_errors_that_are_too_small_do_not_make_intervals_narrow(read):
         return high / low - 1
 
     assert width(0.001) == pytest.approx(width(None), rel=0.2)
+
+
+@pytest.mark.parametrize("memory", [0.5, 0.9])
+def test_intervals_of_two_inputs_hold_the_truth_in_19_of_20_files_of_a_rig(read, memory):
+    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+    speeds = np.geomspace(1e-3, 0.3, 5)
+
+    def friction(**factors):
+        scaled = {name: factor * getattr(contact, name) for name, factor in factors.items()}
+        states = [contact.replace(speed=speed, **scaled) for speed in speeds]
+        return np.array([sb.atlas.friction(each.groups, each.boundary_friction, each.beta) for each in states])
+
+    truth = friction()
+    pairs = [(friction(**{name: 1.01}), friction(**{name: 1 / 1.01})) for name in ("boundary_friction", "roughness")]
+    slopes = np.array([np.log(up / down) / np.log(1.01**2) for up, down in pairs]).T
+    rng, inside = np.random.default_rng(13), np.zeros(2)
+    for _ in range(60):
+        frictions = [mu * (1 + 0.02 * noise(rng, 40, memory)) for mu in truth]
+        rows = [(k, speeds[k], mu) for k, step in enumerate(frictions) for mu in step]
+        data = read(rows, header="step,speed [m/s],COF")
+        # Errors of two per cent: the first step of least squares from the truth is the fit of the logarithms.
+        weights = truth / data.error
+        covariance = np.linalg.inv((slopes * weights[:, None] ** 2).T @ slopes)
+        misses = covariance @ slopes.T @ (weights**2 * np.log(data.friction / truth))
+        inside += np.abs(misses) < 1.96 * np.sqrt(np.diag(covariance))
+    assert np.all((0.88 <= inside / 60) & (inside / 60 <= 1.0)), inside
