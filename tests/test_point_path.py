@@ -85,7 +85,7 @@ def test_a_prediction_is_taken_where_it_is_nearer_than_the_neighbour():
 def test_refinement_ends_where_no_mesh_is_finer(state, monkeypatch):
     asked = []
     monkeypatch.setattr(refinement, "first_resolution", lambda *_: state.work.fine.resolution)
-    monkeypatch.setattr(refinement, "next_meshes", lambda pair, *_: asked.append(pair) or (pair.fine.resolution, None))
+    monkeypatch.setattr(refinement, "choose_next_meshes", lambda pair, *_: asked.append(pair) or (pair.fine.resolution, None))
     pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 1e-8)
     assert not pair.outcome.ok
     assert len(asked) == 1
