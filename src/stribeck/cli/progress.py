@@ -20,8 +20,9 @@ from stribeck.quantities.units import InputError
 class Progress:
     """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect.
 
-    Ctrl-C takes effect at once, and what is solved is kept by what solves it. Work of several processes ends after the present
-    point instead, and at once when Ctrl-C comes a second time. Nothing stops the writing of what is kept.
+    Ctrl-C takes effect at once, and what is solved is kept by what solves it: a second one, which might come between solving
+    and writing, changes nothing. Work of several processes ends after the present point instead, and at once when Ctrl-C comes
+    a second time. Nothing stops the writing of what is kept.
     """
 
     def __init__(self, after_point: bool = False) -> None:
@@ -41,7 +42,8 @@ class Progress:
     def interrupt(self, number: int, frame: FrameType | None) -> None:
         """Handle Ctrl-C."""
         again, self.wanted = self.wanted, True
-        if not self.writes and (again or not (self.after_point and self.started)):
+        waits = self.after_point and self.started
+        if not self.writes and again == waits:
             raise KeyboardInterrupt
 
     def time_out(self) -> None:
