@@ -467,8 +467,9 @@ def test_ctrl_c_keeps_the_finished_figures_of_the_command_outside_this_process(t
     process = subprocess.Popen(tokens, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=outside, preexec_fn=heed)
     try:
         until = time.monotonic() + 300
-        while not (tmp_path / "figure_4.nc").exists() and time.monotonic() < until:
+        while not (tmp_path / "figure_4.svg").exists() and time.monotonic() < until:  # its last file
             time.sleep(0.01)
+        time.sleep(0.2)  # until it has returned from writing it
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=300)
     finally:
