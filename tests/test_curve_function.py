@@ -401,7 +401,7 @@ def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends_a
     assert math.isnan(curve.at(speed).reformation_position)
     assert {found.groups.model.cavitation for found in (curve.solve_at(speed), curve.solutions[20])} == {"reform"}
     begun = []
-    monkeypatch.setattr(corrector, "from_cold", begun.append)
+    monkeypatch.setattr(corrector, "solve_cold_line", begun.append)
     monkeypatch.setattr(corrector, "first_path", begun.append)
     assert sb.stribeck_curve(contact.replace(load="31 N/m"), points=41, rtol=1e-4, like=curve).outcome.ok
     assert not begun

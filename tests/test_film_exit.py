@@ -408,7 +408,7 @@ def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
 
 @pytest.mark.parametrize(("entries", "kept"), [(0, False), (2e7, True)])
 def test_a_mesh_that_is_left_gives_up_its_operators_beyond_the_memory_for_them(monkeypatch, entries, kept):
-    monkeypatch.setattr("stribeck.solver.path.corrector.LEFT", entries)
+    monkeypatch.setattr("stribeck.solver.path.corrector.CACHED_ENTRIES", entries)
     first, second = (solved_point(sb.Groups(speed, 0.1, 1e-3), 1e-5) for speed in (1e-4, 1e-2))
     follower, operators = Corrector(lambda s: first.groups, 1e-5), first.state.equations.operators
     before = operators.deflection

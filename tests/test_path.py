@@ -32,7 +32,7 @@ class Known:
     longest: float = math.inf
     fails_below: float = -math.inf
     solved: list = field(default_factory=list)
-    held: np.ndarray = field(default_factory=lambda: np.ones(3, bool))
+    controlled: np.ndarray = field(default_factory=lambda: np.ones(3, bool))
 
     def solve(self, s, near):
         if s < self.fails_below or (near and max(abs(s - one.coordinate) for one in near) > self.longest):
@@ -45,7 +45,7 @@ class Known:
         return Expansion(s, None, series, logs, np.full(3, self.error), radius(series, 0.15))
 
     @property
-    def signed(self):
+    def sign_changing(self):
         return np.array([False, True, False])
 
     def scales(self, found, s):
@@ -54,7 +54,7 @@ class Known:
         scale[:, 1] = np.maximum(scale[:, 1], 1e-3)
         return scale
 
-    def missed(self, left, right, parts, values):
+    def checked_error(self, left, right, parts, values):
         return np.zeros(3)
 
     negligible = 0.0
@@ -145,11 +145,11 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.path.path.MOST_INTERVALS", 50)
-    monkeypatch.setattr("stribeck.solver.path.path.LONGEST_STEP", 0.2)
+    monkeypatch.setattr("stribeck.solver.path.path.MAX_INTERVALS", 50)
+    monkeypatch.setattr("stribeck.solver.path.path.MAX_STEP", 0.2)
 
     class Doubted(Known):
-        def missed(self, left, right, parts, values):
+        def checked_error(self, left, right, parts, values):
             return np.full(3, 100.0 * (right.coordinate - left.coordinate))
 
     problem = Doubted()
@@ -182,7 +182,7 @@ def test_values_along_a_path_have_derivatives_by_a_step_into_the_complex_plane()
 
 def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
     class Doubted(Known):
-        def missed(self, left, right, parts, values):
+        def checked_error(self, left, right, parts, values):
             return np.array([0.0, 0.0, 1e-5])
 
     problem = Doubted()

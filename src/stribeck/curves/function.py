@@ -51,7 +51,7 @@ def solved_at(path: SolvedPath, s: float, rtol: float | None = None, near: Refin
 
 def within(path: SolvedPath, found: Array, errors: Array, rtol: float) -> Flags:
     """Return which rows of a path have no estimated error above the tolerance."""
-    exists = path.problem.held & np.isfinite(found).any(axis=0)
+    exists = path.problem.controlled & np.isfinite(found).any(axis=0)
     return np.asarray((errors[:, exists] <= rtol).all(axis=1))
 
 

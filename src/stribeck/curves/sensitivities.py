@@ -21,7 +21,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.part_inputs import PART_INPUTS, part_names
 from stribeck.quantities.units import InputError
-from stribeck.solver.path.line_path import as_in
+from stribeck.solver.path.line_path import with_ending_of
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
@@ -76,7 +76,9 @@ def friction_sensitivities(
         names = names if groups.model != ARTICLE else []
         changes = {name: beside for name in names if (beside := models_beside(contact, name)) is not None}
         state = point.state  # of a film that may form anew, with a cavity or without
-        along = [(as_in(state, below), as_in(state, above), width) for below, above, width in changes.values()]
+        along = [
+            (with_ending_of(state, below), with_ending_of(state, above), width) for below, above, width in changes.values()
+        ]
         rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
         slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
         through = dict.fromkeys((name for name in names if name in PART_INPUTS), 0.0)

@@ -26,7 +26,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.cavities.reforming_line import problem_of
+from stribeck.solver.cavities.reforming_line import line_problem
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
@@ -180,7 +180,7 @@ def stribeck_curve(
     progress = Progress(places, on_point)
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
     similar = () if like is None else _states_along(like, coordinate)
-    line = problem_of(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values), similar)
+    line = line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values), similar)
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)

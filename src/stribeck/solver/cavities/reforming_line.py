@@ -27,42 +27,34 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import shift_along
 from stribeck.solver.path.expansion import Direction, Expanded, expand_any_film
 from stribeck.solver.path.line_path import (
-    FARTHEST,
-    MOST_TRIALS,
+    MAX_SAMPLE_RADIUS_RATIO,
     POSITION,
-    REACH,
-    READ,
-    SMOOTH,
-    UNSEEN,
+    READ_COLUMNS,
+    SAMPLE_RADIUS_RATIO,
+    SERIES_COLUMNS,
     LineProblem,
-    as_in,
+    with_ending_of,
 )
-from stribeck.solver.path.path import Expansion
+from stribeck.solver.path.path import MAX_EXPANSIONS, SAFETY_CORRECTION, Expansion
 from stribeck.solver.refinement import RefinedState, converge
 
-__all__ = ["problem_of"]
+__all__ = ["line_problem"]
 
-ORDERS = ((2e-3, 3), (0.0, 2))
-"""Distances of the samples, and highest orders of the series of a film with a cavity at which rounding is not felt."""
-
-SHORTEST_REACH, FALL = 5e-5, 0.2
-"""Shortest such distance, and by how much it falls at most from one trial to the next."""
-
-LONGEST = 0.6
-"""Largest change of the logarithm of a cavity's length that is predicted."""
-
-SLOPE_STEP = 1e-5
-"""Step of the difference for the slope of the gap along x."""
+SAMPLE_ORDERS = ((2e-3, 3), (0.0, 2))  # Smallest distance of the samples, and the order of series that rounding allows for it
+MIN_SAMPLE_DISTANCE = 5e-5
+SAMPLE_SHRINK = 0.2  # Smallest ratio of a distance of the samples to the one tried before
+MAX_LOG_LENGTH_CHANGE = 0.6  # Largest change of the logarithm of a cavity's length that is predicted
+SLOPE_STEP = 1e-5  # Step of the difference for the slope of the gap along x
 
 
-def problem_of(
+def line_problem(
     groups_at: Callable[[float], Groups],
     direction: Direction,
     rtol: float,
     uniform: bool = True,
     like: Sequence[Expansion] = (),
 ) -> LineProblem:
-    """Return the states of the line along a path, see :class:`stribeck.solver.path.line_path.LineProblem`."""
+    """Return the states of the line along a path, by how its film ends."""
     groups = groups_at(0.0)
     may_open = groups.model.cavitation is Cavitation.REFORM and groups.speed > 0
     if may_open and groups.model.cavity_pressure < 0:
@@ -71,7 +63,7 @@ def problem_of(
 
 
 class EndingLine(LineProblem):
-    """The states of a film with a cavity at ambient pressure: it reaches to infinity, and the film is one that ends."""
+    """The states of a film with a cavity at ambient pressure, which reaches to infinity."""
 
     def __init__(
         self,
@@ -91,7 +83,7 @@ class EndingLine(LineProblem):
     def point_at(
         self, left: Expansion, right: Expansion, s: float, rtol: float | None = None, near: RefinedState | None = None
     ) -> RefinedState:
-        """Return the same, as the state of the groups that were asked for."""
+        """Return the verified state between two expansions, labelled with the requested groups."""
         if near is not None and near.state is not None:
             near = replace(near, groups=near.state.groups)
         return replace(super().point_at(left, right, s, rtol, near), groups=self.asked_at(s))
@@ -102,21 +94,21 @@ class ReformingLine(LineProblem):
 
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool) -> None:
         super().__init__(groups_at, direction, rtol, uniform)
-        self.reach = ORDERS[0][0]
+        self.reach = SAMPLE_ORDERS[0][0]
         self.known: dict[float, RefinedState | None] = {}
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``."""
         refined = self._solved(s, near)
         if refined is not None and refined.state is not None:
-            self.order = ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
+            self.order = SAMPLE_ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
         return self._accepted(s, refined, near)
 
     def _solved(self, s: float, near: Sequence[Expansion]) -> RefinedState | None:
-        """Return the state at ``s``, from the nearest of others if that has a cavity."""
+        """Return the state at ``s`` from the nearest neighbour if that has a cavity, else from cold."""
         if s not in self.known:
             last = min(near, key=lambda one: abs(one.coordinate - s), default=None)
-            guess = None if last is None else _moved(last, s)
+            guess = None if last is None else _predict_at_same_places(last, s)
             found = None if guess is None else self.corrector.solve(guess, self.groups_at(s))
             if found is None or not found.outcome.ok:
                 found = self.corrector.cold(self.groups_at(s))
@@ -124,29 +116,31 @@ class ReformingLine(LineProblem):
         return self.known[s]
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
-        """Return the series, and the radius of those of the observables, nodal gaps aside."""
+        """Return the series of a film with a cavity, and the radius of the observables' series alone."""
         if not has_cavity(state):
             return super()._sampled(s, state, inverse, near)
         reach = self.reach
-        for _ in range(MOST_TRIALS):
-            self.order = next(order for least, order in ORDERS if reach >= least)
+        for _ in range(MAX_EXPANSIONS):
+            self.order = next(order for least, order in SAMPLE_ORDERS if reach >= least)
             samples = interval(reach)
             direction = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
-            models = [] if self.uniform else [as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
+            models = (
+                [] if self.uniform else [with_ending_of(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
+            )
             found = expand_any_film(state.equations, state.y, inverse, state.groups, *direction, samples, models, self.order)
             own = radius(found.unknowns[:, : state.mesh.size], reach)
-            if np.isfinite(own) and np.isfinite(found.unknowns).all() and reach < FARTHEST * own:
+            if np.isfinite(own) and np.isfinite(found.unknowns).all() and reach < MAX_SAMPLE_RADIUS_RATIO * own:
                 break
-            reach = max(SHORTEST_REACH, FALL * reach, REACH * own if np.isfinite(own) else 0.0)
-        self.reach = max(SHORTEST_REACH, REACH * own)
-        columns = [*SMOOTH, ROW["minimum_gap"], ROW["exit_position"], ROW["reformation_position"]]
+            reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_SHRINK * reach, SAMPLE_RADIUS_RATIO * own if np.isfinite(own) else 0.0)
+        self.reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * own)
+        columns = [*SERIES_COLUMNS, ROW["minimum_gap"], ROW["exit_position"], ROW["reformation_position"]]
         of_values = found.observables[:, columns] / self.scales(found.observables[:1], np.array([s]))[:, columns]
         return found, radius(of_values, reach)
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return the difference from a state in the middle; between films with and without a cavity, zero."""
+    def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the difference from a state in the middle, or zero between films with and without a cavity."""
         if not has_cavity(left.point.state) and not has_cavity(right.point.state):
-            return super().missed(left, right, parts, values)
+            return super().checked_error(left, right, parts, values)
         found = np.zeros(POSITION + 1)
         if has_cavity(left.point.state) != has_cavity(right.point.state):
             return found
@@ -157,18 +151,18 @@ class ReformingLine(LineProblem):
         known = values()[int(np.argmin(np.abs(parts - 0.5)))]
         scales = self.scales(known[None], np.array([place]))[0]
         wrong = np.abs(middle - known) / scales
-        found[:POSITION] = UNSEEN * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
+        found[:POSITION] = SAFETY_CORRECTION * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
         return found
 
     def _middle(self, left: Expansion, right: Expansion) -> Array | None:
-        """Return observables and the place of the minimum gap midway between two states."""
+        """Return observables and minimum position midway between two states."""
         point = self._solved(0.5 * (left.coordinate + right.coordinate), [left, right])
         if point is None or point.values is None or not point.outcome.ok:
             return None
         return np.array([*point.values.array(in_article=False), point.values.minimum_position])
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return the place of the minimum gap, by the parabola through three states; all, where a cavity opens or closes."""
+        """Return the minimum position by a parabola, or all observables where a cavity opens or closes."""
         torn = [has_cavity(end.point.state) for end in (left, right)]
         if not any(torn):
             return super().read(left, right, parts)
@@ -184,10 +178,12 @@ class ReformingLine(LineProblem):
 
     def _opening(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return all observables between a full film and one with a cavity."""
+        # They are the series of the full film and a linear share of its misfit at the other end, all of which is stated as the
+        # error.
         full, other, way = (right, left, 1 - parts) if has_cavity(left.point.state) else (left, right, parts)
         distance = other.coordinate - full.coordinate
         series = full.series.copy()
-        series[1:, READ] = 0.0
+        series[1:, READ_COLUMNS] = 0.0
         powers = (way * distance)[:, None] ** np.arange(len(series))
         missing = other.series[0] - distance ** np.arange(len(series)) @ series
         values = powers @ series + way[:, None] * missing
@@ -199,11 +195,11 @@ class ReformingLine(LineProblem):
         return values[:, columns], np.tile(errors[columns], (len(parts), 1)), columns
 
     def read_scales(self, values: Array) -> Array:
-        """Return scales, of which only the sizes count."""
+        """Return scales of observables without a series, of which only the sizes count."""
         return np.maximum(np.abs(values).min(axis=0), 1e-3) if values.size else np.empty(0)
 
     def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
-        """Return a state between two expansions."""
+        """Return a state between two expansions as a guess."""
         if not has_cavity(left.point.state) and not has_cavity(right.point.state):
             return super().guess_at(left, right, s)
         point = self._solved(s, [left, right])
@@ -215,7 +211,7 @@ class ReformingLine(LineProblem):
     def point_at(
         self, left: Expansion, right: Expansion, s: float, rtol: float | None = None, near: RefinedState | None = None
     ) -> RefinedState:
-        """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
+        """Return the verified state between two expansions, refined if its mesh is too coarse."""
         if not has_cavity(left.point.state) and not has_cavity(right.point.state):
             return super().point_at(left, right, s, rtol, near)
         rtol = self.tolerance if rtol is None else rtol
@@ -228,20 +224,20 @@ class ReformingLine(LineProblem):
 
 
 def has_cavity(state: State) -> bool:
-    """Return whether a state has a cavity behind which its film forms anew."""
+    """Return whether a state has a cavity with a reformation behind it."""
     return state.equations.operators.has_reformation
 
 
 @dataclass(frozen=True, eq=False)
-class _Moved(SeenFrom):
-    """The guess of a film with a cavity from another: the gap at the same places, and its change to first order."""
+class _ShiftedGuess(SeenFrom):
+    """The guess of a cavitated film from another: its gap at the same places, changed to first order."""
 
     flux: float = 0.0
     change: Array | None = None
 
     @property
     def flux_gap(self) -> float:
-        """The predicted one."""
+        """Predicted flux gap."""
         return self.flux
 
     def fields(self, x: Array) -> Array:
@@ -254,8 +250,8 @@ class _Moved(SeenFrom):
         return found
 
 
-def _moved(last: Expansion, s: float) -> _Moved | None:
-    """Return the guess of the state at ``s`` from another with a cavity; None if that has none, or is too far."""
+def _predict_at_same_places(last: Expansion, s: float) -> _ShiftedGuess | None:
+    """Return the guess of the state at ``s`` from a cavitated one; None from a full film, or from too far."""
     state: State = last.point.state
     if not has_cavity(state):
         return None
@@ -263,7 +259,7 @@ def _moved(last: Expansion, s: float) -> _Moved | None:
     slope = last.point.unknowns[1]
     exit_slope, dilation_slope = slope[at.exit][0], slope[at.dilation][0]
     length = distance * dilation_slope / state.dilation
-    if abs(length) > LONGEST:
+    if abs(length) > MAX_LOG_LENGTH_CHANGE:
         return None
     ahead, behind = (state.fields(mesh.nodes + step)[0] for step in (SLOPE_STEP, -SLOPE_STEP))
     along = (ahead - behind) / (2 * SLOPE_STEP)
@@ -272,4 +268,4 @@ def _moved(last: Expansion, s: float) -> _Moved | None:
     flux = state.flux_gap * float(np.exp(distance * slope[at.flux_gap][0] / state.flux_gap))
     pressure = state.groups.model.cavity_pressure
     restart = state.restart * state.dilation * float(np.exp(length))
-    return _Moved(state, state.exit + distance * exit_slope, restart, pressure, flux=flux, change=change)
+    return _ShiftedGuess(state, state.exit + distance * exit_slope, restart, pressure, flux=flux, change=change)

@@ -1,6 +1,6 @@
 r"""Taylor series of a state of the line, and of its observables, in the logarithm of the quantity that varies.
 
-The unknowns are those of the equations, with the logarithm of the gap.  For the film of the article the residual is composed
+The unknowns are those of the equations, with the logarithm of the gap.  The residual of the base model's film is composed
 of products and exponentials, whose coefficients follow order by order: each costs two matrix-vector products and one
 back-substitution; the contact law is a polynomial around each separation.  For any other film the residual is sampled, see
 :func:`stribeck.numerics.series.implicit_series`.
@@ -47,24 +47,17 @@ __all__ = [
     "expand_any_film",
     "expand_article",
     "from_logs",
-    "observed",
+    "observables_of_rows",
     "residuals",
 ]
 
-SHIFTED = [ROW["central_gap"], ROW["offset"]]
-
-GAP_POWERS = np.array([1.0, -2.0, -3.0])[:, None]
-"""Powers of the gap in film and contact."""
-
-REFINED = 2
-"""Orders that are corrected once more with their residual: the rounding of thin films shows in the first ones."""
-
-INEXACT = 1e-8
-"""Such a correction of the first order, over that order, above which all orders are corrected: the inverse is that of the
-Jacobian one Newton step before the state, and the printed drag of thin films is wrong by up to a hundred times as much."""
-
-Direction = tuple[float, float, float]
-"""Derivatives of ln(speed), ln(load), ln(roughness) along a curve."""
+SHIFTED_COLUMNS = [ROW["central_gap"], ROW["offset"]]
+GAP_POWERS = np.array([1.0, -2.0, -3.0])[:, None]  # Of the gap in film and contact
+REFINED_ORDERS = 2  # Orders that are refined with their residual: rounding of thin films shows in the first ones
+# If refining the first order changes it by more than this fraction, the kept LU is too old and every order is refined: the
+# published drag of thin films errs by up to a hundred times as much.
+REFINE_ALL_ABOVE = 1e-8
+Direction = tuple[float, float, float]  # Derivatives of ln(speed), ln(load), ln(roughness) along a curve
 
 
 class Expanded(NamedTuple):
@@ -83,7 +76,7 @@ def from_logs(equations: Equations, w: Array) -> Array:
     return found
 
 
-def _started(equations: Equations, y: Array) -> tuple[Array, Array]:
+def _log_unknowns(equations: Equations, y: Array) -> tuple[Array, Array]:
     """Return the unknowns with the logarithm of the gap, and their units."""
     start, units, at = y.copy(), equations.units(y), equations.layout
     start[at.gap] = np.log(y[at.gap])
@@ -112,7 +105,7 @@ class _Contact:
         self.by_log_gap = near.coefficients[1] * self.place_by_log_gap
 
     def term(self, k: int, gap: Array) -> Array:
-        """Return order k from the series of the gap up to k, as if its logarithm had no coefficient of this order."""
+        """Return the coefficient of order k that follows from lower orders of the log gap alone."""
         place = self.first[0] if k == 1 else 0.0
         self.place[k] = (place if self.by_gap is None else self.by_gap[-1 - k :] @ gap) / self.reach
         if len(self.powers) > 2:
@@ -122,7 +115,7 @@ class _Contact:
         return np.asarray(self.powers[0, k] + self.first[1] if k == 1 else self.powers[0, k])
 
     def add(self, k: int, change: Array) -> None:
-        """Add to the powers of the separation what that coefficient changes; the logarithm itself is with the caller."""
+        """Add the effect of the log gap's coefficient of order k to the powers of the separation."""
         if len(self.powers) > 2:
             of_place = self.place_by_log_gap * change
             self.place[k] += of_place
@@ -132,9 +125,9 @@ class _Contact:
 def expand_article(
     equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
 ) -> Expanded:
-    """Return the series of a state with the film of the article."""
+    """Return the series of a state with the base model's film, order by order."""
     op, at = equations.operators, equations.layout
-    start, units = _started(equations, y)
+    start, units = _log_unknowns(equations, y)
     w = np.zeros((order + 1, at.size))
     w[0] = start
     speed = float(equations.speed) * along(direction[0], order)
@@ -166,8 +159,8 @@ def expand_article(
         gradient[k] = square[k] - flux_backwards[-1 - k :] @ cube[: k + 1]
         if equations.is_sliding:
             flow[k] = speed_backwards[-1 - k :] @ gradient[: k + 1]
-        inexact = k > REFINED and corrections[1] > INEXACT * corrections[0]
-        for _ in range(2 if k <= REFINED or inexact else 1):
+        inexact = k > REFINED_ORDERS and corrections[1] > REFINE_ALL_ABOVE * corrections[0]
+        for _ in range(2 if k <= REFINED_ORDERS or inexact else 1):
             pressure = top * powers[k, -1]
             if equations.is_sliding:
                 pressure += op.integral(flow[k])
@@ -206,7 +199,7 @@ def expand_article(
         for name, integral in zip(VISCOUS, _friction_integrals(equations, gap, square, gradient, flux), strict=True):
             found[:, ROW[name]] = product(scale, integral)
     else:
-        found[:, SHIFTED] += shifts[:, None]
+        found[:, SHIFTED_COLUMNS] += shifts[:, None]
         found[:, ROW["flux_gap"]] = _flux_gap(gap + shifts[:, None], weights)
         found[:, ROW["minimum_gap"]] = found[:, ROW["central_gap"]]
     return Expanded(w, found, found_logs)
@@ -233,10 +226,8 @@ def _flux_gap(gap: Array, weights: Array) -> Array:
 def _friction_integrals(
     equations: Equations, gap: Array, square: Array, gradient: Array, flux: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the series of the integrals of :func:`stribeck.equations.observables.friction_integrands`, and of the upper wall.
-
-    Inside they follow from the gap and one over its ``square`` at the nodes; beyond the panels in x the gap is interpolated.
-    """
+    """Return the series of shear, pressure-flow and upper-wall friction integrals."""
+    # Within the panels they follow from the gap and one over its ``square`` at the nodes; beyond them the gap is interpolated.
     op = equations.operators
     mesh, inner = op.mesh, slice(0, -op.mesh.order)
     x, weights, first_order = beyond_panels(mesh, gap[:1], op.model.solid.far_gap)
@@ -261,7 +252,7 @@ def expand_any_film(
     order: int,
 ) -> Expanded:
     """Return the series of a state with any film, by sampling the residual."""
-    start, units = _started(equations, y)
+    start, units = _log_unknowns(equations, y)
     around, load = around_state(equations, groups, direction, samples.places, models)
     powers = samples.powers(order)
 
@@ -270,12 +261,12 @@ def expand_any_film(
 
     unknowns = implicit_series(start, samples, local, lambda k, w, v: v, lambda r: units * inverse(r), order)
     y = from_logs(equations, powers @ unknowns)
-    values = observed(around, y, load)
+    values = observables_of_rows(around, y, load)
     if not equations.is_sliding:
         lacks = samples.powers(len(shifts) - 1) @ shifts
         gap = y[:, equations.layout.gap] + lacks[:, None]
         weights = equations.operators.mesh.weights
-        values[:, SHIFTED] += lacks[:, None]
+        values[:, SHIFTED_COLUMNS] += lacks[:, None]
         values[:, ROW["flux_gap"]] = (gap**-2 @ weights) / (gap**-3 @ weights) if np.all(gap > 0) else np.nan
         values[:, ROW["minimum_gap"]] = values[:, ROW["central_gap"]]
     found = samples.taylor(values, order)
@@ -283,14 +274,14 @@ def expand_any_film(
 
 
 def residuals(around: Sequence[Equations], y: Array) -> Array:
-    """Return the residuals of rows of unknowns, by equations that hold all rows or each its own."""
+    """Return the residuals of rows of unknowns, by one system for all rows or one for each."""
     if len(around) == 1:
         return around[0].residual(y)
     return np.stack([one.residual(row) for one, row in zip(around, y, strict=True)])
 
 
-def observed(around: Sequence[Equations], y: Array, load: Array) -> Array:
-    """Return the observables of rows of unknowns, shape (rows, n), by the same equations."""
+def observables_of_rows(around: Sequence[Equations], y: Array, load: Array) -> Array:
+    """Return the observables of rows of unknowns, shape (rows, n), by one system for all rows or one for each."""
     if len(around) == 1:
         each = observables_of_stacked(around[0], y, load)
     else:
@@ -301,7 +292,7 @@ def observed(around: Sequence[Equations], y: Array, load: Array) -> Array:
 def around_state(
     equations: Equations, groups: Groups, direction: Direction, places: Array, models: Sequence[Model]
 ) -> tuple[list[Equations], Array]:
-    """Return the equations at places from a state, all speeds and laws in columns or one by one, and the load groups."""
+    """Return the systems at places along a path, stacked in one where possible, and their loads."""
     speed, load, roughness = np.exp(np.outer(places, direction)).T[..., None]
     speed, load, law = float(groups.speed) * speed, float(groups.load) * load, contact_law(groups)
     assert isinstance(law, ExponentialLaw | ScaledLaw | NoContact)
@@ -322,7 +313,7 @@ def around_state(
 
 
 def _of_rows(operators: Operators, models: Sequence[Model]) -> Operators | None:
-    """Return operators for rows of states whose models differ in their solids alone; None if more differs."""
+    """Return operators for models that differ in their solids alone; None if more differs."""
     model = operators.model
     alike = all(replace(each, solid=model.solid) == model for each in models)
     if not alike or operators.has_reformation:

@@ -13,7 +13,7 @@ from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.state import State
 from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.panels import Mesh, interpolation_error
-from stribeck.solver.path.path import Expansion, rate
+from stribeck.solver.path.path import Expansion, change_ratio
 from stribeck.solver.refinement import RefinedState
 
 
@@ -27,10 +27,8 @@ class LinePoint(NamedTuple):
 
 
 def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
-    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap.
-
-    The search covers the surroundings of its positions at both ends, and the whole mesh if it is not lowest there.
-    """
+    """Return minimum gap and position between two expansions on the mesh of one, and the error of the gap."""
+    # The search covers the surroundings of both ends' positions, then the whole mesh if the gap is not lowest there.
     order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
     weights = hermite_weights(order, parts)
     scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
@@ -42,7 +40,7 @@ def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Arr
             place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
         if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
             break
-    on_panels = missed_by(order, np.vstack([a, b]), rate(left, right)).reshape(-1, mesh.order).max(axis=1)
+    on_panels = missed_by(order, np.vstack([a, b]), change_ratio(left, right)).reshape(-1, mesh.order).max(axis=1)
     error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
     for end, each, w in zip(ends, scaled, weights, strict=True):
         if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
@@ -80,13 +78,13 @@ def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> A
 
 
 def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
-    """Return the coefficients of the unknowns at both ends, for an interval of length one."""
+    """Return the coefficients of the unknowns at both ends, scaled to an interval of length one."""
     scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
     return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
 
 
 def _stretch(point: LinePoint, of: LinePoint) -> float:
-    """Return by how much the coordinate of the mesh of a point is larger than that of another."""
+    """Return the ratio of the mesh coordinates of two points at the same place."""
     own, other = point.state.mesh.restart, of.state.mesh.restart
     return 1.0 if own == other else own / other
 
@@ -106,7 +104,7 @@ def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
 
 
 def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
-    """Return the coefficients of the logarithm of the gap on neighbouring panels of that mesh."""
+    """Return the coefficients of the log gap on neighbouring panels of another point's mesh."""
     mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
     own = slice(panels.start * other.order, panels.stop * other.order)
     if mesh is other:
@@ -120,7 +118,7 @@ def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range)
 
 
 def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return the coefficients of the unknowns that are numbers; the dilation is that of the mesh."""
+    """Return the coefficients of the scalar unknowns, the dilation scaled to another point's mesh."""
     at = point.state.equations.layout
     found = coefficients[:, at.numbers].copy()
     found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)

@@ -22,61 +22,31 @@ from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
-LONGEST_STEP = 7.0
-SHORTEST_STEP = 1e-3
-
-SHORTER = 0.75
-"""Length of the next step after one that failed, over that one."""
-
-REACH = 1.2
-"""Largest step over the radius of convergence."""
-
-FIRST = 0.83
-"""Length of the first step over that of others: a path begins where the radius is large, and it falls from there."""
-
-KNOT_PART = 0.75
-"""Part of the tolerance that a solved state must hold: the rest is for the interpolation."""
-
-APART = 1.0
-"""Distance from both ends of an interval and error, in units of the scales, from which on a path ends there."""
-
-CHECKED = 0.85
-"""Part of the tolerance that an interval must hold at the places where it is checked."""
-
-REDUCIBLE = 0.25
-"""Interpolation error over the tolerance above which a shorter interval helps."""
-
-READ_AT = 24
-"""Places of an interval at which observables without a series are read, for a polynomial, and at which this is checked."""
-
-TAIL = 3.0
-"""Error of a polynomial over the largest of its last three coefficients."""
-
-BEYOND = 2.0
-"""Interpolation error over the change of the polynomial by its highest order: the orders beyond it count about as much."""
-
-LOST = 1e3
-"""Value over its interpolation error below which a share is interpolated by its logarithm."""
-
-TINY = 1e-300
-
-INSIDE = np.array([0.25, 0.5, 0.75])
-"""Where the equations are checked, in parts of an interval: several, as a law with kinks may agree at one by chance."""
-
-LONGEST_END = 0.05
-"""Longest interval on which an observable may cease to exist."""
-
-SHORTEST_INTERVAL = 0.01
-"""Length below which an interval keeps its error: where a film ruptures no series converges."""
-
-NOISY, PROGRESS = 0.4, 0.6
-"""Length below which halving an interval must reduce its error to this part, or the error is rounding."""
-
-SHORTEST_AT_ROUNDING = 0.2
-"""Length of a step below which a path ends where rounding leaves more than the tolerance: what is beyond is no better."""
-
-MOST_INTERVALS = 500
-"""Intervals after which a path ends."""
+MAX_STEP = 7.0  # Longest step in the logarithm of the varied quantity
+MIN_STEP = 1e-3  # Shortest step; a path that needs a shorter one is lost
+RETRY_STEP_RATIO = 0.75  # Length of a step over that of the failed one before
+MAX_STEP_RADIUS_RATIO = 1.2  # Longest step over the radius of convergence
+FIRST_STEP_RATIO = 0.83  # First step as a fraction of the later ones: radii fall from where a path begins
+STATE_RTOL_FRACTION = 0.75  # Share of rtol for solving the states; the rest is for interpolation
+BRANCH_JUMP = 1.0  # An interpolant that leaves the range of both ends by more than this many scales joins two branches
+CHECKED_RTOL_FRACTION = 0.85  # Share of rtol that an interval must hold at the checked places, as others are not checked
+SPLIT_RTOL_FRACTION = 0.25  # Interpolation error over rtol above which splitting helps; errors of the ends do not fall
+CHECK_POINTS = 24  # Places of an interval where errors are checked and observables without series are read
+SAFETY_TAIL = 3.0  # Error of a polynomial over the largest of its last three coefficients
+SAFETY_TRUNCATION = 2.0  # Error of a truncated series over its last term: later terms count about as much
+LOG_INTERPOLATE_BELOW = 1e3  # A share smaller than this many interpolation errors is interpolated by its logarithm
+MIN_LENGTH = 1e-300  # Keeps the single state of a path of length zero from dividing by zero
+INNER_PLACES = np.array([0.25, 0.5, 0.75])  # Where the equations are checked: laws with kinks may agree by accident at one
+MAX_END_INTERVAL = 0.05  # Longest interval on which an observable may cease to exist
+MIN_INTERVAL = 0.01  # Intervals are not split below this length: where a film ruptures no series converges
+ROUNDING_LENGTH = 0.4  # Length of intervals below which an error that splitting does not reduce is rounding
+MAX_HALVING_RATIO = 0.6  # Error of a half over that of the whole above which splitting does not reduce the error
+MIN_STEP_AT_ROUNDING = 0.2  # A path ends at a shorter step once rounding exceeds rtol: farther states are no better
+MAX_INTERVALS = 500
+MAX_EXPANSIONS = 4  # Expansions of one state, each with a new distance of the samples
+BETWEEN_RTOL_FRACTION = 0.2  # Share of rtol for states between two others, which lie on meshes made for those
+SAFETY_CORRECTION = 2.0  # Stated error over a Newton correction with a neighbour's Jacobian, which misses part of the error
+MIN_OFFSET_SCALE = 0.1  # Least scale of the offset's error: the offset crosses zero where films become thick
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,31 +62,28 @@ class Expansion:
 
     @property
     def order(self) -> int:
-        """K."""
+        """Order of the series."""
         return len(self.series) - 1
 
 
-def rate(left: Expansion, right: Expansion) -> float:
-    """Return by how much the change by an order exceeds that by the one before, as :func:`missed_by` takes it."""
+def change_ratio(left: Expansion, right: Expansion) -> float:
+    """Return the ratio of the changes by one order of a two-point series and by the order before."""
     return (right.coordinate - left.coordinate) ** 2 / (left.radius * right.radius)
 
 
 class Problem(Protocol):
-    """The states that a path follows, as the path needs them."""
+    """The states along a path: how each is solved, scaled, checked and read."""
 
     @property
-    def held(self) -> Flags:
-        """Which observables the tolerance holds for."""
+    def controlled(self) -> Flags:
+        """Which observables the tolerance limits."""
 
     @property
-    def signed(self) -> Flags:
-        """Which observables may cross zero: between states their absolute errors count, those of others relatively."""
+    def sign_changing(self) -> Flags:
+        """Which observables may cross zero, so that their errors between states are absolute."""
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``; ``near`` holds no neighbour, the last one, or both.
-
-        A failure is returned as its outcome.
-        """
+        """Return the expanded state at ``s``, from no, one or two neighbours ``near``, or the outcome of the failure."""
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables at coordinates s, shape (len(s), n)."""
@@ -126,21 +93,18 @@ class Problem(Protocol):
         """Error in units of the scales that a polynomial for observables without a series may add to theirs."""
 
     def read_scales(self, values: Array) -> Array:
-        """Return the same for observables without a series."""
+        """Return the scales of observables without a series."""
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return the largest difference of ``values()`` from the equations at parts of an interval, in units of the scales.
-
-        Zero where the coefficients are surely right.
-        """
+    def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the largest scaled difference of ``values()`` from the equations, zero where series are surely right."""
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return observables that have no series, at parts of an interval: values, errors, and their columns."""
+        """Return values, errors and columns of observables without a series at parts of an interval."""
 
 
 @dataclass(frozen=True, eq=False)
 class Interval:
-    """What lies between two expansions."""
+    """The observables between two neighbouring expansions."""
 
     problem: Problem
     left: Expansion
@@ -153,7 +117,7 @@ class Interval:
 
     @property
     def order(self) -> int:
-        """K, that both ends have."""
+        """Order of the series, the smaller of those at both ends."""
         return min(self.left.order, self.right.order)
 
     @cached_property
@@ -168,13 +132,15 @@ class Interval:
         return hermite_form(self.order) @ self.ends
 
     @cached_property
-    def missed(self) -> Array:
+    def interpolation_error(self) -> Array:
         """Error of the interpolated observables by their highest orders, over ``(tau (1 - tau))**K``."""
-        return BEYOND * missed_by(self.order, self.ends[:, : self.left.series.shape[1]], rate(self.left, self.right))
+        return SAFETY_TRUNCATION * missed_by(
+            self.order, self.ends[:, : self.left.series.shape[1]], change_ratio(self.left, self.right)
+        )
 
     @cached_property
     def at_ends(self) -> Array:
-        """The larger errors of both ends: in units of the scales there, and absolute for what crosses zero between."""
+        """The larger errors of both ends, in scales and absolute."""
         relative = np.stack([self.left.errors, self.right.errors])
         values = np.stack([self.left.series[0], self.right.series[0]])
         scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
@@ -185,33 +151,33 @@ class Interval:
         return _Pieces([self])
 
     @cached_property
-    def inside(self) -> Array:
-        """Error that the equations find between the ends."""
+    def checked_error(self) -> Array:
+        """Largest difference of the interpolant from the equations within the interval."""
 
         def values() -> Array:
-            where = np.zeros(len(INSIDE), dtype=int)
-            found, _, basis = self._alone.smooth(where, INSIDE)
-            self._alone.read(found, where, INSIDE, basis)
+            where = np.zeros(len(INNER_PLACES), dtype=int)
+            found, _, basis = self._alone.smooth(where, INNER_PLACES)
+            self._alone.read(found, where, INNER_PLACES, basis)
             return found
 
-        return self.problem.missed(self.left, self.right, INSIDE, values)
+        return self.problem.checked_error(self.left, self.right, INNER_PLACES, values)
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
-        """Polynomials for observables without a series, their errors and columns, and whether they are good enough."""
-        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(READ_AT))
+        """Polynomials of observables without a series, their errors and columns, and whether they are accurate enough."""
+        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(CHECK_POINTS))
         with np.errstate(invalid="ignore"):  # of values that are not finite no polynomial is good enough
             form = chebyshev_form(values)
-        tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
+        tails = SAFETY_TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
         missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
         return form, largest + missed, columns, bool((missed <= np.maximum(0.5 * largest, self.problem.negligible)).all())
 
     @cached_property
-    def checked(self) -> tuple[Array, Array]:
-        """The observables and their errors at the places where the interval is checked."""
-        return self.at(chebyshev_nodes(READ_AT))
+    def values_at_checks(self) -> tuple[Array, Array]:
+        """Observables and their errors at the checked places."""
+        return self.at(chebyshev_nodes(CHECK_POINTS))
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
@@ -219,34 +185,31 @@ class Interval:
 
 
 class _Pieces:
-    """Intervals side by side, to be evaluated at many places at once."""
+    """Neighbouring intervals evaluated at many places at once."""
 
     def __init__(self, intervals: Sequence[Interval]) -> None:
         self.intervals, self.problem = intervals, intervals[0].problem
         self.count = intervals[0].left.series.shape[1]
         self.orders = np.array([one.order for one in intervals])
-        self.degree = max(READ_AT, 2 * int(self.orders.max()) + 2)
+        self.degree = max(CHECK_POINTS, 2 * int(self.orders.max()) + 2)
         self.forms = [one.form for one in intervals]
-        self.missed = np.stack([one.missed for one in intervals])
+        self.interpolation_error = np.stack([one.interpolation_error for one in intervals])
         with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
         self.starts = np.array([one.left.coordinate for one in intervals])
         self.lengths = np.array([one.length for one in intervals])
         self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
 
     def smooth(self, where: Array, parts: Array) -> tuple[Array, Array, Array]:
-        """Return the observables at parts of the intervals of these numbers, their interpolation errors, and the basis.
-
-        A share below that error is interpolated by its logarithm, which keeps its sign and its digits.
-        """
+        """Return observables at parts of numbered intervals, their interpolation errors, and the Chebyshev basis."""
         basis = chebyshev_basis(parts, self.degree)
         both = np.empty((len(parts), 2 * self.count), dtype=parts.dtype)
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
             mine, form = slice(None) if len(where) == 1 else where == k, self.forms[k]
             both[mine] = basis[mine, : len(form)] @ form
         found = both[:, : self.count]
-        missed = self.missed[where] * ((parts.real * (1 - parts.real)) ** self.orders[where])[:, None]
-        if self.logs:
-            shares, limit = found[:, self.logs], LOST * missed[:, self.logs]
+        missed = self.interpolation_error[where] * ((parts.real * (1 - parts.real)) ** self.orders[where])[:, None]
+        if self.logs:  # a share below its error is interpolated by its logarithm, which keeps sign and digits
+            shares, limit = found[:, self.logs], LOG_INTERPOLATE_BELOW * missed[:, self.logs]
             lost = shares.real < limit
             if lost.any():
                 with np.errstate(all="ignore"):
@@ -256,25 +219,25 @@ class _Pieces:
 
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
-        """Errors of the intervals at any place: relative ones, and absolute ones of what may cross zero."""
-        ends, inside = np.stack([one.at_ends for one in self.intervals]), [one.inside for one in self.intervals]
-        signed = self.problem.signed
-        return np.where(signed, 0.0, ends[:, 0]) + np.stack(inside), np.where(signed, ends[:, 1], 0.0)
+        """Errors of each interval, relative for most observables and absolute for those that may cross zero."""
+        ends, inside = np.stack([one.at_ends for one in self.intervals]), [one.checked_error for one in self.intervals]
+        sign_changing = self.problem.sign_changing
+        return np.where(sign_changing, 0.0, ends[:, 0]) + np.stack(inside), np.where(sign_changing, ends[:, 1], 0.0)
 
     def at(self, where: Array, parts: Array) -> tuple[Array, Array]:
-        """Return the observables at parts of the intervals of these numbers, and their errors in units of the scales."""
+        """Return observables at parts of numbered intervals, and their scaled errors."""
         found, missed, basis = self.smooth(where, parts)
         scales = self.problem.scales(found, self.starts[where] + parts * self.lengths[where])
         relative, absolute = self._errors
         errors = relative[where] + (absolute[where] + missed) / scales
         for mine, columns, of_read in self.read(found, where, parts, basis):
-            errors[mine, columns] = of_read + self.intervals[where[mine[0, 0]]].inside[columns]
+            errors[mine, columns] = of_read + self.intervals[where[mine[0, 0]]].checked_error[columns]
         unknown = np.isnan(found) & self._expected[where]
         return found, np.where(unknown, np.inf, errors)
 
     @cached_property
     def _expected(self) -> Flags:
-        """Which observables both states of an interval have; where a film ruptures a series may lead to no other state."""
+        """Which observables exist at both ends of an interval."""
         return np.stack([np.isfinite([one.left.series[0], one.right.series[0]]).all(axis=0) for one in self.intervals])
 
     def read(self, found: Array, where: Array, parts: Array, basis: Array) -> list[tuple[Indices, Sequence[int], Array]]:
@@ -287,7 +250,7 @@ class _Pieces:
                 continue
             mine = np.nonzero(where == k)[0][:, None]
             if is_smooth:
-                found[mine, columns] = basis[mine[:, 0], :READ_AT] @ form
+                found[mine, columns] = basis[mine[:, 0], :CHECK_POINTS] @ form
             else:
                 found[mine, columns], errors, _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
             written.append((mine, columns, errors))
@@ -296,7 +259,7 @@ class _Pieces:
 
 @dataclass(frozen=True, eq=False)
 class SolvedPath:
-    """What lies along a path, ascending, and how it ended."""
+    """The intervals of a path in ascending order, and its outcome."""
 
     problem: Problem  # What was followed
     intervals: tuple[Interval, ...]  # Between neighbouring solved states; of a single state, from it to itself
@@ -314,10 +277,10 @@ class SolvedPath:
         return np.array([one.coordinate for one in self.expansions])
 
     def joined(self, other: SolvedPath) -> SolvedPath:
-        """Return this path and another, which goes on at one of its ends."""
+        """Return the path continued by another one from one of its ends."""
         more = tuple(one for one in other.intervals if one.length > 0)
         mine = tuple(one for one in self.intervals if one.length > 0 or not more)
-        return SolvedPath(self.problem, _ascending([*mine, *more]), other.outcome)
+        return SolvedPath(self.problem, _sorted_intervals([*mine, *more]), other.outcome)
 
     @cached_property
     def _pieces(self) -> _Pieces:
@@ -330,10 +293,10 @@ class SolvedPath:
     def _parts(self, s: Array) -> tuple[Array, Array]:
         """Return the interval of each coordinate, and its place in it."""
         where = self.interval_of(s.real)
-        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], TINY)
+        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], MIN_LENGTH)
 
     def smooth(self, s: Array) -> Array:
-        """Return the values of :meth:`at` that have a series, without errors, at real or complex coordinates."""
+        """Return observables with a series, without errors, at real or complex coordinates."""
         return self._pieces.smooth(*self._parts(s))[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
@@ -361,71 +324,73 @@ def follow(
         alone = (Interval(problem, here, here),)
         upwards = end > here.coordinate
         while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
-            if len(found) >= MOST_INTERVALS:
-                return SolvedPath(problem, _ascending(found), Outcome.STATE_LIMIT)
-            step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol) * (1.0 if found else FIRST)))
+            if len(found) >= MAX_INTERVALS:
+                return SolvedPath(problem, _sorted_intervals(found), Outcome.STATE_LIMIT)
+            step = min(left, MAX_STEP, max(MIN_INTERVAL, _step_length(here, rtol) * (1.0 if found else FIRST_STEP_RATIO)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
-            while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
-                step *= SHORTER
-                shortest = SHORTEST_AT_ROUNDING if new is Outcome.ROUNDING else SHORTEST_STEP
+            while isinstance(new := problem.solve(_next_coordinate(here, end, step if upwards else -step), [here]), Outcome):
+                step *= RETRY_STEP_RATIO
+                shortest = MIN_STEP_AT_ROUNDING if new is Outcome.ROUNDING else MIN_STEP
                 if step < shortest or new is Outcome.INTERRUPTED:
-                    return SolvedPath(problem, _ascending(found) or alone, new)
+                    return SolvedPath(problem, _sorted_intervals(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
-            parts = _refined(Interval(problem, low, high), rtol)
+            parts = _split_until_accurate(Interval(problem, low, high), rtol)
             for part in parts if upwards else parts[::-1]:
-                if _is_lost(part):
-                    return SolvedPath(problem, _ascending(found) or alone, Outcome.PATH_LOST)
+                if _joins_two_branches(part):
+                    return SolvedPath(problem, _sorted_intervals(found) or alone, Outcome.PATH_LOST)
                 found.append(part)
             if on_interval is not None:
                 on_interval(low.coordinate, high.coordinate)
             here = new
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    return SolvedPath(problem, _ascending(found) or alone, outcome)
+    return SolvedPath(problem, _sorted_intervals(found) or alone, outcome)
 
 
-def _is_lost(interval: Interval) -> bool:
-    """Return whether what is read between two states is far from both: they are of two branches."""
+def _joins_two_branches(interval: Interval) -> bool:
+    """Return whether the interpolant leaves the range of both ends, which then lie on two branches."""
     ends = np.stack([interval.left.series[0], interval.right.series[0]])
     scales = interval.problem.scales(ends, np.array([interval.left.coordinate, interval.right.coordinate])).max(axis=0)
-    values, errors = interval.checked
-    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > APART * scales
-    return bool((far & (errors > APART))[:, interval.problem.held].any())
+    values, errors = interval.values_at_checks
+    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > BRANCH_JUMP * scales
+    return bool((far & (errors > BRANCH_JUMP))[:, interval.problem.controlled].any())
 
 
-def _beyond(here: Expansion, end: float, step: float) -> float:
+def _next_coordinate(here: Expansion, end: float, step: float) -> float:
     """Return the coordinate one step further, or exactly the end."""
     return end if abs(step) == abs(here.coordinate - end) else here.coordinate + step
 
 
-def _ascending(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
+def _sorted_intervals(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
     return tuple(sorted(intervals, key=lambda one: one.left.coordinate))
 
 
-def _step(here: Expansion, rtol: float) -> float:
+def _step_length(here: Expansion, rtol: float) -> float:
     """Return the longest step on which the coefficients should interpolate within the tolerance."""
     order = here.order
-    return here.radius * min(REACH, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
+    return here.radius * min(MAX_STEP_RADIUS_RATIO, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
 
 
-def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
+def _split_until_accurate(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
     """Return an interval split until it interpolates within the tolerance, ascending."""
-    if interval.length < SHORTEST_INTERVAL:
+    if interval.length < MIN_INTERVAL:
         return [interval]
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
-    ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # something exists on one side alone
-    values, errors = interval.checked
+    ends_between = (
+        bool((exists[0] != exists[1]).any()) and interval.length > MAX_END_INTERVAL
+    )  # something exists on one side alone
+    values, errors = interval.values_at_checks
     # The errors of the ends do not fall with the length.
-    scales = problem.scales(values, left.coordinate + chebyshev_nodes(READ_AT) * interval.length)
+    scales = problem.scales(values, left.coordinate + chebyshev_nodes(CHECK_POINTS) * interval.length)
     with np.errstate(over="ignore"):  # series that lead to no number count as wrong
-        of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
-    excess = errors - of_ends > REDUCIBLE * rtol
-    if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
+        of_ends = np.where(problem.sign_changing, interval.at_ends[1] / scales, interval.at_ends[0])
+    excess = errors - of_ends > SPLIT_RTOL_FRACTION * rtol
+    if not ends_between and not ((errors > CHECKED_RTOL_FRACTION * rtol) & excess)[:, problem.controlled].any():
         return [interval]
-    worst = float(np.nanmax(errors[:, problem.held]))
-    if interval.length < NOISY and worst > PROGRESS * before:  # rounding, which halving does not remove
+    worst = float(np.nanmax(errors[:, problem.controlled]))
+    if interval.length < ROUNDING_LENGTH and worst > MAX_HALVING_RATIO * before:  # rounding, which halving does not remove
         return [interval]
     at = 0.5 * (left.coordinate + right.coordinate)
     for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good on one side alone
@@ -435,4 +400,4 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     if isinstance(middle, Outcome):
         return [interval]
     halves = Interval(problem, left, middle), Interval(problem, middle, right)
-    return [part for half in halves for part in _refined(half, rtol, worst)]
+    return [part for half in halves for part in _split_until_accurate(half, rtol, worst)]

@@ -22,7 +22,14 @@ from stribeck.numerics.series import beyond, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, same
-from stribeck.solver.path.path import Expansion, SolvedPath
+from stribeck.solver.path.path import (
+    BETWEEN_RTOL_FRACTION,
+    MAX_EXPANSIONS,
+    MIN_OFFSET_SCALE,
+    SAFETY_CORRECTION,
+    Expansion,
+    SolvedPath,
+)
 from stribeck.solver.point.level import Level, band_for
 from stribeck.solver.point.path import next_state, similar, without_factors
 from stribeck.solver.point.refinement import Pair
@@ -30,46 +37,21 @@ from stribeck.solver.point.state import PointState
 
 __all__ = ["CurveState", "PointProblem"]
 
-KNOT_PART = 0.5
-"""Part of the tolerance that a solved state must hold: states on two meshes differ by up to twice that."""
-
-ORDERS = ((1e-4, 6), (1e-7, 8), (0.0, 10))
-"""Highest orders of the series of curves to a tolerance of this and above."""
-
-LINEAR = 1e-2
-"""Relative residual that GMRES leaves of the first order of a series, over the tolerance."""
-
-REACH, NARROWEST, WIDEST = 0.45, 0.2, 0.6
-"""Half of the interval on which the equations are evaluated for the series over the radius of convergence, and its limits."""
-
-ROUNDING = 1e-9
-"""Rounding of the samples, as magnified in the coefficients."""
-
-SHORTEST_REACH, FIRST_REACH = 0.05, 0.6
-
-MOST_TRIALS = 3
-"""Most expansions of a state with a new interval."""
-
-BETWEEN = 0.2
-"""Part of the tolerance by which states between two others may be less resolved than these, for which the meshes were made,
-and what GMRES leaves of the coefficients."""
-
-UNSEEN = 2.0
-"""Stated error over the correction of a state between two others, for what the correction does not see."""
-
-MINIMUM_BETWEEN = 2.0
-"""Stated error of a minimum of the gap between two states over the larger one of these."""
-
-THIN = 0.4
-"""Logarithm of the gap over its minimum up to which it may become the minimum."""
-
-OFFSET_FLOOR = 0.1
-"""The error of the offset is relative to it where it exceeds this: it crosses zero where films become thick."""
-
-UNIT = [SMOOTH.index(name) for name in ("contact_load_share", "fluid_load_share")]
-OFFSET = SMOOTH.index("offset")
-FRICTION = [i for i, name in enumerate(SMOOTH) if name.startswith("J_")]
-LARGEST = [SMOOTH.index(name) for name in ("J_balanced", "J_published")]
+STATE_RTOL_FRACTION = 0.5  # Share of rtol for solving the states: errors on two meshes differ by up to twice that
+SERIES_ORDERS = ((1e-4, 6), (1e-7, 8), (0.0, 10))  # Smallest rtol, and the order of series for it
+GMRES_RTOL_FRACTION = 1e-2  # Relative residual of the linear systems of a series over rtol
+SAMPLE_RADIUS_RATIO = 0.45  # Distance of the samples over the radius of convergence
+MIN_SAMPLE_RADIUS_RATIO = 0.2  # Samples nearer than this are taken once more
+MAX_SAMPLE_RADIUS_RATIO = 0.6  # Samples farther than this are taken once more
+SAMPLE_NOISE = 1e-9  # Rounding of the samples as magnified in the coefficients, which do not count for the radius below it
+MIN_SAMPLE_DISTANCE = 0.05
+FIRST_SAMPLE_DISTANCE = 0.6
+MINIMUM_SAFETY = 2.0  # Error of a minimum of the gap between two states over the larger of their errors
+THIN_LOG_GAP = 0.4  # ln of the gap over its minimum up to which a place may become the minimum
+SHARE_COLUMNS = [SMOOTH.index(name) for name in ("contact_load_share", "fluid_load_share")]
+OFFSET_COLUMN = SMOOTH.index("offset")
+FRICTION_COLUMNS = [i for i, name in enumerate(SMOOTH) if name.startswith("J_")]
+WHOLE_FRICTION_COLUMNS = [SMOOTH.index(name) for name in ("J_balanced", "J_published")]
 
 
 class PointPoint(NamedTuple):
@@ -80,53 +62,50 @@ class PointPoint(NamedTuple):
 
     @property
     def level(self) -> Level:
-        """The state on that mesh."""
+        """The state on its finer mesh."""
         work: Pair = self.state.work
         return work.fine
 
 
 class PointProblem:
-    """The states of a ball whose film does not break: ``groups_at(s)`` gives the groups at coordinate s.
-
-    The first is sought from the nearest of the states in ``like``.
-    """
+    """The states of a ball with a full film at the groups ``groups_at(s)``, the first from the nearest in ``like``."""
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, like: Sequence[PointState] = ()) -> None:
         self.like = like
-        self.groups_at, self.allowed, self.rtol = groups_at, rtol, KNOT_PART * rtol
+        self.groups_at, self.allowed, self.rtol = groups_at, rtol, STATE_RTOL_FRACTION * rtol
         self.exact = is_exponential(groups_at(0.0).law)
-        self.order = next(order for least, order in ORDERS if rtol >= least)
+        self.order = next(order for least, order in SERIES_ORDERS if rtol >= least)
         self.failure: PointState | None = None
         self._last: tuple[float, PointState] | None = None
         self._on_others: dict[tuple[float, float], Array] = {}
 
     @property
-    def held(self) -> Flags:
-        """All of them."""
+    def controlled(self) -> Flags:
+        """All observables with a series."""
         return np.ones(len(SMOOTH), dtype=bool)
 
     @property
-    def signed(self) -> Flags:
+    def sign_changing(self) -> Flags:
         """The offset and the friction integrals."""
-        return np.isin(np.arange(len(SMOOTH)), [OFFSET, *FRICTION])
+        return np.isin(np.arange(len(SMOOTH)), [OFFSET_COLUMN, *FRICTION_COLUMNS])
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables, as for a state."""
         found = np.fmax(np.abs(values), 1e-300)
-        found[:, UNIT] = 1.0
-        found[:, OFFSET] = np.maximum(found[:, OFFSET], OFFSET_FLOOR)
+        found[:, SHARE_COLUMNS] = 1.0
+        found[:, OFFSET_COLUMN] = np.maximum(found[:, OFFSET_COLUMN], MIN_OFFSET_SCALE)
         speeds = np.array([float(self.groups_at(each).speed) for each in s.real.tolist()])
-        found[:, FRICTION] = np.maximum(found[:, LARGEST].max(axis=1), speeds)[:, None]
+        found[:, FRICTION_COLUMNS] = np.maximum(found[:, WHOLE_FRICTION_COLUMNS].max(axis=1), speeds)[:, None]
         return found
 
     negligible = 0.0
 
     def read_scales(self, values: Array) -> Array:
-        """Return nothing."""
+        """Return no scales, as every observable of the path has a series."""
         return np.empty(0)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return nothing: minima of the gap, which the tolerance does not limit, are read on request."""
+        """Return no values: minima of the gap are read on request, as rtol does not limit them."""
         return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
@@ -144,13 +123,13 @@ class PointProblem:
             return state.outcome
         state = with_factors(state)
         self._last = s, state
-        return self._expanded(s, state, near[-1].radius if near else FIRST_REACH / REACH)
+        return self._expanded(s, state, near[-1].radius if near else FIRST_SAMPLE_DISTANCE / SAMPLE_RADIUS_RATIO)
 
     def _expanded(self, s: float, state: PointState, near: float) -> Expansion | Outcome:
         pair: Pair = state.work
         level = pair.fine
         preconditioner = level.iterated.preconditioner
-        reach = max(SHORTEST_REACH, REACH * near)
+        reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * near)
         values = np.array([state.values[name] for name in SMOOTH])
         scales = self.scales(values[None], np.array([s]))
         trial = 0
@@ -162,20 +141,20 @@ class PointProblem:
                 lambda t: self.groups_at(s + t),
                 self.order,
                 reach,
-                LINEAR * self.allowed,
+                GMRES_RTOL_FRACTION * self.allowed,
             )
             if found is None:
                 return Outcome.SINGULAR
             gaps = found.unknowns[:, : level.unknowns.gap.size]
-            known = min(radius(each, reach, ROUNDING) for each in (gaps, found.observables / scales))
+            known = min(radius(each, reach, SAMPLE_NOISE) for each in (gaps, found.observables / scales))
             if not (np.isfinite(known) and np.isfinite(found.observables).all()):
-                known, reach = reach, max(SHORTEST_REACH, 0.25 * reach)
-            elif reach > WIDEST * known or (trial == 0 and reach < NARROWEST * known):
-                reach = max(SHORTEST_REACH, REACH * known)
+                known, reach = reach, max(MIN_SAMPLE_DISTANCE, 0.25 * reach)
+            elif reach > MAX_SAMPLE_RADIUS_RATIO * known or (trial == 0 and reach < MIN_SAMPLE_RADIUS_RATIO * known):
+                reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * known)
             else:
                 break
             trial += 1
-            if trial == MOST_TRIALS:
+            if trial == MAX_EXPANSIONS:
                 break
         series, logs = found.observables, np.full_like(found.observables, np.nan)
         series[0] = values
@@ -192,10 +171,7 @@ class PointProblem:
         return found if np.isfinite(row).all() and np.isfinite(found.gap).all() else of.point.level.unknowns
 
     def between(self, left: Expansion, right: Expansion, s: float) -> tuple[Unknowns, Level, float]:
-        """Return the unknowns between two states on the mesh of the nearer one, that state, and the largest error of the gap.
-
-        The error is relative to the gap where this is thin.
-        """
+        """Return unknowns between two states on the nearer mesh, that state, and the largest error of the log gap."""
         own, other = sorted((left, right), key=lambda one: abs(one.coordinate - s))
         point: PointPoint = own.point
         shape = point.level.unknowns.gap.shape
@@ -216,7 +192,7 @@ class PointProblem:
             point.level.unknowns.gap.size,
         )
         gap, change = row[:thin], np.abs(row - without)[:thin]
-        return from_row(row, shape), point.level, float(change[gap < gap.min() + THIN].max())
+        return from_row(row, shape), point.level, float(change[gap < gap.min() + THIN_LOG_GAP].max())
 
     def _carried(self, one: Expansion, to: Expansion) -> Array:
         """Return the coefficients of the unknowns of a state on the mesh of another."""
@@ -236,9 +212,9 @@ class PointProblem:
             self._on_others[key] = np.hstack([*flat, rows[:, -1:]])
         return self._on_others[key]
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return the largest difference between ``values()`` and states corrected at ``parts``, for a non-analytic law."""
-        found = np.full(len(SMOOTH), BETWEEN * self.allowed)
+    def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the largest difference of ``values()`` from corrected states, where the law is not smooth."""
+        found = np.full(len(SMOOTH), BETWEEN_RTOL_FRACTION * self.allowed)
         if self.exact or self._last is None:
             return found
         at, state = self._last
@@ -258,11 +234,11 @@ class PointProblem:
                 corrected = corrected_once(equations, self.guess(end, place), preconditioner)
                 wrong = np.inf if corrected is None else np.abs(corrected - known) / scale
                 beyond_ends = np.nan_to_num(wrong, nan=np.inf) - np.maximum(left.errors, right.errors)
-                found = np.maximum(found, np.where(beyond_ends > 0, UNSEEN * beyond_ends, 0.0))
+                found = np.maximum(found, np.where(beyond_ends > 0, SAFETY_CORRECTION * beyond_ends, 0.0))
         return found
 
     def release(self) -> None:
-        """Forget the factors of the last state, which fill the memory."""
+        """Drop the factors of the last state, which fill the memory."""
         self._last, self.like = None, ()
 
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
@@ -273,7 +249,7 @@ class PointProblem:
 
 
 def with_factors(state: PointState) -> PointState:
-    """Return a state with the preconditioner of its own Jacobian: many systems are solved with it."""
+    """Return a state with the preconditioner of its own Jacobian, as many systems are solved with it."""
     pair: Pair = state.work
     if pair.fine.iterated.factorisations and pair.fine.iterated.preconditioner is not None:
         return state
@@ -290,7 +266,7 @@ def ends_of(path: SolvedPath, s: float) -> tuple[Expansion, Expansion]:
 
 
 class CurveState(ByValue, PointState):
-    """A state on a path: its numbers are those of the path, its fields those of a state solved on first use."""
+    """A state on a path, with numbers of the path and fields of a state solved on first use."""
 
     _place: tuple[PointProblem, SolvedPath, float]
     _lowest: float
@@ -306,7 +282,7 @@ class CurveState(ByValue, PointState):
         known: tuple[PointState, ...] = (left.point.state, right.point.state)
         for name in lowest:
             scales[name] = values[name] if name.startswith("minimum_gap") else 1.0
-            own = MINIMUM_BETWEEN * (max(state.errors[name] for state in known) + unsure) + float(errors.max())
+            own = MINIMUM_SAFETY * (max(state.errors[name] for state in known) + unsure) + float(errors.max())
             absolute[name] = own * scales[name]
         vars(self).update(
             groups=groups,
@@ -322,7 +298,7 @@ class CurveState(ByValue, PointState):
         )
 
     def __eq__(self, other: object) -> bool:
-        """Return whether the other is as good a state of the same numbers."""
+        """Return whether groups, values and errors are equal."""
         if type(other) is not type(self):
             return NotImplemented
         return all(same(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
