@@ -32,7 +32,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.scaling import SCALINGS
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, ENDS, NAMES
+from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES, RUPTURE_ROWS
 from stribeck.solver.solve import SolveError
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
@@ -137,7 +137,7 @@ def judge_with_parts(seed: int, number: int, places: int, rtol: float, seconds: 
         for j, each in enumerate(ALL_NAMES):
             true = float(getattr(exact.observables, each))
             least = OFFSET_FLOOR if each == "offset" else 1e-300
-            scale = 1.0 if each in ABSOLUTE or each in {row.name for row in ENDS} else max(abs(true), least)
+            scale = 1.0 if each in ABSOLUTE or each in {row.name for row in RUPTURE_ROWS} else max(abs(true), least)
             found[i, j] = abs(here.values[each][i] - true) / scale / (here.errors[each][i] + exact.errors.get(each, np.nan))
     judged = np.isfinite(found).any(axis=1)
     if not judged.any():

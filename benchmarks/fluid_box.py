@@ -176,7 +176,7 @@ def true_errors(point: RefinedState) -> np.ndarray:
     fine = solve_state(state.groups, Operators(mesh, state.groups.model), state, 1e-11)
     if not fine.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {fine.outcome.value}")
-    in_article = state.equations.operators.is_article
+    in_article = state.equations.operators.is_base_model
     exact = observables(fine.equations, fine.y, float(groups.load)).array(in_article)
     return np.abs(point.values.array(in_article) - exact) / point.estimate.scales
 
@@ -192,7 +192,7 @@ def measured(groups: sb.Groups, parts: dict[str, Any]) -> dict[str, Any]:
     if point.state is None or point.estimate is None:
         return {"outcome": point.outcome.name, "seconds": seconds}
     found = {"outcome": point.outcome.name, "seconds": seconds, "nodes": point.state.mesh.size}
-    in_article = point.state.equations.operators.is_article
+    in_article = point.state.equations.operators.is_base_model
     stated = np.maximum(point.estimate.relative, minimum_estimate(RTOL, in_article))
     found["stated"] = float(np.nanmax(stated))
     try:

@@ -19,16 +19,16 @@ def test_a_sphere_along_a_wall_has_the_constants_of_stokes_flow():
     assert abs(sphere_along_wall.force(math.cosh(1) - 1) - 1.5675) < 5e-5
     assert abs(sphere_along_wall.force(math.cosh(0.3) - 1) - 2.6475) < 5e-5
     found = sphere_along_wall.wall_constant()
-    assert abs(found - cut_off.SLIDING) < 2e-6
+    assert abs(found - cut_off.CUT_OFF_SLIDING) < 2e-6
     assert abs(found - 0.9588) > 4e-3  # as printed in 1967
-    assert abs(sphere_along_wall.wall_constant(turning=True) - cut_off.TURNING) < 2e-6
+    assert abs(sphere_along_wall.wall_constant(turning=True) - cut_off.CUT_OFF_ROTATION) < 2e-6
 
 
 @pytest.mark.quick
 def test_the_logarithm_joins_the_lubrication_film_to_the_whole_ball():
     h, slope = 1e-6, 1e-3  # a rigid ball: h in R, a/R; the gap over u is h/slope**2
     finite = -math.pi * (8 / 15 * math.log(2 * h / slope**2) + 0.4)
-    whole = math.pi * (8 / 15 * math.log(1 / h) + cut_off.SLIDING)
+    whole = math.pi * (8 / 15 * math.log(1 / h) + cut_off.CUT_OFF_SLIDING)
     assert math.isclose(finite + float(far_integral(slope)), whole, rel_tol=1e-12)
     assert math.isclose(math.exp(float(far_integral(0.1)) / LOGARITHM), 50.340, rel_tol=1e-5)
     assert math.isclose(float(far_integral(0.1, 30.0)), LOGARITHM * math.log(30), rel_tol=1e-12)

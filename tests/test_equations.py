@@ -208,7 +208,7 @@ def test_a_small_step_is_admissible_whole(case):
 
 def test_the_size_of_a_step_is_its_largest_relative_change_of_a_gap():
     y = np.array([1.0, 1e-6, 2.0, -0.6, 0.5])
-    article = SimpleNamespace(is_article=True)
+    article = SimpleNamespace(is_base_model=True)
     layout = SimpleNamespace(
         layout=Layout(5, slice(0, 3), slice(3, 5), slice(3, 4), slice(4, 5), slice(3, 3), slice(5, 5), slice(5, 5)),
         operators=article,

@@ -31,26 +31,6 @@ def test_the_definitions_agree_where_asperities_carry_nothing_and_not_in_the_bou
     assert published.viscous == pytest.approx(70.55 * balanced.viscous, rel=1e-4)
 
 
-OLD = {
-    "a contact": lambda: sb.LineContact(radius="1 mm", friction_coefficient=0.7),
-    "a contact from groups": lambda: sb.LineContact.from_groups(sb.Groups(1, 1, 1), friction_coefficient=0.7),
-    "a curve": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, mu0=0.7),
-    "the atlas": lambda: sb.atlas.friction(sb.Groups(1e-5, 0.1, 1e-4), mu0=0.7),
-    "a diagram": lambda: sb.phase_diagram(mu0=0.7),
-}
-
-
-@pytest.mark.parametrize("call", OLD.values(), ids=OLD)
-def test_a_former_name_of_the_boundary_friction_is_refused_with_the_present_one(call):
-    with pytest.raises(sb.InputError, match=r"= 0\.7: this input is called boundary_friction; write boundary_friction = "):
-        call()
-
-
-def test_a_state_refuses_the_former_name_too(solved):
-    with pytest.raises(sb.InputError, match="write boundary_friction"):
-        solved(*MIXED).friction(mu0=0.5)
-
-
 def test_friction_is_balanced_unless_the_published_one_is_asked_for(solved):
     state = solved(*MIXED)
     assert state.friction() == state.friction(definition="balanced") != state.friction(definition="published")
@@ -62,8 +42,3 @@ def test_friction_is_balanced_unless_the_published_one_is_asked_for(solved):
         for function in (sb.stribeck_curve, sb.phase_diagram, regime_margins, friction_sensitivities)
     }
     assert set(defaults.values()) == {"balanced"} == {Case.definition, Inputs.definition}, defaults
-
-
-def test_the_former_name_of_the_published_friction_is_refused_with_the_present_one(solved):
-    with pytest.raises(sb.InputError, match="The friction of the paper is called 'published'"):
-        solved(*MIXED).friction(definition="paper")

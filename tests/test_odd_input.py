@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import stribeck as sb
 from stribeck import asymptotics
-from stribeck.contacts.groups import LARGEST, SMALLEST
+from stribeck.contacts.groups import MAX_GROUP, MIN_GROUP
 
 NO_NUMBERS = [
     *(None, True, "1", "x", "", b"1", [], {}, {"a": 1}, 1j, object(), math.nan, math.inf, -math.inf, -1.0, 10**400),
@@ -56,7 +56,7 @@ def test_the_relative_roughness_has_that_range_too_and_pairs_of_arrays_are_judge
     sb.Groups(1.0, np.array([1e-150, 1e100]), np.array([1e-150, 1e100]))
 
 
-@pytest.mark.parametrize("value", [SMALLEST, LARGEST])
+@pytest.mark.parametrize("value", [MIN_GROUP, MAX_GROUP])
 def test_the_ends_of_the_range_are_in_it_also_as_exponentials_of_logarithms(value):
     assert sb.Groups(value, 1.0, 0.0).speed == value
     found = math.exp(math.log(value))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.with_parts import part_attributes, with_parts
 from stribeck.fluids.presets import celsius
 from stribeck.quantities.inputs import LINE, POINT, quantity
@@ -32,8 +32,8 @@ def contact(**parts):
 
 @pytest.mark.quick
 def test_without_parts_a_contact_has_the_model_of_the_article():
-    assert contact().groups.model is ARTICLE
-    assert contact(fluid="newtonian", cavitation="none", flow_factors="none", slide_to_roll=2).groups.model == ARTICLE
+    assert contact().groups.model is BASE_MODEL
+    assert contact(fluid="newtonian", cavitation="none", flow_factors="none", slide_to_roll=2).groups.model == BASE_MODEL
     assert sb.LineContact(**CONTACT) == contact(fluid=None)
 
 

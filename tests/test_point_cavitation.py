@@ -7,7 +7,7 @@ import pytest
 
 import stribeck as sb
 from stribeck import Groups
-from stribeck.contacts.cut_off import CAVITATED, RUPTURE
+from stribeck.contacts.cut_off import CAVITATED_FAR_FILM, RUPTURE_ANGLE
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.cavitated import swept
 from stribeck.equations.cavities.wake import rupture_line, shear_missing
@@ -68,7 +68,7 @@ def test_a_fast_ball_is_rigid():
 def test_far_away_pressure_and_friction_are_those_of_the_angular_law():
     # g'' - 9 g = 2 cos(theta) with g = g' = 0 at the line and g' = 0 upstream, by finite differences.
     n = 1000
-    angle = np.linspace(RUPTURE, np.pi, n + 1)
+    angle = np.linspace(RUPTURE_ANGLE, np.pi, n + 1)
     step = angle[1] - angle[0]
     matrix = np.diag(np.full(n + 1, -2 / step**2 - 9))
     matrix += np.diag(np.full(n, 1 / step**2), 1) + np.diag(np.full(n, 1 / step**2), -1)
@@ -76,14 +76,14 @@ def test_far_away_pressure_and_friction_are_those_of_the_angular_law():
     right = 2 * np.cos(angle)
     right[0] = 0.0
     g = np.linalg.solve(matrix, right)
-    assert g[1] / step**2 == pytest.approx(np.cos(RUPTURE), abs=0.02)  # without a slope at the line
+    assert g[1] / step**2 == pytest.approx(np.cos(RUPTURE_ANGLE), abs=0.02)  # without a slope at the line
     product = g * np.cos(angle)
     moment = 2 * step * (product.sum() - 0.5 * product[-1])
-    assert CAVITATED.poiseuille == pytest.approx(-2 * moment, rel=3e-5)
-    assert CAVITATED.pressure == pytest.approx(-4 * moment / math.pi, rel=3e-5)
-    wake = np.linspace(0, RUPTURE, 2001)
-    wet = float(((10 / 9 * np.sin(wake) ** 2)[1:-1]).sum() + 5 / 9 * math.sin(RUPTURE) ** 2) * (wake[1] - wake[0])
-    assert CAVITATED.couette == pytest.approx(2 / 3 * (math.pi - RUPTURE + wet), rel=1e-6)
+    assert CAVITATED_FAR_FILM.poiseuille == pytest.approx(-2 * moment, rel=3e-5)
+    assert CAVITATED_FAR_FILM.pressure == pytest.approx(-4 * moment / math.pi, rel=3e-5)
+    wake = np.linspace(0, RUPTURE_ANGLE, 2001)
+    wet = float(((10 / 9 * np.sin(wake) ** 2)[1:-1]).sum() + 5 / 9 * math.sin(RUPTURE_ANGLE) ** 2) * (wake[1] - wake[0])
+    assert CAVITATED_FAR_FILM.couette == pytest.approx(2 / 3 * (math.pi - RUPTURE_ANGLE + wet), rel=1e-6)
 
 
 @pytest.mark.quick

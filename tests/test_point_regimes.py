@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.checks.subject import TRACES, Subject, speed_of_film
+from stribeck.checks.subject import TRACING, Subject, speed_of_film
 from stribeck.checks.table import checks_of
 from stribeck.regimes.margin_limits import SEARCHES, limits, physical_bounds, scanned_rtol
 from stribeck.regimes.margins import regime_margins
@@ -70,11 +70,11 @@ def test_a_phase_diagram_of_balls_holds_states_and_their_transitions():
 
 
 def test_checks_of_a_ball_trace_its_curve_around_the_minimum():
-    slow, fast = (speed_of_film(BALL, film) for film in TRACES["point"].films)
-    curve = sb.stribeck_curve(BALL, speed=(slow, fast), points=TRACES["point"].points, rtol=TRACES["point"].rtol)
+    slow, fast = (speed_of_film(BALL, film) for film in TRACING["point"].films)
+    curve = sb.stribeck_curve(BALL, speed=(slow, fast), points=TRACING["point"].points, rtol=TRACING["point"].rtol)
     assert slow < curve.minimum.value < fast
     film = sb.solve(BALL.replace(speed=fast, roughness=0.0), rtol=1e-3).central_gap * BALL.hertz.indentation
-    assert film / BALL.roughness == pytest.approx(TRACES["point"].films[1], rel=0.3)
+    assert film / BALL.roughness == pytest.approx(TRACING["point"].films[1], rel=0.3)
     found = checks_of(Subject(BALL, traced=curve), "curve")
     check = found["contact law at the minimum"]
     state = curve.minimum.solution

@@ -22,7 +22,7 @@ from stribeck.asymptotics.documentation import completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, real_array, show
 
@@ -226,7 +226,7 @@ class Formula(Generic[Arguments]):
         ndarray of bool
             Of the shape of the groups.
         """
-        found = np.full(groups.shape, groups.geometry == self.geometry and groups.model == ARTICLE)
+        found = np.full(groups.shape, groups.geometry == self.geometry and groups.model == BASE_MODEL)
         for limit in self.limits:
             found = found & limit.holds(groups, _ratio(beta, boundary_friction))
         return found
@@ -277,7 +277,7 @@ class Formula(Generic[Arguments]):
                 f"{self.name} is about {bodies[self.geometry]}, and geometry = {groups.geometry!r} is "
                 f"{bodies[groups.geometry]}; stribeck.asymptotics.point holds the formulas of the ball."
             )
-        if groups.model != ARTICLE:
+        if groups.model != BASE_MODEL:
             raise InputError(
                 f"{self.name} holds for a Newtonian fluid that does not cavitate, on a half-space, and these groups have "
                 "another model; use solve."

@@ -13,8 +13,8 @@ from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_frictio
 from stribeck.contacts.friction import PURE_SLIDING, Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.inputs import quantity
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, checked_kind, show
 
 __all__ = [
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 
-@refuse_former
+@answers_typos
 def friction(
     groups: Groups,
     boundary_friction: float = 1.0,
@@ -109,7 +109,7 @@ def viscous_friction(
     return shaped(groups, friction_terms(groups, inputs, check_definition(definition))[1])
 
 
-@refuse_former
+@answers_typos
 def friction_derivatives(
     groups: Groups,
     boundary_friction: float = 1.0,
@@ -220,7 +220,7 @@ def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Defini
     return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 
 
-@refuse_former
+@answers_typos
 def shares_and_friction(
     groups: Groups,
     boundary_friction: float = 1.0,

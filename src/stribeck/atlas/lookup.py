@@ -15,7 +15,7 @@ from stribeck.atlas.table import Values
 from stribeck.atlas.tables import SLACK, TableRow, table_for
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import IMAGINARY, RULES
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
@@ -130,13 +130,13 @@ def slopes_of(
     groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition
 ) -> tuple[Array, Array]:
     """Return the derivatives of contact share and viscous friction that were read, zero at rest."""
-    rule, step = RULES[groups.geometry], 1j * IMAGINARY
+    rule, step = RULES[groups.geometry], 1j * COMPLEX_STEP
     inputs = inputs_for(groups, inputs)
     viscous = np.empty_like(reading.contact_slopes)
     for d in range(len(viscous)):
         moved = {name: value + step * reading.part_slopes[name][d] for name, value in reading.parts.items()}
         speed, load = (group * (1 + step) if d == axis else group for axis, group in enumerate((reading.speed, reading.load)))
-        viscous[d] = np.imag(rule.viscous(moved, speed, load, inputs, definition)) / IMAGINARY
+        viscous[d] = np.imag(rule.viscous(moved, speed, load, inputs, definition)) / COMPLEX_STEP
     contact = reading.contact_slopes.copy()
     for found in (contact, viscous):
         found[:, reading.speed == 0] = 0.0

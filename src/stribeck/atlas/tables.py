@@ -22,7 +22,7 @@ from stribeck.atlas.grid import (
 from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.units import InputError, checked_kind, show
 
@@ -59,7 +59,7 @@ class TableRow:
     @property
     def model(self) -> Model:
         """Fluid, cavitation and solid."""
-        return replace(ARTICLE, cavitation=self.cavitation)
+        return replace(BASE_MODEL, cavitation=self.cavitation)
 
     @property
     def functions(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from stribeck._types import Array
 from stribeck.batches.order import coordinates
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
@@ -96,7 +96,7 @@ def _balls(
 
 def _physics_of(physics: Physics, contact: Contact | None) -> Physics:
     """Return what a state has beside its groups: in Hertz units a fluid in SI units is another at each load."""
-    return physics if contact is None or physics["model"] == ARTICLE else contact.groups.physics
+    return physics if contact is None or physics["model"] == BASE_MODEL else contact.groups.physics
 
 
 CHAINS = {"line": _cylinders, "point": _balls}

@@ -18,7 +18,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import COUETTE, POISEUILLE
-from stribeck.contacts.friction_rules import IMAGINARY
+from stribeck.contacts.friction_rules import COMPLEX_STEP
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.point.path import next_state, without_factors
@@ -117,8 +117,8 @@ class Lattice:
         values = np.real(_from_smooth(y, ln_speed))
         found = np.empty_like(slopes)
         for d in range(3):
-            moved = _from_smooth(y + 1j * IMAGINARY * slopes[:, d], ln_speed + 1j * IMAGINARY * (d == 0))
-            found[:, d] = moved.imag / IMAGINARY
+            moved = _from_smooth(y + 1j * COMPLEX_STEP * slopes[:, d], ln_speed + 1j * COMPLEX_STEP * (d == 0))
+            found[:, d] = moved.imag / COMPLEX_STEP
         return values, found
 
     def _solve(self, wanted: Iterable[Index]) -> None:
@@ -163,7 +163,8 @@ class Lattice:
         s = math.log(float(state.groups.speed))
         y = _to_smooth(values, s)
         columns = [
-            _to_smooth(values + 1j * IMAGINARY * by[:, d], s + 1j * IMAGINARY * (d == 0)).imag / IMAGINARY for d in range(3)
+            _to_smooth(values + 1j * COMPLEX_STEP * by[:, d], s + 1j * COMPLEX_STEP * (d == 0)).imag / COMPLEX_STEP
+            for d in range(3)
         ]
         return y.real, np.stack(columns, axis=1)
 

@@ -18,8 +18,8 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.inputs import quantity, unit_of
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
@@ -110,7 +110,7 @@ class BatchSolution(Exported, Shown, ByValue):
         """
         return self._friction()
 
-    @refuse_former
+    @answers_typos
     def _friction(
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> FrictionArray:

@@ -9,7 +9,7 @@ from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, La
 from stribeck.contacts.friction import Definition
 from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.facts import FACTS
-from stribeck.quantities.hints import ELSEWHERE, MEANT, advice_on
+from stribeck.quantities.hints import MEANT, OTHER_SOURCES, advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, quantity
 from stribeck.quantities.units import DIMENSIONS, show
 
@@ -109,7 +109,7 @@ def example_of(key: str, inputs: InputTable = LINE) -> str:
     """Return the advice to add a quantity, with a typical value and where it is from."""
     wanted = inputs.quantities[key]
     value = f'"{wanted.typical}"' if DIMENSIONS[wanted.dimension].unit else wanted.typical
-    other = f", {ELSEWHERE[key]}" if key in ELSEWHERE else ""
+    other = f", {OTHER_SOURCES[key]}" if key in OTHER_SOURCES else ""
     return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source}){other}"
 
 

@@ -5,48 +5,43 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from stribeck.checks.check import WORTH_SAYING, Check, verdict_of
+from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, judged, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import POINT, InputTable
 from stribeck.solver.notes import HARD, OIL, WIDEST_CONTACT, pressure_notes, width_notes
 
-FINE_STIFFENING, STIFFENING = 0.1, 1.0
-"""Pressure coefficient times Hertz pressure that is fine, and beyond which the film differs: 12 % thicker, its friction
-88 % larger (when_not_to_use.md)."""
+STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
+STIFFENING_OUTSIDE = 1.0  # Same product at which the film is 12 % thicker and its friction 88 % larger (when_not_to_use.md)
 
-SOFT, HARD_MODULUS = 1e9, 1e10
-"""E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
+MODULUS_FINE_PA = 1e9  # Largest E* of a soft body [Pa]
+MODULUS_OUTSIDE_PA = 1e10  # E* from which a body is metal, glass or ceramic, whose asperities yield [Pa]
 
-TOO_WIDE = 0.5
-"""Half-width over the radius beyond which a parabola on a half-space is not valid."""
+WIDTH_RATIO_OUTSIDE = 0.5  # Half-width over the radius beyond which a parabola on a half-space is not valid
 
-CIRCLE = {"line": 3 / 8, "point": 2 / 5}
-"""Load that a circle bears beyond the parabola at the same width, over (a/R)^2: see :func:`width`."""
+# Load that a circle bears beyond the parabola at the same width, over (a/R)^2: see :func:`width`
+EXCESS_LOAD_OF_CIRCLE = {"line": 3 / 8, "point": 2 / 5}
 
-FINE_LAYER, THIN_LAYER = 0.3, 1.0
-"""Half-width over thickness up to which a layer acts as a half-space within about a tenth, and beyond which it does not."""
+LAYER_RATIO_FINE = 0.3  # Half-width over thickness up to which a layer acts as a half-space within about a tenth
+LAYER_RATIO_OUTSIDE = 1.0  # Half-width over thickness beyond which a layer is no half-space
 
-FINE_LOSS, LOSS = 0.1, 0.3
-"""Loss tangents up to which hysteresis is small, and beyond which the contact is no longer symmetric."""
+LOSS_TANGENT_FINE = 0.1  # Loss tangent up to which hysteresis is small
+LOSS_TANGENT_OUTSIDE = 0.3  # Loss tangent beyond which the contact is no longer symmetric
 
 
-VERY_SOFT = 1e6
-"""E* below which adhesion and pores are named as not modelled [Pa]."""
+GEL_MODULUS_PA = 1e6  # E* below which adhesion and pores are named as not modelled [Pa]
 
-FINE_ADHESION, STICKS = 0.1, 1.0
-"""Pull-off force over load that is fine, and from which adhesion rules."""
+PULL_OFF_FINE = 0.1  # Largest pull-off force over load that hardly widens the contact
+PULL_OFF_OUTSIDE = 1.0  # Pull-off force over load from which adhesion rules
 
-FINE_PORES, PRESSURISED = 0.1, 1.0
-"""Peclet number U a/D of the pores that is fine, and from which the liquid in the pores carries load."""
+PECLET_FINE = 0.1  # Largest Peclet number U a/D of pores that drain as the contact passes
+PECLET_OUTSIDE = 1.0  # Peclet number from which the liquid in the pores carries load
 
 SLIDE_TO_ROLL = POINT.quantities["slide_to_roll"]
 
-PER_CENT = ("slide_to_roll", "boundary_friction")
-"""Inputs that are often given in per cent."""
+INPUTS_IN_PER_CENT = ("slide_to_roll", "boundary_friction")  # Inputs that are often given in per cent
 
-FINE_FACTOR = 3.0
-"""Factor beyond its usual range that an input may have; a slip of a unit is ten or more."""
+USUAL_RANGE_FACTOR = 3.0  # Factor beyond its usual range that an input may have; a slip of a unit is ten or more
 
 
 def usual(subject: Subject) -> Check:
@@ -65,14 +60,14 @@ def of_usual_size(values: Mapping[str, float], table: InputTable) -> Check:
         low, high = row.usual
         if not 0 < value < math.inf or name == "slide_to_roll" and value <= high:
             continue
-        factor = max(low / value, value / high, FINE_FACTOR * value / row.implausible)
+        factor = max(low / value, value / high, USUAL_RANGE_FACTOR * value / row.implausible)
         worst = max(worst, factor)
-        if factor > FINE_FACTOR:
+        if factor > USUAL_RANGE_FACTOR:
             ends = (format_si(end, row.dimension) for end in (low, high))
-            about = f" ({value:g} % is {value / 100:g})" if name in PER_CENT and value <= 200 else ""
+            about = f" ({value:g} % is {value / 100:g})" if name in INPUTS_IN_PER_CENT and value <= 200 else ""
             odd.append(f"{row.label} {format_si(signed, row.dimension)}{about}, usually {' to '.join(ends)}")
     sentence = f"Unusual: {'; '.join(odd)}. Check the units." if odd else "All inputs are of usual size."
-    return Check("inputs", worst, FINE_FACTOR, "doubtful" if odd else "fine", sentence)
+    return Check("inputs", worst, USUAL_RANGE_FACTOR, "doubtful" if odd else "fine", sentence)
 
 
 def adhesion(subject: Subject) -> Check | None:
@@ -85,19 +80,19 @@ def adhesion(subject: Subject) -> Check | None:
     contact, w = subject.contact, subject.fact("work_of_adhesion")
     E, R = contact.modulus, contact.radius
     if w is None:
-        if E >= VERY_SOFT:
+        if E >= GEL_MODULUS_PA:
             return None
         said = f"At E* = {format_si(E, 'pressure')} adhesion may matter, which is not modelled; give work_of_adhesion."
-        return Check("adhesion", E, VERY_SOFT, "doubtful", said, "Pa", at_least=True, condition="adhesion is small")
+        return Check("adhesion", E, GEL_MODULUS_PA, "doubtful", said, "Pa", at_least=True, condition="adhesion is small")
     pull_off = 1.5 * math.pi * w * R if contact.groups.geometry == "point" else 0.75 * (4 * math.pi * E * R * w * w) ** (1 / 3)
     ratio = pull_off / contact.load
-    verdict = verdict_of(ratio, FINE_ADHESION, STICKS)
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": "adhesion hardly widens the contact.",
         "doubtful": "adhesion widens the contact and adds friction, which is not modelled.",
         "outside": "adhesion and not the load holds the bodies together, which is not modelled.",
-    }[verdict]
-    return Check("adhesion", ratio, FINE_ADHESION, verdict, f"The pull-off force is {ratio:.2g} of the load: {meaning}")
+    }
+    begin = f"The pull-off force is {ratio:.2g} of the load: "
+    return judged("adhesion", ratio, PULL_OFF_FINE, PULL_OFF_OUTSIDE, begin, meanings)
 
 
 def pores(subject: Subject) -> Check | None:
@@ -112,24 +107,24 @@ def pores(subject: Subject) -> Check | None:
     if D is None and k is not None:
         D = k * contact.modulus / contact.viscosity
     if D is None:
-        if contact.modulus >= VERY_SOFT:
+        if contact.modulus >= GEL_MODULUS_PA:
             return None
         said = (
             f"E* = {format_si(contact.modulus, 'pressure')} is that of gels and tissue, whose pores may carry and pass "
             "liquid, which is not modelled; give diffusivity or permeability."
         )
         value = contact.modulus
-        return Check("pores", value, VERY_SOFT, "doubtful", said, "Pa", at_least=True, condition="no liquid flows in pores")
+        return Check(
+            "pores", value, GEL_MODULUS_PA, "doubtful", said, "Pa", at_least=True, condition="no liquid flows in pores"
+        )
     peclet = contact.speed * contact.hertz.half_width / D if D > 0 else 0.0
-    verdict = verdict_of(peclet, FINE_PORES, PRESSURISED)
-    meaning = {
-        "fine": "the liquid in the pores leaves as the contact passes, and the solid carries the load.",
+    drained = "the liquid in the pores leaves as the contact passes, and the solid carries the load."
+    meanings: dict[Verdict, str] = {
+        "fine": drained if D > 0 else "the body has no pores.",
         "doubtful": "the liquid in the pores carries some load, which is not modelled.",
         "outside": "the liquid in the pores carries load that the model gives to asperities, and friction is lower.",
-    }[verdict]
-    if D == 0:
-        meaning = "the body has no pores."
-    return Check("pores", peclet, FINE_PORES, verdict, f"U a/D is {peclet:.2g}: {meaning}")
+    }
+    return judged("pores", peclet, PECLET_FINE, PECLET_OUTSIDE, f"U a/D is {peclet:.2g}: ", meanings)
 
 
 def pressure(subject: Subject) -> Check:
@@ -138,14 +133,14 @@ def pressure(subject: Subject) -> Check:
     given = subject.fact("pressure_viscosity")
     coefficient = OIL if given is None else given
     growth = coefficient * p
-    limit = FINE_STIFFENING / coefficient if coefficient > 0 else math.inf
+    limit = STIFFENING_FINE / coefficient if coefficient > 0 else math.inf
     modelled = subject.models("fluid")
     uses_pressure = getattr(getattr(subject.contact, "fluid", None), "viscosity", None) is not None
     if uses_pressure:
         return Check(
             "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is modelled ({modelled}).", "Pa"
         )
-    verdict = verdict_of(growth, FINE_STIFFENING, STIFFENING * (1 + 1e-12))
+    verdict = verdict_of(growth, STIFFENING_FINE, STIFFENING_OUTSIDE * (1 + 1e-12))
     if given is None and verdict == "outside":
         [sentence] = pressure_notes(subject.contact)
     else:
@@ -161,7 +156,7 @@ def pressure(subject: Subject) -> Check:
 def stiffness(subject: Subject) -> Check:
     """Return the check of the modulus: whether the body is soft."""
     E = subject.contact.modulus
-    verdict = verdict_of(E, SOFT, HARD_MODULUS)
+    verdict = verdict_of(E, MODULUS_FINE_PA, MODULUS_OUTSIDE_PA)
     if verdict == "fine":
         sentence = "The bodies are soft enough for elastic asperities and moderate pressures."
     else:
@@ -170,7 +165,7 @@ def stiffness(subject: Subject) -> Check:
             "asperities yield, which the contact law does not know, and where they touch a film its viscosity rises with "
             "pressure. The model is for rubber, gels, plastics and tissue."
         )
-    return Check("stiffness", E, SOFT, verdict, sentence, "Pa")
+    return Check("stiffness", E, MODULUS_FINE_PA, verdict, sentence, "Pa")
 
 
 def width(subject: Subject) -> Check:
@@ -184,18 +179,20 @@ def width(subject: Subject) -> Check:
     """
     contact = subject.contact
     slope = contact.hertz.half_width / contact.radius
-    verdict = verdict_of(slope, WIDEST_CONTACT, TOO_WIDE)
-    error = CIRCLE[contact.groups.geometry] * slope**2
+    verdict = verdict_of(slope, WIDEST_CONTACT, WIDTH_RATIO_OUTSIDE)
+    error = EXCESS_LOAD_OF_CIRCLE[contact.groups.geometry] * slope**2
     notes = width_notes(contact)
     about = (
         f"a/R is {slope:.2g}: at this width a circle bears {format_percent(error)} more load than the parabola in "
         "its place; finite bodies and large strains count in the same order."
     )
     sentence = notes[0] if notes else about
-    return Check("contact width a/R", slope, WIDEST_CONTACT, verdict, sentence, error=error, notable=error >= WORTH_SAYING)
+    return Check(
+        "contact width a/R", slope, WIDEST_CONTACT, verdict, sentence, error=error, notable=error >= MIN_STATED_CHANGE
+    )
 
 
-ADVICE = " Give layer_thickness in [solid]: the layer is then solved."
+LAYER_ADVICE = " Give layer_thickness in [solid]: the layer is then solved."
 
 
 def layer(subject: Subject) -> Check | None:
@@ -208,19 +205,14 @@ def layer(subject: Subject) -> Check | None:
     ratio = subject.contact.hertz.half_width / thickness
     if modelled is not None:
         return Check("layer a/thickness", ratio, math.inf, "fine", "The finite thickness of the layer is part of the model.")
-    verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": "The layer is as good as a half-space.",
-        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed." + ADVICE,
-        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ." + ADVICE,
-    }[verdict]
-    return Check(
-        "layer a/thickness",
-        ratio,
-        FINE_LAYER,
-        verdict,
-        f"The contact is {ratio:.2g} of the thickness wide to each side. {meaning}",
-    )
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed." + LAYER_ADVICE,
+        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ."
+        + LAYER_ADVICE,
+    }
+    begin = f"The contact is {ratio:.2g} of the thickness wide to each side. "
+    return judged("layer a/thickness", ratio, LAYER_RATIO_FINE, LAYER_RATIO_OUTSIDE, begin, meanings)
 
 
 def loss(subject: Subject) -> Check | None:
@@ -230,13 +222,12 @@ def loss(subject: Subject) -> Check | None:
         return None
     contact = subject.contact
     frequency = contact.speed / contact.hertz.half_width
-    verdict = verdict_of(tangent, FINE_LOSS, LOSS)
     if subject.models("solid") and getattr(getattr(contact, "solid", None), "uses_speed", False):
-        return Check("loss tangent", tangent, FINE_LOSS, "fine", "The viscoelasticity of the solid is modelled.")
-    meaning = {
+        return Check("loss tangent", tangent, LOSS_TANGENT_FINE, "fine", "The viscoelasticity of the solid is modelled.")
+    meanings: dict[Verdict, str] = {
         "fine": "hysteresis is small.",
         "doubtful": "hysteresis adds friction that is not modelled.",
         "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic.",
-    }[verdict]
-    sentence = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): {meaning}"
-    return Check("loss tangent", tangent, FINE_LOSS, verdict, sentence)
+    }
+    begin = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): "
+    return judged("loss tangent", tangent, LOSS_TANGENT_FINE, LOSS_TANGENT_OUTSIDE, begin, meanings)

@@ -15,20 +15,17 @@ from stribeck.files.results import Exported
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OUTSIDE", "WORTH_SAYING", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
+__all__ = ["OUTSIDE", "MIN_STATED_CHANGE", "Check", "Checks", "Verdict", "judged", "number_text", "verdict_of"]
 
 Verdict = Literal["fine", "doubtful", "outside"]
 
-ORDER: tuple[Verdict, ...] = ("fine", "doubtful", "outside")
+VERDICTS: tuple[Verdict, ...] = ("fine", "doubtful", "outside")  # From the best to the worst
 
-OUTSIDE = "Outside the range of the model"
-"""Beginning of the first line of an output if the model does not apply."""
+OUTSIDE = "Outside the range of the model"  # Beginning of the first line of an output if the model does not apply
 
-WORTH_SAYING = 0.005
-"""Smallest relative change that a sentence names."""
+MIN_STATED_CHANGE = 0.005  # Smallest relative change that a sentence names
 
-RESOLVED = 0.05
-"""Smallest error that the headline names: about what experiments resolve."""
+MIN_HEADLINE_ERROR = 0.05  # Smallest error that the headline names: about what experiments resolve
 
 
 @dataclass(frozen=True)
@@ -125,7 +122,7 @@ class Checks(Exported):
     @property
     def verdict(self) -> Verdict:
         """The worst verdict of all."""
-        return max((each.verdict for each in self.checks), key=ORDER.index, default="fine")
+        return max((each.verdict for each in self.checks), key=VERDICTS.index, default="fine")
 
     @property
     def applies(self) -> bool:
@@ -184,7 +181,7 @@ class Checks(Exported):
         doubts = [each for each in doubtful if not each.condition or outside and not self.applies_with_another_law]
         said = f" Doubtful: {_names(doubts)}." if doubts else ""
         largest = max((each for each in self.checks), key=lambda each: each.error, default=None)
-        stated = largest is not None and largest.error >= RESOLVED and largest.verdict == "fine"
+        stated = largest is not None and largest.error >= MIN_HEADLINE_ERROR and largest.verdict == "fine"
         error = f" Largest error stated: {100 * largest.error:.0f} % ({largest.name})." if largest and stated else ""
         if self.applies_with_another_law:
             return f"{self._applies}: the present one is outside its range ({_names(outside)}).{said}{error}"
@@ -287,6 +284,12 @@ def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:
     if value <= fine:
         return "fine"
     return "doubtful" if value <= outside else "outside"
+
+
+def judged(name: str, value: float, fine: float, outside: float, begin: str, meanings: Mapping[Verdict, str]) -> Check:
+    """Return the check of a number that is fine up to one bound and outside beyond another, with what each verdict means."""
+    verdict = verdict_of(value, fine, outside)
+    return Check(name, value, fine, verdict, begin + meanings[verdict])
 
 
 def number_text(value: float, unit: str) -> str:

@@ -4,42 +4,41 @@ from __future__ import annotations
 
 import math
 
-from stribeck.checks.check import Check, Verdict, number_text, verdict_of
+from stribeck.checks.check import Check, Verdict, judged, number_text, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contacts.friction_rules import slide_to_roll
 from stribeck.quantities.formats import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
-USUAL_THINNING, WATERY_THINNING = 1e6, 1e9
-"""Shear rate up to which oils without improvers and liquids as thin as water keep their viscosity [1/s]."""
+OIL_THINNING_RATE = 1e6  # Shear rate up to which oils without improvers keep their viscosity [1/s]
+WATER_THINNING_RATE = 1e9  # Shear rate up to which liquids as thin as water keep their viscosity [1/s]
 
-WATERY = 1.5e-3
-"""Viscosity up to which a liquid is one of small molecules, as water and saline are: of what it has of polymers it cannot lose
-more than a third [Pa s].  By kT for each molecule, 1e7 Pa or more, it keeps its viscosity up to 7e9 1/s."""
+# Viscosity up to which a liquid is one of small molecules, as water and saline are: of what it has of polymers it cannot lose
+# more than a third [Pa s]. By kT for each molecule, 1e7 Pa or more, it keeps its viscosity up to 7e9 1/s.
+SMALL_MOLECULE_VISCOSITY = 1.5e-3
 
-THINNED = 10.0
-"""Multiple of the rate at which a fluid begins to thin, beyond which its viscosity is unknown."""
+# Shear rate over the rate at which a fluid begins to thin, beyond which its viscosity is unknown
+THINNING_OUTSIDE_RATIO = 10.0
 
-FINE_SUPPLY, STARVED = 0.5, 1.0
-"""Film that passes, h*/2, over the film that arrives: flooded below the first, starved above the second."""
+SUPPLY_FINE = 0.5  # Film that passes, h*/2, over the film that arrives, up to which the inlet is flooded
+SUPPLY_OUTSIDE = 1.0  # Film that passes over the film that arrives, above which the contact is starved
 
-USUAL_MOLECULE, WATERY_MOLECULE = 1e-9, 3e-10
-"""Size of the molecules of oils and of water [m]."""
+OIL_MOLECULE_SIZE = 1e-9  # Size of the molecules of oils [m]
+WATER_MOLECULE_SIZE = 3e-10  # Size of the molecules of water [m]
 
-FINE_LAYERS, LAYERS = 10.0, 3.0
-"""Molecules across the thinnest film: enough for a continuum, and too few."""
+MOLECULES_FINE = 10.0  # Fewest molecules across a film that is a continuum
+MOLECULES_OUTSIDE = 3.0  # Molecules across a film below which a viscosity means little
 
-USUAL_CONDUCTIVITY, USUAL_THERMAL_THINNING = 0.15, 0.04
-"""Of oils [W/(m K)], [1/K]."""
+OIL_CONDUCTIVITY = 0.15  # Thermal conductivity of oils [W/(m K)]
+OIL_THERMAL_THINNING = 0.04  # Relative loss of viscosity of oils by temperature [1/K]
 
-FINE_HEATING, HEATING = 0.1, 1.0
-"""Relative loss of viscosity by shear heating."""
+HEATING_FINE = 0.1  # Relative loss of viscosity by shear heating that is small
+HEATING_OUTSIDE = 1.0  # Relative loss of viscosity beyond which an isothermal film does not apply
 
-USUAL_DENSITY = 1000.0
-"""Of water [kg/m^3]."""
+WATER_DENSITY = 1000.0  # [kg/m^3]
 
-FINE_INERTIA, INERTIA = 0.1, 1.0
-"""Reduced Reynolds number."""
+REYNOLDS_FINE = 0.1  # Largest reduced Reynolds number of a film without inertia
+REYNOLDS_OUTSIDE = 1.0  # Reduced Reynolds number beyond which Reynolds' equation does not apply
 
 
 def suction(subject: Subject) -> Check:
@@ -69,16 +68,20 @@ def shear_rate(subject: Subject) -> Check:
     # Where surfaces roll, the pressure shears the film at a rate of this order.
     rate = max(contact.speed, _sliding_speed(subject)) / film if film > 0 else math.inf
     given = subject.fact("thinning_rate")
-    usual = USUAL_THINNING if contact.viscosity > WATERY else WATERY_THINNING
+    usual = OIL_THINNING_RATE if contact.viscosity > SMALL_MOLECULE_VISCOSITY else WATER_THINNING_RATE
     limit = usual if given is None else given
     if getattr(getattr(contact, "fluid", None), "rheology", None) is not None:
         return Check("shear rate", rate, math.inf, "fine", f"Thinning is modelled ({subject.models('fluid')}).", "1/s")
-    outside = math.inf if given is None else THINNED * limit
+    outside = math.inf if given is None else THINNING_OUTSIDE_RATIO * limit
     verdict = verdict_of(rate, limit, outside)
     about = f"The shear rate at the minimum film is {rate:.2g} 1/s"
     if verdict == "fine":
         who = (
-            "the fluid thins" if given is not None else "oils may begin to thin" if usual < WATERY_THINNING else "water thins"
+            "the fluid thins"
+            if given is not None
+            else "oils may begin to thin"
+            if usual < WATER_THINNING_RATE
+            else "water thins"
         )
         sentence = f"{about}, below {limit:.2g} 1/s at which {who}."
     else:
@@ -96,26 +99,23 @@ def supply(subject: Subject) -> Check | None:
         return None
     passing = subject.film(subject.passing_gap) / 2
     ratio = passing / arriving if arriving > 0 else math.inf
-    verdict = verdict_of(ratio, FINE_SUPPLY, STARVED)
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": "the inlet is flooded.",
         "doubtful": "the inlet is close to starvation: the film is thinner than computed.",
         "outside": "more than is supplied. The contact is starved, and the supply sets its film.",
-    }[verdict]
-    sentence = (
-        f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: {meaning}"
-    )
-    return Check("supply h*/(2 supply)", ratio, FINE_SUPPLY, verdict, sentence)
+    }
+    begin = f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: "
+    return judged("supply h*/(2 supply)", ratio, SUPPLY_FINE, SUPPLY_OUTSIDE, begin, meanings)
 
 
 def molecules(subject: Subject) -> Check:
     """Return the check of the thinnest film against the size of molecules."""
     given = subject.fact("molecular_size")
-    usual = USUAL_MOLECULE if subject.contact.viscosity > WATERY else WATERY_MOLECULE
+    usual = OIL_MOLECULE_SIZE if subject.contact.viscosity > SMALL_MOLECULE_VISCOSITY else WATER_MOLECULE_SIZE
     size = usual if given is None else given
     film = _minimum_film(subject)
-    limit = FINE_LAYERS * size
-    verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"
+    limit = MOLECULES_FINE * size
+    verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= MOLECULES_OUTSIDE * size else "outside"
     meaning = {
         "fine": "the fluid is a continuum.",
         "doubtful": "molecular layering begins to matter.",
@@ -128,31 +128,30 @@ def molecules(subject: Subject) -> Check:
 def heating(subject: Subject) -> Check:
     r"""Return the check of shear heating: the viscosity lost, :math:`\beta_T \eta (u_1 - u_2)^2/(8 k)`."""
     contact = subject.contact
-    k = subject.fact("thermal_conductivity") or USUAL_CONDUCTIVITY
+    k = subject.fact("thermal_conductivity") or OIL_CONDUCTIVITY
     slope = subject.fact("thermal_thinning")
-    slope = USUAL_THERMAL_THINNING if slope is None else slope
+    slope = OIL_THERMAL_THINNING if slope is None else slope
     kelvin = contact.viscosity * _sliding_speed(subject) ** 2 / (8 * k)
     lost = slope * kelvin
-    verdict = verdict_of(lost, FINE_HEATING, HEATING)
+    verdict = verdict_of(lost, HEATING_FINE, HEATING_OUTSIDE)
     sentence = f"Shear heats the film by up to {kelvin:.2g} K, which costs {format_percent(lost)} of its viscosity" + (
         "." if verdict == "fine" else "; the model is isothermal: give the viscosity at the temperature of the film."
     )
-    return Check("viscous heating", lost, FINE_HEATING, verdict, sentence)
+    return Check("viscous heating", lost, HEATING_FINE, verdict, sentence)
 
 
 def inertia(subject: Subject) -> Check:
     r"""Return the check of the fluid's inertia: the reduced Reynolds number :math:`\rho U h^{*2}/(\eta a)`."""
     contact = subject.contact
-    density = subject.fact("density") or USUAL_DENSITY
+    density = subject.fact("density") or WATER_DENSITY
     film = subject.film(subject.passing_gap)
     number = density * contact.speed * film**2 / (contact.viscosity * contact.hertz.half_width)
-    verdict = verdict_of(number, FINE_INERTIA, INERTIA)
-    meaning = (
-        "the inertia of the fluid is negligible"
-        if verdict == "fine"
-        else "Reynolds' equation neglects inertia, which matters here"
-    )
-    return Check("inertia", number, FINE_INERTIA, verdict, f"The reduced Reynolds number is {number:.2g}: {meaning}.")
+    neglected = "Reynolds' equation neglects inertia, which matters here."
+    meanings: dict[Verdict, str] = {
+        "fine": "the inertia of the fluid is negligible.", "doubtful": neglected, "outside": neglected
+    }  # fmt: skip
+    begin = f"The reduced Reynolds number is {number:.2g}: "
+    return judged("inertia", number, REYNOLDS_FINE, REYNOLDS_OUTSIDE, begin, meanings)
 
 
 def _sliding_speed(subject: Subject) -> float:

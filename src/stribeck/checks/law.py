@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.checks.check import WORTH_SAYING, Check, Verdict, verdict_of
+from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, judged, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
@@ -18,24 +18,22 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.notes import ADVICE, LAW_RANGE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
-MINIMUM, TAIL = "contact law at the minimum", "tail of the contact law"
-"""Names of two checks that are about one doubt."""
+MINIMUM_CHECK = "contact law at the minimum"  # Name of the check that states the error of the minimum by itself
+TAIL_CHECK = "tail of the contact law"  # Name of the check that computes the error of the minimum
 
-FINE_TAIL = 0.3
-"""Change of minimum and transitions by the tail of the law up to which it is stated as their error: without a scan beta, on
-which they depend too, is known no better than by a factor of 1.3."""
+# Change of minimum and transitions by the tail of the law up to which the change is stated as their error: without a scan
+# beta, which moves them too, is known no better than by a factor of 1.3.
+TAIL_CHANGE_FINE = 0.3
 
-HIGHEST_MINIMUM, TAIL_ERROR = 3.7, 0.2
-"""Gap over h_rms at the minimum of friction up to which its error is known from a simulated surface, and that error:
-docs/contact_laws.md has -21 % in speed and -17 % in friction at 3.68."""
+MINIMUM_GAP_FINE = 3.7  # Gap over h_rms at the minimum of friction up to which a simulated surface gives its error
+MINIMUM_ERROR = 0.2  # Error of the minimum up to MINIMUM_GAP_FINE: -21 % in speed, -17 % in friction (docs/contact_laws.md)
 
-FINE_SLOPE, STEEP = 0.3, 1.0
-"""Rms slope of the roughness up to which elasticity and Reynolds' equation are linear and thin within a tenth or two, and from
-which they are not: see :func:`roughness_slope`."""
+# Rms slope up to which linear elasticity and Reynolds' equation err by a tenth or two: :func:`roughness_slope`
+RMS_SLOPE_FINE = 0.3
+RMS_SLOPE_OUTSIDE = 1.0  # Rms slope from which linear elasticity and Reynolds' equation do not apply
 
 
-USUAL_MOVE = ", by 10 to 20 %."
-"""End of the sentence on the minimum where the tail is not varied."""
+MINIMUM_ERROR_TEXT = ", by 10 to 20 %."  # End of the sentence on the minimum where the tail is not varied
 
 
 def roughness_slope(subject: Subject) -> Check | None:
@@ -52,23 +50,23 @@ def roughness_slope(subject: Subject) -> Check | None:
     contact = subject.contact
     name = "rms slope of the roughness"
     if contact.roughness == 0:
-        return Check(name, 0.0, FINE_SLOPE, "fine", "Smooth surfaces have no slope.")
+        return Check(name, 0.0, RMS_SLOPE_FINE, "fine", "Smooth surfaces have no slope.")
     slope = subject.fact("rms_slope")
     if slope is None:
         area_slope = getattr(contact.law, "area_slope", None)
         if not area_slope:
             return None
         slope = contact.beta * math.sqrt(2) / area_slope
-    verdict = verdict_of(slope, FINE_SLOPE, STEEP)
     pressure = f"asperities touch at {0.5 * math.sqrt(math.pi / 2) * slope:.2g} of E*"
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": f"{pressure}, and the film is thin everywhere.",
         "doubtful": f"{pressure}, where rubber stiffens and plastics yield, and the pressure of the film between them is a "
         "few per cent to a half wrong.",
         "outside": f"{pressure}, which no solid bears elastically, and the film between does not follow Reynolds' equation. "
         "Most of it may come from the shortest wavelengths: check where the spectrum ends.",
-    }[verdict]
-    return Check(name, slope, FINE_SLOPE, verdict, f"The rms slope of the roughness is {slope:.2g}: {meaning}")
+    }
+    begin = f"The rms slope of the roughness is {slope:.2g}: "
+    return judged(name, slope, RMS_SLOPE_FINE, RMS_SLOPE_OUTSIDE, begin, meanings)
 
 
 def range_at_centre(subject: Subject) -> Check | None:
@@ -121,20 +119,20 @@ def range_at_minimum(subject: Subject) -> Check | None:
     where = f"speed {format_si(subject.minimum.value, 'speed')}"
     note = minimum_note(state.groups, state.contact, state.observables, share, where)
     sentence = (
-        note.replace(ADVICE, ", by 10 to 20 %.")
+        note.replace(ADVICE, MINIMUM_ERROR_TEXT)
         or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
     )
     if not note and not has_endless_tail(contact.law):
         sentence += " The law has a tail of its own."
-    limit = HIGHEST_MINIMUM if has_endless_tail(contact.law) else math.inf
+    limit = MINIMUM_GAP_FINE if has_endless_tail(contact.law) else math.inf
     verdict = verdict_of(ratio, limit) if note else "fine"
-    error = TAIL_ERROR if note else 0.0
-    return Check(MINIMUM, ratio, limit, verdict, sentence, "h_rms", error=error, notable=bool(note))
+    error = MINIMUM_ERROR if note else 0.0
+    return Check(MINIMUM_CHECK, ratio, limit, verdict, sentence, "h_rms", error=error, notable=bool(note))
 
 
 def beside_the_tail(minimum: Check) -> Check:
     """Return the check of the minimum beside that of the tail, which computes the error."""
-    return replace(minimum, error=0.0, sentence=minimum.sentence.replace(USUAL_MOVE, "."))
+    return replace(minimum, error=0.0, sentence=minimum.sentence.replace(MINIMUM_ERROR_TEXT, "."))
 
 
 def tail(subject: Subject) -> Check | None:
@@ -156,12 +154,12 @@ def tail(subject: Subject) -> Check | None:
     said = "; ".join(
         f"{_place(name)}, speed {round(100 * speed, 0) + 0.0:+.0f} % and friction {round(100 * friction, 0) + 0.0:+.0f} %"
         for name, (speed, friction) in moves.items()
-        if max(abs(speed), abs(friction)) >= WORTH_SAYING
+        if max(abs(speed), abs(friction)) >= MIN_STATED_CHANGE
     )
     moved = f"these move: {said}" if said else "nothing moves by 1 % or more"
     sentence = f"With the highest asperities of a finite surface {moved}. A spectrum does not determine their height."
-    verdict = verdict_of(largest, FINE_TAIL)
-    return Check(TAIL, largest, FINE_TAIL, verdict, sentence, error=largest, notable=largest >= WORTH_SAYING)
+    verdict = verdict_of(largest, TAIL_CHANGE_FINE)
+    return Check(TAIL_CHECK, largest, TAIL_CHANGE_FINE, verdict, sentence, error=largest, notable=largest >= MIN_STATED_CHANGE)
 
 
 def _place(name: str) -> str:

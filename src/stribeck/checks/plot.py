@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_checks"]
 
-COLOURS = {"fine": FLUID, "doubtful": MARK, "outside": CONTACT}
+VERDICT_COLOURS = {"fine": FLUID, "doubtful": MARK, "outside": CONTACT}
 
-FARTHEST = 1e3
-"""Largest ratio of a value and its limit that is drawn, and with its inverse the smallest."""
+MAX_DRAWN_RATIO = 1e3  # Largest ratio of a value and its limit that is drawn, and with its inverse the smallest
 
 
 @picture("there is none")
@@ -44,10 +43,10 @@ def plot_checks(
     size, headline = (9.5, 1.2 + 0.28 * len(checks)), [[checks.headline]]
     figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", ax=ax, left=2.2, right=2.3)
     ax.set_xscale("log")
-    for verdict, colour in COLOURS.items():
+    for verdict, colour in VERDICT_COLOURS.items():
         mine = [(row, used_part(each)) for row, each in enumerate(checks) if each.verdict == verdict]
         rows, parts = (np.array(each) for each in zip(*mine, strict=True)) if mine else (np.empty(0), np.empty(0))
-        ax.hlines(rows, 1 / FARTHEST, parts, color=colour, lw=1.6)
+        ax.hlines(rows, 1 / MAX_DRAWN_RATIO, parts, color=colour, lw=1.6)
         ax.plot(
             parts, rows, ls="", marker={"fine": "o", "doubtful": "D", "outside": "s"}[verdict], color=colour, label=verdict
         )
@@ -56,7 +55,11 @@ def plot_checks(
         ax.annotate(f"{value} ({limit})", (1.01, row), xycoords=("axes fraction", "data"), va="center", size=7.5, color=INK)
     ax.axvline(1.0, color=GREY, lw=0.9, ls=(0, (5, 3)), zorder=0)
     ax.set_yticks(range(len(checks)), [each.name for each in checks])
-    ax.set(xlim=(1 / FARTHEST, FARTHEST), ylim=(len(checks) - 0.4, -0.6), xlabel="part of its limit; beyond 1 is not fine")
+    ax.set(
+        xlim=(1 / MAX_DRAWN_RATIO, MAX_DRAWN_RATIO),
+        ylim=(len(checks) - 0.4, -0.6),
+        xlabel="part of its limit; beyond 1 is not fine",
+    )
     ax.legend(frameon=False, fontsize=8, loc="lower right")
     return finish_figure(figure, path, force)
 
@@ -65,6 +68,6 @@ def used_part(check: Check) -> float:
     """Return the part of its limit that a check takes, within what is drawn; the largest if its value is nan."""
     value, limit = (check.limit, check.value) if check.at_least else (check.value, check.limit)
     if math.isnan(check.value):
-        return FARTHEST
+        return MAX_DRAWN_RATIO
     part = value / limit if limit else math.copysign(math.inf, value) if value else 0.0
-    return min(max(part, 1 / FARTHEST), FARTHEST)
+    return min(max(part, 1 / MAX_DRAWN_RATIO), MAX_DRAWN_RATIO)

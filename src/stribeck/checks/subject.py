@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Subject"]
 
-PLAIN = ("", "newtonian", "half-plane", "half-space", "none")
-"""Names of the article's own parts, which need no mention."""
+# Names of the article's own parts, which need no mention
+BASE_MODEL_NAMES = ("", "newtonian", "half-plane", "half-space", "none")
 
 RTOL = 1e-4
 
-FIXED_POINT_STEPS = 60
-"""Steps from the speed of a Newtonian film to that of one that thins: each leaves one less the exponent of the error."""
+# From the speed of a Newtonian film to that of a thinning one: each step leaves one less the exponent of the error
+MAX_FIXED_POINT_STEPS = 60
 
 
 class Tracing(NamedTuple):
@@ -42,8 +42,8 @@ class Tracing(NamedTuple):
     films: tuple[float, float] | None
 
 
-TRACES = {"line": Tracing(21, RTOL, None), "point": Tracing(8, 3e-3, (0.3, 16.0))}
-"""By geometry: a ball takes a tenth of a second or more for each state, and its minimum lies where films are a few h_rms."""
+# By geometry: a ball takes a tenth of a second or more for each state, and its minimum lies where films are a few h_rms.
+TRACING = {"line": Tracing(21, RTOL, None), "point": Tracing(8, 3e-3, (0.3, 16.0))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Subject:
     def _curve_of(self, contact: Contact) -> StribeckCurve:
         from stribeck.curves.stribeck_curve import stribeck_curve  # a fifth of the time of a single solve
 
-        tracing = TRACES[contact.groups.geometry]
+        tracing = TRACING[contact.groups.geometry]
         speeds = None if tracing.films is None else tuple(speed_of_film(contact, film) for film in tracing.films)
         found = stribeck_curve(
             contact,
@@ -116,7 +116,7 @@ class Subject:
         """Return the name of the contact's fluid, solid or cavitation beyond the plain ones; empty if it has none."""
         found = getattr(self.contact, part, None)
         name = str(found) if isinstance(found, str) else str(getattr(found, "name", "") or "")
-        return "" if name.lower() in PLAIN else name
+        return "" if name.lower() in BASE_MODEL_NAMES else name
 
     def film(self, gap: float) -> float:
         """Return a gap in m."""
@@ -129,7 +129,7 @@ def speed_of_film(contact: Contact, film: float) -> float:
     newtonian = speed = float((gap / 0.42480) ** (1 / 0.6) / groups.speed)
     fluid = groups.model.film
     if isinstance(fluid, ShearThinning):
-        for _ in range(FIXED_POINT_STEPS):
+        for _ in range(MAX_FIXED_POINT_STEPS):
             rate = np.array([fluid.law.time * float(groups.speed) * speed / gap])
             speed = newtonian * float(rate[0] / fluid.law.stress(rate)[0][0])
     return speed

@@ -24,8 +24,7 @@ __all__ = ["ROWS", "Effort", "Row", "check", "checks_of"]
 
 Effort = Literal["contact", "state", "curve", "tail"]
 
-EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")
-"""What a check needs: the inputs, the state, the curve over the speed, and that of another law too."""
+EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")  # What a check needs solved, cheapest first
 
 
 @dataclass(frozen=True)
@@ -38,6 +37,7 @@ class Row:
     missing: str = ""  # The fact that it needs; empty if none
 
 
+# All checks, cheapest first.
 ROWS = (
     Row("inputs", body.usual, "contact"),
     Row("Hertz pressure", body.pressure, "contact"),
@@ -58,7 +58,6 @@ ROWS = (
     Row("contact law at the minimum", law.range_at_minimum, "curve"),
     Row("tail of the contact law", law.tail, "tail"),
 )
-"""All checks, cheapest first."""
 
 
 @one_blas_thread
@@ -114,8 +113,8 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
             found.append(made)
         elif row.missing:
             missing[row.name] = row.missing
-    if any(each.name == law.TAIL for each in found):
-        found = [law.beside_the_tail(each) if each.name == law.MINIMUM else each for each in found]
+    if any(each.name == law.TAIL_CHECK for each in found):
+        found = [law.beside_the_tail(each) if each.name == law.MINIMUM_CHECK else each for each in found]
     return Checks(tuple(found), tuple(unsolved), missing)
 
 

@@ -9,7 +9,7 @@ import threading
 import warnings
 from collections.abc import Sequence
 
-from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError, UnusedCliTokensError
+from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
 
 import stribeck as sb
 from stribeck.cli.exits import (
@@ -150,8 +150,6 @@ def _parsing(problem: CycloptsError) -> str:
         wanted = f"{count} values" if count > 1 else "a value"
         name = getattr(problem, "keyword", None) or problem.argument.name
         return f"{name} needs {wanted}, but {len(problem.tokens_so_far)} given."
-    if isinstance(problem, UnknownOptionError) and "--mu0" in str(problem):
-        return "Unknown option: --mu0; it is called --boundary-friction."
     option = str(problem).removeprefix("Unknown option: ").strip('".')  # the quotes come and go with its versions
     if option in ("-o", "--output") and list(problem.command_chain or ()) == ["new"]:
         return f"Unknown option: {option}. The file is given without an option, as in stribeck new case.toml."

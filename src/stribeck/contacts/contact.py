@@ -14,9 +14,10 @@ from typing import Any, ClassVar, Self
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.contact_values import contact_values, refuse_former, replaced
+from stribeck.quantities.contact_values import contact_values, replaced
 from stribeck.quantities.conversions import converted
 from stribeck.quantities.inputs import InputTable, si_text
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.units import InputError
 
@@ -70,7 +71,7 @@ class Contact(ABC):
     INPUTS: ClassVar[InputTable]
     WIDTH: ClassVar[str] = "Hertz half-width"
 
-    @refuse_former
+    @answers_typos
     def __init__(self, *, law: str | AsperityLaw | None = None, **inputs: Any) -> None:
         self._keep(law, inputs)
 

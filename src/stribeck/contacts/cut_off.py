@@ -55,13 +55,22 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 
-__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "far_error", "friction_integral", "is_far", "log_cut_offs"]
+__all__ = [
+    "COUETTE",
+    "POISEUILLE",
+    "CUT_OFF_SLIDING",
+    "CUT_OFF_ROTATION",
+    "far_error",
+    "friction_integral",
+    "is_far",
+    "log_cut_offs",
+]
 
-SLIDING, TURNING = 0.954293, -0.257268
-"""K and K'."""
+CUT_OFF_SLIDING = 0.954293  # K, the offset of ln X by sliding [-]
+CUT_OFF_ROTATION = -0.257268  # K', the offset of ln X by rotation [-]
 
-COUETTE, POISEUILLE = 2 / 3 * math.pi, 2 / 5 * math.pi
-"""Coefficients of lambda ln X in the two parts of the friction integral."""
+COUETTE = 2 / 3 * math.pi  # Coefficient of lambda ln X in the Couette part of the friction integral
+POISEUILLE = 2 / 5 * math.pi  # Coefficient of lambda ln X in the Poiseuille part of the friction integral
 
 
 @dataclass(frozen=True)
@@ -74,32 +83,29 @@ class FarFilm:
     rise: float
 
 
-NEAR_EDGE = 5.0
-"""Radius of the disc of liquid below which no far film is taken for the friction up to there, but the film itself [a]."""
+FAR_FILM_MIN_RADIUS = 5.0  # Radius of the disc of liquid below which friction is of the film itself and not of a far film [a]
 
-FULL = FarFilm(0.8, COUETTE, POISEUILLE, 1.0)
-"""The film is full on both sides."""
+FULL_FAR_FILM = FarFilm(0.8, COUETTE, POISEUILLE, 1.0)  # Full on both sides
 
-RUPTURE = 1.249038748131262
-"""Angle at which a film that ends at ambient pressure ruptures far from the contact [radian]."""
+RUPTURE_ANGLE = 1.249038748131262  # Angle at which a film that ends at ambient pressure ruptures far from the contact [radian]
 
-CAVITATED = FarFilm(
+# Ends at ambient pressure; its liquid goes on as streaks in the wake
+CAVITATED_FAR_FILM = FarFilm(
     0.40553909094606316,
-    (2 / 3) * (math.pi - RUPTURE) + (10 / 27) * (RUPTURE - math.sin(2 * RUPTURE) / 2),
+    (2 / 3) * (math.pi - RUPTURE_ANGLE) + (10 / 27) * (RUPTURE_ANGLE - math.sin(2 * RUPTURE_ANGLE) / 2),
     0.40553909094606316 * math.pi / 2,
     1.1306,
 )
-"""The film ends at ambient pressure; its liquid goes on as streaks in the wake."""
 
 
 def far_film(model: Model) -> FarFilm:
     """Return the far film of a model: behind a cavity whose pressure is below the ambient one it is full."""
     is_full = model.cavitation is Cavitation.NONE or model.cavity_pressure < 0
-    return FULL if is_full else CAVITATED
+    return FULL_FAR_FILM if is_full else CAVITATED_FAR_FILM
 
 
-_COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (SLIDING + TURNING))
-_POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))
+_COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (CUT_OFF_SLIDING + CUT_OFF_ROTATION))
+_POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (CUT_OFF_SLIDING - CUT_OFF_ROTATION))
 
 
 def log_cut_offs(slope: Any, wetted_radius: Any = math.inf) -> tuple[Any, Any]:
@@ -117,7 +123,7 @@ def friction_integral(
     slide_to_roll: Any,
     wetted_radius: Any,
     definition: Definition,
-    far: FarFilm = FULL,
+    far: FarFilm = FULL_FAR_FILM,
 ) -> Any:
     r"""Return the friction integral J of balls up to where the liquid ends.
 
@@ -138,7 +144,9 @@ def friction_integral(
     return np.where(moves, found, 0.0)[()]
 
 
-def far_error(parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_radius: Any, far: FarFilm = FULL) -> Any:
+def far_error(
+    parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_radius: Any, far: FarFilm = FULL_FAR_FILM
+) -> Any:
     r"""Return by how much :func:`friction_integral` may miss that of the film up to where a disc of liquid ends.
 
     It leaves out the offset of thin films, which is at least minus one indentation.
@@ -152,7 +160,7 @@ def is_far(model: Model, wetted_radius: float) -> bool:
 
     That of a fluid that thins does nowhere, and those of thick films that break are not known.
     """
-    nearest = NEAR_EDGE if model.cavitation is Cavitation.NONE else math.inf
+    nearest = FAR_FILM_MIN_RADIUS if model.cavitation is Cavitation.NONE else math.inf
     return not model.film.uses_speed and wetted_radius >= nearest
 
 

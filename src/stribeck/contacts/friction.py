@@ -26,15 +26,13 @@ __all__ = [
 
 Definition = Literal["balanced", "published"]
 
+# Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6).
 DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
-"""Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6)."""
 
 
-PURE_SLIDING = 2.0
-"""Slide-to-roll ratio with one surface at rest."""
+PURE_SLIDING = 2.0  # Slide-to-roll ratio with one surface at rest
 
-STICKING = 0.01
-"""Slide-to-roll ratio from which asperities slide fully."""
+FULL_SLIP_RATIO = 0.01  # Slide-to-roll ratio from which asperities slide fully
 
 
 class Friction(float):
@@ -163,7 +161,7 @@ def sliding_part(slide_to_roll: float) -> float:
 
     .. math:: f = \tfrac12 t (3 - t^2), \quad t = \mathrm{SRR}/0.01 \text{ between } -1 \text{ and } 1
     """
-    t = min(1.0, max(-1.0, slide_to_roll / STICKING))
+    t = min(1.0, max(-1.0, slide_to_roll / FULL_SLIP_RATIO))
     return 0.5 * t * (3 - t * t)
 
 
@@ -183,5 +181,4 @@ def check_definition(definition: str) -> Definition:
     for known in DEFINITIONS:
         if isinstance(definition, str) and definition == known:
             return known
-    hint = " The friction of the paper is called 'published'." if isinstance(definition, str) and definition == "paper" else ""
-    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.{hint}")
+    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")

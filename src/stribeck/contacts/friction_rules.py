@@ -20,19 +20,17 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import FULL, far_error, friction_integral, is_far
+from stribeck.contacts.cut_off import FULL_FAR_FILM, far_error, friction_integral, is_far
 from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.scaling import SCALINGS
 
-__all__ = ["IMAGINARY", "RULES", "FrictionRule"]
+__all__ = ["COMPLEX_STEP", "RULES", "FrictionRule"]
 
-Values = Mapping[str, Any]
-"""Arrays by name."""
+Values = Mapping[str, Any]  # Arrays by name
 
-IMAGINARY = 1e-30
-"""Step along the imaginary axis, whose derivatives are exact."""
+COMPLEX_STEP = 1e-30  # Step along the imaginary axis, whose derivatives are exact
 
 
 class FrictionRule(NamedTuple):
@@ -104,13 +102,13 @@ def _slope(load: Any, inputs: Values) -> Any:
 def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
     slope = _slope(load, inputs)
     J = friction_integral(
-        parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition, inputs.get("far", FULL)
+        parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition, inputs.get("far", FULL_FAR_FILM)
     )
     return 1.5 / math.pi * slope * J
 
 
 def _ball_missed(parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
-    J = far_error(parts, speed, inputs["slide_to_roll"], inputs["wetted_radius"], inputs.get("far", FULL))
+    J = far_error(parts, speed, inputs["slide_to_roll"], inputs["wetted_radius"], inputs.get("far", FULL_FAR_FILM))
     return 1.5 / math.pi * _slope(load, inputs) * J
 
 
@@ -153,6 +151,7 @@ def _ball_parts(definition: Definition) -> tuple[str, ...]:
 
 _sliding: Callable[[Any], Array] = np.vectorize(sliding_part, otypes=[float])
 
+# The rules by geometry.
 RULES: dict[Geometry, FrictionRule] = {
     "line": FrictionRule(
         inputs={"beta": _beta},
@@ -189,4 +188,3 @@ RULES: dict[Geometry, FrictionRule] = {
         hersey_name="Hersey number eta U R/F_N: viscosity times sum of the surface speeds times radius over load",
     ),
 }
-"""The rules by geometry."""

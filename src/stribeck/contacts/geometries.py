@@ -9,5 +9,5 @@ from stribeck.contacts.point import PointContact
 
 __all__ = ["CONTACTS", "check_geometry"]
 
+# The contact of each geometry, by name.
 CONTACTS: dict[Geometry, type[Contact]] = {"line": LineContact, "point": PointContact}
-"""The contact of each geometry, by name."""

@@ -15,18 +15,18 @@ from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw, law_of
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST", "SMALLEST", "Geometry", "Groups", "Physics", "check_geometry"]
+__all__ = ["MAX_GROUP", "MIN_GROUP", "Geometry", "Groups", "Physics", "check_geometry"]
 
-SMALLEST, LARGEST = 1e-300, 1e300
-"""Bounds of what is not zero, far beyond any contact: products and squares of the groups stay in double precision."""
+MIN_GROUP = 1e-300  # Smallest group that is not zero: products and squares of the groups stay in double precision
+MAX_GROUP = 1e300  # Largest group: products and squares of the groups stay in double precision
 
-SLACK = 1e-9
-"""By how much a group may exceed its bound, as the exponential of its logarithm does."""
+# Relative excess of a group over its bound that rounding explains: the exponential of its logarithm has some
+BOUND_RTOL = 1e-9
 
 
 class Physics(TypedDict):
@@ -89,7 +89,7 @@ class Groups:
     roughness: float | Array
     law: AsperityLaw | None = field(default=None, kw_only=True)
     geometry: Geometry = field(default="line", kw_only=True)
-    model: Model = field(default=ARTICLE, kw_only=True)
+    model: Model = field(default=BASE_MODEL, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
@@ -210,13 +210,13 @@ class Groups:
 
     def __repr__(self) -> str:
         """Return the groups, and law, geometry and model if they are not those of the article."""
-        own = {"law": None, "geometry": "line", "model": ARTICLE}
+        own = {"law": None, "geometry": "line", "model": BASE_MODEL}
         others = "".join(f", {name}={value!r}" for name, value in self.physics.items() if value != own[name])
         return f"Groups(speed={self.speed!r}, load={self.load!r}, roughness={self.roughness!r}{others})"
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:
-    if type(value) is float and (SMALLEST <= value <= LARGEST or (value == 0.0 and not positive)):
+    if type(value) is float and (MIN_GROUP <= value <= MAX_GROUP or (value == 0.0 and not positive)):
         return value + 0.0
     try:
         raw = np.asarray(value)
@@ -235,11 +235,13 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
         received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
         allowed = "positive" if positive else "zero or positive"
         raise InputError(f"{name} {received} must be finite and {allowed}.")
-    wrong = (array != 0) & ((array < SMALLEST * (1 - SLACK)) | (array > LARGEST * (1 + SLACK)))
+    wrong = (array != 0) & ((array < MIN_GROUP * (1 - BOUND_RTOL)) | (array > MAX_GROUP * (1 + BOUND_RTOL)))
     if np.any(wrong):
         received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
         zero = "" if positive else "zero or "
-        raise InputError(f"{name} {received} must be {zero}from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs.")
+        raise InputError(
+            f"{name} {received} must be {zero}from {MIN_GROUP:g} to {MAX_GROUP:g}; check the units of the inputs."
+        )
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
@@ -260,14 +262,14 @@ def contact_law(groups: Groups) -> ContactLaw:
 
 def _check_ratio(roughness: float | Array, relative: float | Array) -> None:
     """Refuse a relative roughness that double precision loses although roughness and load are in their ranges."""
-    if isinstance(relative, float) and (roughness == 0.0 or SMALLEST <= relative <= LARGEST):
+    if isinstance(relative, float) and (roughness == 0.0 or MIN_GROUP <= relative <= MAX_GROUP):
         return
     ratio = np.asarray(relative)
-    wrong = np.not_equal(roughness, 0) & ((ratio < SMALLEST * (1 - SLACK)) | (ratio > LARGEST * (1 + SLACK)))
+    wrong = np.not_equal(roughness, 0) & ((ratio < MIN_GROUP * (1 - BOUND_RTOL)) | (ratio > MAX_GROUP * (1 + BOUND_RTOL)))
     if np.any(wrong):
         raise InputError(
             f"the relative roughness has the value {ratio[wrong].flat[0]:g} and must be zero or "
-            f"from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs."
+            f"from {MIN_GROUP:g} to {MAX_GROUP:g}; check the units of the inputs."
         )
 
 

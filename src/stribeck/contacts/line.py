@@ -15,10 +15,11 @@ from typing import ClassVar, Self
 
 from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
-from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
-from stribeck.quantities.contact_values import refuse_former, signature_of
+from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.parts import BASE_PARTS, Parts, WithParts, signature_with_parts
+from stribeck.quantities.contact_values import signature_of
 from stribeck.quantities.inputs import LINE, InputTable, quantity
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
@@ -132,7 +133,7 @@ class LineContact(WithParts):
             load=F_N / R / E_star / self.beta / self.beta / math.pi,
             roughness=self.roughness / R / self.beta / self.beta / self.alpha / 4,
             law=self.law,
-            model=ARTICLE if self.parts is DEFAULT else self.parts.model(self.film_units, self.hertz.half_width, U),
+            model=BASE_MODEL if self.parts is BASE_PARTS else self.parts.model(self.film_units, self.hertz.half_width, U),
         )
 
     @property
@@ -153,7 +154,7 @@ class LineContact(WithParts):
         return self.viscosity * self.speed / self.load
 
     @classmethod
-    @refuse_former
+    @answers_typos
     def from_groups(
         cls,
         groups: Groups,

@@ -11,7 +11,7 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
-__all__ = ["ARTICLE", "Model"]
+__all__ = ["BASE_MODEL", "Model"]
 
 
 @dataclass(frozen=True)
@@ -36,5 +36,4 @@ class Model:
         as_solid("solid", self.solid)
 
 
-ARTICLE = Model()
-"""A Newtonian fluid that never cavitates, on a half-plane."""
+BASE_MODEL = Model()  # A Newtonian fluid that never cavitates, on a half-plane

@@ -14,7 +14,7 @@ from typing import Any, Self
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import PURE_SLIDING
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
@@ -23,13 +23,12 @@ from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
-__all__ = ["DEFAULT", "NAMES", "Parts", "WithParts", "signature_with_parts"]
+__all__ = ["BASE_PARTS", "PART_KEYWORDS", "Parts", "WithParts", "signature_with_parts"]
 
-LARGEST_RATIO = 100.0
-"""Largest slide-to-roll ratio: beyond it the surfaces move against each other and entrain hardly any fluid."""
+MAX_SLIDE_TO_ROLL = 100.0  # Largest slide-to-roll ratio: surfaces that move against each other entrain hardly any fluid
 
-LEAST_SUCTION = 1e-20
-"""Smallest suction of a cavity that is not at the ambient pressure [p_Hz]: its film begins anew some 1e8 half-widths away."""
+# Smallest suction of a cavity that is not at ambient pressure: its film reforms some 1e8 half-widths away [p_Hz]
+MIN_SUCTION = 1e-20
 
 
 @dataclass(frozen=True, init=False)
@@ -74,10 +73,10 @@ class Parts:
                 f"cavity_pressure = {show(cavity_pressure)} needs cavitation = 'reform': a film that ends at the exit does so "
                 "at the ambient pressure."
             )
-        if not abs(self.slide_to_roll) <= LARGEST_RATIO:
+        if not abs(self.slide_to_roll) <= MAX_SLIDE_TO_ROLL:
             raise InputError(
-                f"slide_to_roll = {show(slide_to_roll)} must lie between -{LARGEST_RATIO:g} and {LARGEST_RATIO:g}; 2 is pure "
-                "sliding, 0 pure rolling."
+                f"slide_to_roll = {show(slide_to_roll)} must lie between -{MAX_SLIDE_TO_ROLL:g} and {MAX_SLIDE_TO_ROLL:g}; "
+                "2 is pure sliding, 0 pure rolling."
             )
 
     def items(self) -> dict[str, Any]:
@@ -91,15 +90,15 @@ class Parts:
 
     def model(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
         """Return the model in Hertz units."""
-        if self is DEFAULT or self == DEFAULT:
-            return ARTICLE
+        if self is BASE_PARTS or self == BASE_PARTS:
+            return BASE_MODEL
         if self.solid is not None and self.slide < -1 and getattr(self.solid, "uses_speed", False):
             raise InputError(
                 f"slide_to_roll = {self.slide_to_roll:g} on a {self.solid.name}: below -2 the substrate moves against the "
                 "flow, and its memory with it; give -2 or more, or an elastic solid."
             )
-        if 0 < -self.cavity_pressure < LEAST_SUCTION * units.pressure:
-            unit, highest = "p_Hz" if units.pressure == 1.0 else "Pa", -LEAST_SUCTION * units.pressure
+        if 0 < -self.cavity_pressure < MIN_SUCTION * units.pressure:
+            unit, highest = "p_Hz" if units.pressure == 1.0 else "Pa", -MIN_SUCTION * units.pressure
             raise InputError(
                 f"cavity_pressure = {self.cavity_pressure:g} {unit} is the ambient pressure but for rounding: the film would "
                 f"begin anew 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
@@ -118,14 +117,14 @@ class WithParts(Contact):
     def __repr__(self) -> str:
         """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
         shown = {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
-        shown |= {name: value for name, value in self.parts.items().items() if value != getattr(DEFAULT, name)}
+        shown |= {name: value for name, value in self.parts.items().items() if value != getattr(BASE_PARTS, name)}
         shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
     @property
     def _part_names(self) -> frozenset[str]:
         """The parts that are no inputs of its geometry."""
-        return NAMES - set(self.INPUTS.names)
+        return PART_KEYWORDS - set(self.INPUTS.names)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
         names = self._part_names
@@ -135,8 +134,8 @@ class WithParts(Contact):
                 f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
                 f"to the contact as {row.table}."
             )
-        parts: Parts = inputs.get("parts", DEFAULT)
-        object.__setattr__(self, "parts", DEFAULT)
+        parts: Parts = inputs.get("parts", BASE_PARTS)
+        object.__setattr__(self, "parts", BASE_PARTS)
         super()._keep(law, {name: value for name, value in inputs.items() if name not in names and name != "parts"})
         given = {name: inputs[name] for name in names & inputs.keys()}
         object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
@@ -233,8 +232,6 @@ def _cavitation(value: str | Cavitation | None) -> Cavitation:
         raise InputError(f"cavitation = {show(value)} must be one of {known}.") from None
 
 
-NAMES = frozenset(field.name for field in fields(Parts))
-"""The keywords of contacts and solvers that are parts."""
+PART_KEYWORDS = frozenset(field.name for field in fields(Parts))  # The keywords of contacts and solvers that are parts
 
-DEFAULT = Parts()
-"""Those of the article."""
+BASE_PARTS = Parts()  # Parts of the article's model

@@ -16,11 +16,12 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE, Model
-from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
-from stribeck.quantities.contact_values import refuse_former, signature_of
+from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.parts import BASE_PARTS, Parts, WithParts, signature_with_parts
+from stribeck.quantities.contact_values import signature_of
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import POINT, InputTable, quantity
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["HamrockDowsonNumbers", "PointContact"]
@@ -125,7 +126,7 @@ class PointContact(WithParts):
     WIDTH: ClassVar[str] = "Hertz radius"
     __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(POINT))
 
-    @refuse_former
+    @answers_typos
     def __init__(self, *, law: str | AsperityLaw | None = None, **inputs: Any) -> None:
         speed, ratio = inputs.get("speed"), inputs.get("slide_to_roll")
         if speed is not None and ratio is not None and quantity("slide_to_roll", ratio, POINT) != PURE_SLIDING:
@@ -149,8 +150,8 @@ class PointContact(WithParts):
         )
 
     def _model(self) -> Model:
-        if self.parts is DEFAULT or self.parts == DEFAULT:
-            return ARTICLE
+        if self.parts is BASE_PARTS or self.parts == BASE_PARTS:
+            return BASE_MODEL
         moving = Parts(**{**self.parts.items(), "slide_to_roll": self.slide_to_roll})
         return moving.model(self.film_units, self.hertz.half_width, self.speed)
 
@@ -194,7 +195,7 @@ class PointContact(WithParts):
         return HamrockDowsonNumbers(0.5 * self.viscosity * self.speed / stiffness / R, self.load / stiffness / R / R)
 
     @classmethod
-    @refuse_former
+    @answers_typos
     def from_groups(
         cls,
         groups: Groups,

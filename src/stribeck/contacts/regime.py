@@ -21,19 +21,18 @@ __all__ = [
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
 
+# The regimes in the order of rising speed; their places are their numbers.
 REGIMES: tuple[Regime, ...] = ("boundary", "mixed", "hydrodynamic")
-"""The regimes in the order of rising speed; their places are their numbers."""
 
+# Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau.
 BOUNDARY_FLUID_SHARE = 0.05
-"""Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
 
+# Part of the friction from asperities up to which lubrication is called hydrodynamic: at the friction minimum of smooth
+# contacts asperities give about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3.
 HYDRODYNAMIC_CONTACT_SHARE = 0.1
-"""Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
-contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
 
 
-TINY = 1e-300
-"""Least friction, for quotients."""
+MIN_FRICTION = 1e-300  # Smallest friction in a quotient
 
 
 def friction_share(contact: Numbers, viscous: Numbers) -> Array:
@@ -44,7 +43,7 @@ def friction_share(contact: Numbers, viscous: Numbers) -> Array:
     """
     size, other = (np.where(part.real < 0, -part, part) for part in map(np.asarray, (contact, viscous)))
     total = size + other
-    return np.asarray(size / np.where(total.real <= TINY, TINY, total))
+    return np.asarray(size / np.where(total.real <= MIN_FRICTION, MIN_FRICTION, total))
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:

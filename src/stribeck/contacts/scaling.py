@@ -21,8 +21,7 @@ from typing import Literal
 
 __all__ = ["SCALINGS", "Geometry", "Scaling"]
 
-Geometry = Literal["line", "point"]
-"""What touches: a cylinder or a ball."""
+Geometry = Literal["line", "point"]  # What touches: a cylinder or a ball
 
 
 @dataclass(frozen=True)
@@ -37,8 +36,8 @@ class Scaling:
     hersey_divisor: float  # What that is divided by
 
 
+# The geometries by name: a cylinder, whose load is per unit length, and a ball.
 SCALINGS: dict[Geometry, Scaling] = {
     "line": Scaling("line", 0.5, 1.0, 2.0, 2, 3 * math.pi),
     "point": Scaling("point", 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
 }
-"""The geometries by name: a cylinder, whose load is per unit length, and a ball."""

@@ -14,8 +14,8 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE, Model
-from stribeck.contacts.parts import NAMES, Parts
+from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.parts import PART_KEYWORDS, Parts
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ, FilmUnits
 from stribeck.quantities.formats import format_si
@@ -27,12 +27,13 @@ __all__ = [
     "in_words",
     "model_at",
     "model_words",
-    "models_beside",
+    "models_at_both_sides",
     "part_attributes",
-    "steps_beside",
+    "admissible_steps",
     "with_parts",
 ]
 
+# Dimensions of the numbers of fluids and solids, by the last word of their names.
 UNITS_BY_LAST_WORD = {
     "time": "time",
     "pressure": "pressure",
@@ -41,19 +42,18 @@ UNITS_BY_LAST_WORD = {
     "thickness": "length",
     "coefficient": "pressure coefficient",
 }
-"""Dimensions of the numbers of fluids and solids, by the last word of their names."""
 
-STEP, ALONE = 1e-5, 1e-7
-"""Changes of a logarithm by which a model is differentiated: to both sides, and to one where the other is refused."""
+CENTRAL_STEP = 1e-5  # Change of a logarithm to both sides by which a model is differentiated
+ONE_SIDED_STEP = 1e-7  # Change of a logarithm to one side, where the model refuses the other side
 
 Problem = TypeVar("Problem")
 
 
 def with_parts(problem: Problem, **given: Any) -> Problem:
     """Return a contact or groups with the parts that are given."""
-    unknown = next((name for name in given if name not in NAMES), None)
+    unknown = next((name for name in given if name not in PART_KEYWORDS), None)
     if unknown is not None:
-        near = difflib.get_close_matches(unknown, NAMES, n=1)
+        near = difflib.get_close_matches(unknown, PART_KEYWORDS, n=1)
         raise TypeError(f"got an unexpected keyword argument {unknown!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
     given = {name: value for name, value in given.items() if value is not None}
     if given and isinstance(problem, Contact):
@@ -74,18 +74,18 @@ def model_at(contact: Contact, name: str, step: float) -> Model:
     return contact.replace(**changes).groups.model
 
 
-def models_beside(contact: Contact, name: str) -> tuple[Model, Model, float] | None:
+def models_at_both_sides(contact: Contact, name: str) -> tuple[Model, Model, float] | None:
     """Return the models at two values of one input of a contact, below and above, and the distance of the logarithms.
 
     None where the input changes no number of fluid or solid in Hertz units.  At an end of what it may be, one of them is that
     of the contact.
     """
-    below, above = steps = steps_beside(contact, name, STEP, ALONE)
+    below, above = steps = admissible_steps(contact, name, CENTRAL_STEP, ONE_SIDED_STEP)
     models = [model_at(contact, name, step) for step in steps]
     return None if models[0] == models[1] else (models[0], models[1], above - below)
 
 
-def steps_beside(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
+def admissible_steps(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
     """Return steps of the logarithm of an input to both sides; to one of them, by ``alone``, where the other is refused."""
     try:
         for each in (-step, step):
@@ -103,7 +103,7 @@ def steps_beside(contact: Contact, name: str, step: float, alone: float) -> tupl
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
     """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's."""
     model, parts = groups.model, getattr(contact, "parts", None)
-    if model == ARTICLE:
+    if model == BASE_MODEL:
         return {}
     if parts is None:
         laws: dict[str, Any] = {"fluid": _at_speed(model.film, np.unique(np.asarray(groups.speed))), "solid": model.solid}

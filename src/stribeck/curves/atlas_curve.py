@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES, FrictionRule
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import friction_share
 from stribeck.curves.regime import (
@@ -215,8 +215,8 @@ class AtlasCurve(Drawn, Shown):
             direction = list(self.contact.INPUTS.exponents[self.over])
         found = np.tensordot(direction, slopes, 1)
         for name, power in self._moving.items():
-            moved = {**inputs, name: inputs[name] * (1 + 1j * IMAGINARY)}
-            found = found + power * np.imag(atlas.friction_terms(groups, moved, self.definition)[1]) / IMAGINARY
+            moved = {**inputs, name: inputs[name] * (1 + 1j * COMPLEX_STEP)}
+            found = found + power * np.imag(atlas.friction_terms(groups, moved, self.definition)[1]) / COMPLEX_STEP
         return np.asarray(found * np.sign(self._friction_at(values)))
 
     def _fluid_at(self, values: Array) -> Array:

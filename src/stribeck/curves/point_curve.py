@@ -12,7 +12,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
-from stribeck.contacts.friction_rules import IMAGINARY, RULES
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE, friction_share
 from stribeck.curves.coordinate import Coordinate
@@ -187,7 +187,7 @@ class PointCurve(StribeckCurve):
             return None
 
         def slope(s: float) -> float:
-            return float(np.add(*self._parts_at(np.array([s + IMAGINARY * 1j]))[1:])[0].imag / IMAGINARY)
+            return float(np.add(*self._parts_at(np.array([s + COMPLEX_STEP * 1j]))[1:])[0].imag / COMPLEX_STEP)
 
         place = root_between(slope, float(places[i - 1]), float(places[i + 1]), LOCATION_TOLERANCE)
         return None if place is None else self._mark(Transition.MINIMUM, place)

@@ -13,7 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import model_at, models_beside, steps_beside
+from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
 from stribeck.equations.point.observables import FrictionWithin, observables
 from stribeck.equations.point.sensitivity import STEP
 from stribeck.equations.point.system import Equations, Unknowns
@@ -89,9 +89,9 @@ def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], G
     names = [name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll"]
     found: dict[str, Callable[[float], Groups]] = {}
     for name in (*names, *part_names(contact)):
-        if models_beside(contact, name) is not None:
+        if models_at_both_sides(contact, name) is not None:
             # Where an end of what it may be is nearer than the step, differentiated one step inside.
-            found[name] = partial(along, name, sum(steps_beside(contact, name, STEP, STEP)))
+            found[name] = partial(along, name, sum(admissible_steps(contact, name, STEP, STEP)))
     return found
 
 

@@ -16,7 +16,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.with_parts import model_words
 from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, observed, rows_of, solved_at
@@ -313,7 +313,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def hydrodynamic_friction(self) -> Array:
         """Friction of smooth surfaces by the article's law, the abscissa of its second plot; nan for other models."""
-        if self.groups.model != ARTICLE:
+        if self.groups.model != BASE_MODEL:
             return np.full(len(self), np.nan)
         return np.asarray(hydrodynamic.friction(self.groups, self.beta))
 

@@ -12,9 +12,9 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
-from stribeck.contacts.friction_rules import IMAGINARY, RULES
-from stribeck.contacts.model import ARTICLE
-from stribeck.contacts.with_parts import models_beside
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
@@ -73,8 +73,8 @@ def friction_sensitivities(
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
         names = [name for name in GROUP_EXPONENTS if getattr(contact, name, None)] + list(part_names(contact))
-        names = names if groups.model != ARTICLE else []
-        changes = {name: beside for name in names if (beside := models_beside(contact, name)) is not None}
+        names = names if groups.model != BASE_MODEL else []
+        changes = {name: beside for name in names if (beside := models_at_both_sides(contact, name)) is not None}
         state = point.state  # of a film that may form anew, with a cavity or without
         along = [
             (with_ending_of(state, below), with_ending_of(state, above), width) for below, above, width in changes.values()
@@ -115,8 +115,8 @@ def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
     direct = {"boundary_friction": boundary_friction * float(rule.rubbing(groups, inputs)) * share}
     for name, value in inputs.items():
         if math.isfinite(value):
-            moved = atlas.friction_terms(groups, {**inputs, name: value * (1 + 1j * IMAGINARY)}, definition)[1]
-            by = direct[name] = direct.get(name, 0.0) + float(np.imag(moved[0])) / IMAGINARY
+            moved = atlas.friction_terms(groups, {**inputs, name: value * (1 + 1j * COMPLEX_STEP)}, definition)[1]
+            by = direct[name] = direct.get(name, 0.0) + float(np.imag(moved[0])) / COMPLEX_STEP
             for other, power in rule.exponents.get(name, {}).items():
                 direct[other] = direct.get(other, 0.0) + power * by
     total = (direct["boundary_friction"] + viscous) or math.nan

@@ -13,7 +13,7 @@ from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
@@ -64,7 +64,7 @@ def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
     x = np.linspace(-REACH, REACH, PLACES)
 
     def part(log_speed: float) -> float:
-        film = replace(groups, speed=math.exp(log_speed), roughness=0.0, model=ARTICLE, law=None)
+        film = replace(groups, speed=math.exp(log_speed), roughness=0.0, model=BASE_MODEL, law=None)
         gap = float(hydrodynamic.central_gap.function(film))
         wide = x * math.sqrt(1 + gap)
         pressure = law.pressure(gap + hertz.gap(wide))
@@ -138,7 +138,7 @@ def automatic_speed_range(
     They are those of a coarse curve with the fluid and the solid of the article: other parts change the load on the film by
     less than the margin.  Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
     """
-    groups = replace(groups, model=ARTICLE)
+    groups = replace(groups, model=BASE_MODEL)
     if groups.roughness == 0:
         return SMOOTH
     problem = LineProblem(lambda s: replace(groups, speed=math.exp(s)), (1.0, 0.0, 0.0), COARSE)

@@ -23,7 +23,7 @@ from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import SLACK, StribeckCurve
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.cavities.reforming_line import line_problem
@@ -74,7 +74,7 @@ def stribeck_curve(
 ) -> AtlasCurve: ...
 
 
-@refuse_former
+@answers_typos
 @one_blas_thread
 def stribeck_curve(
     problem: Contact | Groups | None = None,

@@ -13,7 +13,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
-from stribeck.quantities.outputs import AREA, GROUPS, OUTPUT_TABLES
+from stribeck.quantities.outputs import AREA_ROWS, GROUPS, OUTPUT_TABLES
 from stribeck.solver.base_solution import si_films
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
         columns[f"{name}_viscous"] = (found.viscous, "1", f"friction coefficient, {label}: contribution of the fluid")
         columns[f"{name}_error"] = (found.error, "1", f"friction coefficient, {label}: estimated absolute error")
     if isinstance(curve.law, WithArea):
-        for name, (unit, label) in AREA.items():
+        for name, (unit, label) in AREA_ROWS.items():
             columns[name] = (curve.observable(name), unit, label)
     films = [si_films(solution) for solution in curve.solutions]
     for name, (_, unit, label) in (films[0] if films else {}).items():

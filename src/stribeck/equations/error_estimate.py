@@ -31,7 +31,7 @@ from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
+from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
 
 __all__ = [
     "GAPS",
@@ -71,7 +71,7 @@ GAP_FLOOR = 1e-3
 SHARES = [ROW[name] for name in ABSOLUTE]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
 FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
-POSITIONS = [ROW[row.name] for row in ENDS]
+POSITIONS = [ROW[row.name] for row in RUPTURE_ROWS]
 
 
 @dataclass(frozen=True)
@@ -208,10 +208,10 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    known_friction = observed[:, FRICTION if op.is_article else DRAG].T
+    known_friction = observed[:, FRICTION if op.is_base_model else DRAG].T
     if not equations.is_sliding:
         friction = known_friction
-    elif op.is_article:
+    elif op.is_base_model:
         integrals = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
         friction = np.ravel(friction_scale(states.load, equations.speed)) * integrals
     else:
@@ -303,9 +303,9 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
 
     At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
     """
-    values = np.array([one.array(states.equations.operators.is_article) for one in observed])
+    values = np.array([one.array(states.equations.operators.is_base_model) for one in observed])
     changed = perturbations(states, values, fine)
-    needed = not (states.equations.operators.is_article or states.equations.film.uses_pressure)
+    needed = not (states.equations.operators.is_base_model or states.equations.film.uses_pressure)
     rows = gradients(states.equations, states.y, states.load, states.slopes if needed else None)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
@@ -314,11 +314,11 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
         d, exits = states.equations.dilation(states.y), states.y[:, states.equations.layout.exit.start]
         stretch = stretch if d is None else d[:, 0]
         centres, positions = -exits / stretch, (positions - exits) / stretch
-    effects[:, FRICTION if op.is_article else DRAG, 0] += changed.friction.T
+    effects[:, FRICTION if op.is_base_model else DRAG, 0] += changed.friction.T
     interpolation = np.zeros_like(values)
     interpolation[:, GAPS] = interpolation_errors(states, positions, centres).T
     scales = np.abs(values)
-    if not op.is_article:
+    if not op.is_base_model:
         scales[:, POSITIONS] = np.maximum(1.0, scales[:, POSITIONS])
         scales[:, DRAG] = drag_scales(values)
     scales[:, SHARES] = 1.0
@@ -335,7 +335,7 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     discretisation = DEFECT_SAFETY * effects[:, :, 0]
     if op.has_exit:
         places = places + (discretisation + rounding)[:, ROW["exit_position"]]
-    if not op.is_article:
+    if not op.is_base_model:
         missing = np.isnan(values)
         missing[:, : len(NAMES)] = False
         for part in (discretisation, interpolation, rounding):

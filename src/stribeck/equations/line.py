@@ -187,7 +187,7 @@ class Equations:
         at = self.layout
         units = np.ones_like(y)
         units[..., at.gap] = y[..., at.gap]
-        units[..., at.flux_gap] = y[..., at.flux_gap] if self.operators.is_article else self._flux_unit(y)
+        units[..., at.flux_gap] = y[..., at.flux_gap] if self.operators.is_base_model else self._flux_unit(y)
         return units
 
     def _flux_unit(self, y: Array) -> Array:
@@ -351,7 +351,7 @@ class Equations:
         about a third of the width of contact or film.
         """
         at = self.layout
-        flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_article else self._flux_unit(y)[0])
+        flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_base_model else self._flux_unit(y)[0])
         part = 0.7 / max(0.7, abs(flux))
         if self.operators.has_exit:
             far = 0.3 * np.sqrt(1.0 + y[at.gap].min())
@@ -367,7 +367,7 @@ class Equations:
         """
         at = self.layout
         gaps = dy[..., at.gap] / y[..., at.gap]
-        unit = y[..., at.flux_gap] if self.operators.is_article else self._flux_unit(y)
+        unit = y[..., at.flux_gap] if self.operators.is_base_model else self._flux_unit(y)
         fluxes = dy[..., at.flux_gap] / unit
         others = [np.abs(dy[..., block]).max() for block in (at.pressure, at.exit, at.dilation) if block.start < block.stop]
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))

@@ -105,7 +105,7 @@ def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> lis
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
     op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     positions, lowest = np.array([minimum_gap(mesh, row) for row in y[:, at.gap]]).T
-    if not op.is_article:
+    if not op.is_base_model:
         contact = equations.law.pressure(y[:, at.gap]) @ mesh.weights / LOAD
         numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
         return _of_any_film(equations, y, load, np.stack([contact, lowest, positions, *numbers]))
@@ -202,10 +202,10 @@ def gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | No
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
     h, h_star = y[..., of_gap], y[..., at.flux_gap]
-    found = np.zeros((len(NAMES if op.is_article else ALL_NAMES), *y.shape))
+    found = np.zeros((len(NAMES if op.is_base_model else ALL_NAMES), *y.shape))
     rows = dict(zip(ALL_NAMES, found, strict=False))
     rows["contact_load_share"][..., of_gap] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
-    if equations.is_sliding and op.is_article:
+    if equations.is_sliding and op.is_base_model:
         u = 1 / h
         g_h, g_flux = reynolds.gap_derivative(h, h_star), reynolds.flux_derivative(h)
         of_load = speed * op.load_of_gradient / LOAD

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Indices, Numbers
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
@@ -56,7 +56,7 @@ class Operators:
     """Operators of a mesh; computed once and kept for all states that share it."""
 
     mesh: Mesh
-    model: Model = ARTICLE
+    model: Model = BASE_MODEL
 
     @property
     def has_exit(self) -> bool:
@@ -69,7 +69,7 @@ class Operators:
         return self.model.cavitation is Cavitation.REFORM
 
     @cached_property
-    def is_article(self) -> bool:
+    def is_base_model(self) -> bool:
         """Whether film and friction are those of the article, whose integrals have a closed form in the gap."""
         film = self.model.film
         return not self.has_exit and isinstance(film, Newtonian) and film.is_plain and film.slide == 1.0

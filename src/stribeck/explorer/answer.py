@@ -21,7 +21,7 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.curves.regime import Regime, regime_of
 from stribeck.explorer.curves import (
     FIRST_RTOL,
@@ -366,7 +366,7 @@ def profile_reach(solution: BaseSolution) -> float:
 def asymptotic_fields(solution: BaseSolution, reach: float) -> list[AsymptoticField]:
     """Return the asymptotic fields whose range holds the state."""
     groups = solution.groups
-    if groups.geometry != "line" or groups.model != ARTICLE:
+    if groups.geometry != "line" or groups.model != BASE_MODEL:
         return []
     absent = {"smooth": solution.contact_load_share, "rest": solution.fluid_load_share, "mixed": 0.0}
     found = []

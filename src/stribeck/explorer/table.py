@@ -14,7 +14,7 @@ from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
 from stribeck.quantities.formats import format_factor, format_si
 from stribeck.quantities.inputs import INPUT_TABLES
-from stribeck.quantities.outputs import ENDS
+from stribeck.quantities.outputs import RUPTURE_ROWS
 from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
@@ -57,7 +57,7 @@ def numbers(answer: Answer, margins: RegimeMargins | None = None) -> list[Row]:
     for each in (each for each in observed if each.film and each.scale == "gap"):
         film, error = getattr(solution, each.name) * scales.indentation, film_errors.get(each.name, math.nan)
         rows.append(_row(each.film, each.label.capitalize(), film, abs(film) * error, "length"))
-    for each in (each for each in observed if each in ENDS):
+    for each in (each for each in observed if each in RUPTURE_ROWS):
         place, a = getattr(solution, each.name), scales.half_width
         if math.isfinite(place):
             rows.append(

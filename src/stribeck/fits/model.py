@@ -29,10 +29,10 @@ from stribeck._types import Array, Indices
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.regime import friction_share
-from stribeck.contacts.with_parts import check_solid, models_beside
+from stribeck.contacts.with_parts import check_solid, models_at_both_sides
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states.interpolation import Between
@@ -89,7 +89,7 @@ class FrictionModel:
             free = self.free[k]
             if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
                 continue
-            beside = models_beside(contact, free.name)
+            beside = models_at_both_sides(contact, free.name)
             if beside is not None:
                 found.append(ModelChange(k, *beside))
         return tuple(found)
@@ -228,16 +228,17 @@ class FrictionModel:
         still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
         rubbing = self.signs[curve] * x[:, 3]
         contact, fluid = rubbing * found.values[0], viscous(still, no_group, no_input)
-        step = 1j * IMAGINARY
+        step = 1j * COMPLEX_STEP
         by_groups = [
-            rubbing * found.slopes[0, d] + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / IMAGINARY
+            rubbing * found.slopes[0, d]
+            + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / COMPLEX_STEP
             for d in range(3)
         ]
         by_model = np.zeros((len(x), len(self.free)))
         for k in np.nonzero(np.any(found.slopes[:, 3:], axis=(0, 2)))[0].tolist():
-            through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / IMAGINARY
+            through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / COMPLEX_STEP
             by_model[:, k] = rubbing * found.slopes[0, 3 + k] + through
-        by_inputs = [viscous(still, no_group, step * row).imag / IMAGINARY for row in np.eye(len(inputs))]
+        by_inputs = [viscous(still, no_group, step * row).imag / COMPLEX_STEP for row in np.eye(len(inputs))]
         jacobian = np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A) + by_model
         errors, share = dict(zip(names, found.errors[1:], strict=True)), friction_share(contact, fluid)
         return Prediction(

@@ -1,34 +1,16 @@
-"""The inputs that a contact keeps, from those that were given: alternatives, former names, and what is wrong."""
+"""The inputs that a contact keeps, from those that were given: alternatives, and what is wrong."""
 
 from __future__ import annotations
 
 import difflib
-import functools
 import inspect
-from collections.abc import Callable, Mapping
-from typing import Any, ParamSpec, TypeVar
+from collections.abc import Mapping
+from typing import Any
 
-from stribeck.quantities.inputs import FORMER, LINE, InputTable, quantity
-from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.inputs import LINE, InputTable, quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["check_alternatives", "contact_values", "refuse_former", "replaced", "signature_of"]
-
-P = ParamSpec("P")
-R = TypeVar("R")
-
-
-def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
-    """Return the function such that an argument under one of the :data:`FORMER` names is refused with the present name."""
-    answered = answers_typos(function)
-
-    @functools.wraps(function)
-    def checked(*args: P.args, **kwargs: P.kwargs) -> R:
-        for old in FORMER.keys() & kwargs.keys():
-            raise InputError(f"{old} = {show(kwargs[old])}: this input is called {FORMER[old]}; write {FORMER[old]} = ...")
-        return answered(*args, **kwargs)
-
-    return checked
+__all__ = ["check_alternatives", "contact_values", "replaced", "signature_of"]
 
 
 def contact_values(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, float | None]:

@@ -54,6 +54,7 @@ def qi(hardness: float) -> float:
     return float(1e6 * 10 ** (0.0235 * (hardness + 50) - 0.6403))
 
 
+# The conversions. A new one is a row here.
 CONVERSIONS = (
     Conversion(
         "youngs_modulus",
@@ -108,10 +109,8 @@ CONVERSIONS = (
         "load", (GivenInput("force", "force", "1.3 N"),), lambda force: force, "load = force", "definition", geometry="point"
     ),
 )
-"""The conversions. A new one is a row here."""
 
-GIVEN = {each.name: each for row in CONVERSIONS for each in row.inputs}
-"""Inputs of data sheets by name."""
+GIVEN = {each.name: each for row in CONVERSIONS for each in row.inputs}  # Inputs of data sheets by name
 
 _TURNS = re.compile(r"hz|1\s*/\s*s\b|s\s*\^?\s*-1|s⁻¹", re.IGNORECASE)
 

@@ -28,6 +28,7 @@ class Fact:
     models: tuple[str, ...] = ()  # Where a contact may hold it already, such as `"solid.thickness"`
 
 
+# The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
 ROWS = (
     Fact(
         "pressure_viscosity",
@@ -56,10 +57,8 @@ ROWS = (
     Fact("permeability", "permeability of the soft body", "permeability", "1e-18 m^2", "cartilage; gels 1e-18 to 1e-15"),
     Fact("rms_slope", "rms slope of the roughness", "number", "0.1", "polished 0.01 to 0.1, ground or blasted 0.1 to 0.5"),
 )
-"""The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`."""
 
-FACTS = {row.name: row for row in ROWS}
-"""The facts by name."""
+FACTS = {row.name: row for row in ROWS}  # The facts by name
 
 
 def fact_values(given: Mapping[str, Any]) -> dict[str, float]:

@@ -82,8 +82,7 @@ def format_percent(part: float, digits: int = 2) -> str:
     return f"{float(f'{100 * part:.{digits}g}'):g} %"
 
 
-LEAST_SHARE = 1e-4
-"""Smallest share that is worth a number in text; files hold all of them."""
+MIN_STATED_SHARE = 1e-4  # Smallest share that is worth a number in text; files hold all of them
 
 
 def format_share(part: float, error: float) -> str:
@@ -94,6 +93,6 @@ def format_share(part: float, error: float) -> str:
     >>> format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)
     ('20.3 %', '< 0.01 %')
     """
-    if 0 < part <= max(error, LEAST_SHARE):
-        return f"{format_bound(100 * max(error, LEAST_SHARE))} %"
+    if 0 < part <= max(error, MIN_STATED_SHARE):
+        return f"{format_bound(100 * max(error, MIN_STATED_SHARE))} %"
     return f"{100 * part:.3g} %"

@@ -6,30 +6,28 @@ import difflib
 import re
 from collections.abc import Iterable
 
-from stribeck.quantities.inputs import FORMER, LETTERS
+from stribeck.quantities.inputs import LETTERS
 from stribeck.quantities.units import FROM_HARDNESS
 
-__all__ = ["ELSEWHERE", "MEANT", "advice_on"]
+__all__ = ["OTHER_SOURCES", "MEANT", "advice_on"]
 
-MEANT = LETTERS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
-"""Meaning of symbols, former names and short names."""
+# Input that a symbol or a usual name stands for
+MEANT = LETTERS | {"poisson": "poisson_ratio"} | dict.fromkeys(("mu", "cof", "friction_coefficient"), "boundary_friction")
 
-ALIKE = 0.8
-"""Smallest similarity, 0 to 1, of a typing error and the word meant: 0.8 allows one letter in five."""
+MIN_SIMILARITY = 0.8  # Smallest similarity, 0 to 1, of a typing error and the word meant: 0.8 allows one letter in five
 
-SHORTEST = 4
-"""Smallest number of letters of a word that stands for the key that begins with it."""
+MIN_PREFIX_LETTERS = 4  # Smallest number of letters of a word that stands for the key that begins with it
 
-ELSEWHERE = {"viscosity": 'or name the liquid in a table [fluid], for example preset = "water"'}
-"""Other places that give an input which is missing."""
+# Other places that give an input which is missing
+OTHER_SOURCES = {"viscosity": 'or name the liquid in a table [fluid], for example preset = "water"'}
 
-_RMS = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
-_LINE = "give load: for a cylinder in N/m, or force in N with its width; for a ball, geometry = 'point', the force in N"
+_RMS_HINT = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
+_LOAD_HINT = "give load: for a cylinder in N/m, or force in N with its width; for a ball, geometry = 'point', the force in N"
 
 # Whole words of a key, and what the package has instead.  The first that matches is said.
-_ABSENT = (
+_HINTS = (
     (("shore", "hardness", "irhd"), FROM_HARDNESS),
-    (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS),
+    (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS_HINT),
     (
         ("pressure_viscosity", "piezoviscous", "barus", "roelands"),
         "it is pressure_viscosity in the table [fluid]",
@@ -51,8 +49,8 @@ _ABSENT = (
         "for the solid give modulus, which is E*, or youngs_modulus and poisson_ratio; for a shear modulus G and a Poisson "
         "ratio nu, E* = 2 G/(1 - nu)",
     ),
-    (("force", "normal_force", "weight", "mass"), _LINE),
-    (("length",), _LINE),
+    (("force", "normal_force", "weight", "mass"), _LOAD_HINT),
+    (("length",), _LOAD_HINT),
     (("diameter",), "give radius, half the diameter; of a shaft that turns, shaft_diameter with rotational_speed"),
     (
         ("ellipticity", "ball", "sphere"),
@@ -99,9 +97,9 @@ def advice_on(key: str, known: Iterable[str]) -> str | None:
     if MEANT.get(key) in names:
         return f"write {MEANT[key]}"
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
-    absent = next((said for words, said in _ABSENT if any(f"_{word}_" in text for word in words)), None)
+    absent = next((said for words, said in _HINTS if any(f"_{word}_" in text for word in words)), None)
     if absent is not None:
         return absent
-    whole = [name for name in names if len(key) >= SHORTEST and name.startswith(key.lower())]
-    near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=ALIKE)
+    whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
+    near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
     return f"did you mean {near[0]}" if near else None

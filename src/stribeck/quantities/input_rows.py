@@ -39,6 +39,7 @@ class Input:
 
 _PDMS = "as in examples/pdms_cylinder.toml"
 
+# The inputs of a line contact. A new one is a row here and, if a contact keeps it, a field of :class:`LineContact`.
 ROWS = (
     Input(
         name="radius",
@@ -193,9 +194,9 @@ ROWS = (
         derived=True,
     ),
 )
-"""The inputs of a line contact. A new one is a row here and, if a contact keeps it, a field of :class:`LineContact`."""
 
 
+# Inputs of the other body of any contact, where it is curved or soft too.
 OTHER_BODY = (
     Input(
         name="radius_2",
@@ -230,10 +231,10 @@ OTHER_BODY = (
         optional=True,
     ),
 )
-"""Inputs of the other body of any contact, where it is curved or soft too."""
 
 _BALL = "as in examples/pdms_ball.toml"
 
+# Rows that differ for a ball.
 _OF_A_BALL: dict[str, dict[str, Any]] = {
     "radius": {"typical": "9.5 mm", "source": _BALL, "exponents": (5 / 3, -2, -1)},
     "modulus": {"exponents": (1 / 3, -1, 0)},
@@ -248,8 +249,8 @@ _OF_A_BALL: dict[str, dict[str, Any]] = {
     "speed": {"source": _BALL},
     "beta": {"exponents": (0, -3, -2)},
 }
-"""Rows that differ for a ball."""
 
+# The inputs of a ball. A new one is a row here and, if a contact keeps it, a field of :class:`PointContact`.
 POINT_ROWS = (
     *(replace(row, **_OF_A_BALL.get(row.name, {})) for row in ROWS),
     Input(
@@ -279,4 +280,3 @@ POINT_ROWS = (
     ),
     *OTHER_BODY,
 )
-"""The inputs of a ball. A new one is a row here and, if a contact keeps it, a field of :class:`PointContact`."""

@@ -19,7 +19,6 @@ from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 __all__ = [
     "ALTERNATIVES",
     "GROUP_EXPONENTS",
-    "FORMER",
     "INPUTS",
     "INPUT_TABLES",
     "LETTERS",
@@ -99,23 +98,17 @@ class InputTable:
         return frozenset(optional.union(*((other.of, *other.inputs, *other.other) for other in self.alternatives)))
 
 
-LINE = InputTable("line", "LineContact", (*ROWS, *OTHER_BODY), ALTERNATIVES)
-"""The inputs of a cylinder."""
+LINE = InputTable("line", "LineContact", (*ROWS, *OTHER_BODY), ALTERNATIVES)  # The inputs of a cylinder
 
-POINT = InputTable("point", "PointContact", POINT_ROWS, ALTERNATIVES)
-"""The inputs of a ball."""
+POINT = InputTable("point", "PointContact", POINT_ROWS, ALTERNATIVES)  # The inputs of a ball
 
-INPUT_TABLES = {"line": LINE, "point": POINT}
-"""The inputs by geometry."""
+INPUT_TABLES = {"line": LINE, "point": POINT}  # The inputs by geometry
 
+# For a cylinder: its inputs by name, those that it keeps, symbols for pictures, exponents in the groups.
 QUANTITIES, INPUTS, SYMBOLS, GROUP_EXPONENTS = LINE.quantities, LINE.names, LINE.symbols, LINE.exponents
-"""For a cylinder: its inputs by name, those that it keeps, symbols for pictures, exponents in the groups."""
 
+# Symbols of the article and of the field, and the inputs that they stand for.
 LETTERS = {letter: row.name for table in (POINT, LINE) for row in table.rows for letter in row.letters}
-"""Symbols of the article and of the field, and the inputs that they stand for."""
-
-FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}
-"""Former names of inputs, and their present names."""
 
 
 def quantity(name: str, value: Any, table: InputTable = LINE) -> float:

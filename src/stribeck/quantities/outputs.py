@@ -14,9 +14,9 @@ from stribeck.quantities.lazy import cached_property
 
 __all__ = [
     "ALL_NAMES",
-    "AREA",
-    "ENDING",
-    "ENDS",
+    "AREA_ROWS",
+    "LINE_BY_CAVITATION",
+    "RUPTURE_ROWS",
     "FILMS",
     "GROUPS",
     "HERTZ",
@@ -31,7 +31,7 @@ GROUPS = ("speed", "load", "roughness")
 
 Scale = Literal["number", "gap", "width", "pressure", "friction"]
 
-IN_UNITS = {
+UNIT_SUFFIXES = {
     "number": "",
     "gap": ", in Hertz indentations",
     "width": ", in Hertz half-widths",
@@ -53,6 +53,7 @@ class Observable:
     listed: bool = True  # Whether files and reports show it; the two viscous frictions enter friction
 
 
+# The observables of a state. A new one is a row here and its value in :mod:`stribeck.equations.observables`.
 ROWS = (
     Observable("contact_load_share", "load on asperities", "fraction of the load that asperities carry", error="absolute"),
     Observable("fluid_load_share", "load on the fluid", "fraction of the load that the fluid carries", error="absolute"),
@@ -86,14 +87,13 @@ ROWS = (
         error="",
     ),
 )
-"""The observables of a state. A new one is a row here and its value in :mod:`stribeck.equations.observables`."""
 
+# Scales of a contact in SI units.
 HERTZ = {
     "hertz_half_width": ("m", "half-width a of the dry smooth contact"),
     "hertz_indentation": ("m", "indentation u_Hz of the dry smooth contact"),
     "hertz_pressure": ("Pa", "largest pressure p_Hz of the dry smooth contact"),
 }
-"""Scales of a contact in SI units."""
 
 _FLAT, _UNITS = "1", {"gap": "m", "width": "m", "pressure": "Pa"}
 
@@ -117,7 +117,7 @@ class OutputTable:
     @cached_property
     def listed(self) -> dict[str, tuple[str, str]]:
         """Attributes of a solution that a dataset holds: unit and meaning of each."""
-        return {row.name: (_FLAT, row.meaning + IN_UNITS[row.scale]) for row in self.rows if row.listed}
+        return {row.name: (_FLAT, row.meaning + UNIT_SUFFIXES[row.scale]) for row in self.rows if row.listed}
 
     @cached_property
     def films(self) -> dict[str, tuple[str, str]]:
@@ -125,13 +125,15 @@ class OutputTable:
         return {row.film: (_UNITS[row.scale], row.meaning) for row in self.rows if row.film} | HERTZ
 
 
-LINE = OutputTable(ROWS)
-"""The observables of the line."""
+LINE = OutputTable(ROWS)  # The observables of the line
 
-UPPER = Observable("viscous_upper", "viscous friction, upper", "viscous friction on the cylinder", "friction", listed=False)
-"""The drag on the other wall, whose error is estimated for films that are not the article's."""
+# Drag on the other wall, whose error is estimated for films that are not of the base model.
+UPPER_DRAG = Observable(
+    "viscous_upper", "viscous friction, upper", "viscous friction on the cylinder", "friction", listed=False
+)
 
-ENDS = (
+# Positions of rupture and reformation; the error is relative to the larger of the position and the half-width.
+RUPTURE_ROWS = (
     Observable("exit_position", "end of the film", "position where the film ends", "width", "film_exit_position"),
     Observable(
         "reformation_position",
@@ -141,13 +143,17 @@ ENDS = (
         "film_reformation_position",
     ),
 )
-"""Positions that films have which end; their error is relative to the larger of the position and the half-width."""
 
-ENDING = {"none": LINE, "exit": OutputTable((*ROWS, ENDS[0])), "reform": OutputTable((*ROWS, *ENDS))}
-"""The observables of the line by cavitation."""
+# The observables of the line by cavitation.
+LINE_BY_CAVITATION = {
+    "none": LINE,
+    "exit": OutputTable((*ROWS, RUPTURE_ROWS[0])),
+    "reform": OutputTable((*ROWS, *RUPTURE_ROWS)),
+}
 
 _SHARED = {row.name: row for row in ROWS}
 
+# The observables of the ball.
 POINT = OutputTable(
     (
         *(_SHARED[name] for name in ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap")),
@@ -205,19 +211,16 @@ POINT = OutputTable(
         _SHARED["error_estimate"],
     )
 )
-"""The observables of the ball."""
 
-OUTPUT_TABLES = {"line": LINE, "point": POINT}
-"""The observables by geometry."""
+OUTPUT_TABLES = {"line": LINE, "point": POINT}  # The observables by geometry
 
-NAMES, ABSOLUTE, OBSERVABLES, FILMS = LINE.names, LINE.absolute, LINE.listed, LINE.films
-"""Those of the line."""
+NAMES, ABSOLUTE, OBSERVABLES, FILMS = LINE.names, LINE.absolute, LINE.listed, LINE.films  # Of the line
 
-ALL_NAMES = (*NAMES, UPPER.name, *(row.name for row in ENDS))
-"""Those with an estimated error if the film is not that of the article, in the order of every array of them."""
+# Observables of the line with an estimated error for any model, in the order of every array of them.
+ALL_NAMES = (*NAMES, UPPER_DRAG.name, *(row.name for row in RUPTURE_ROWS))
 
-AREA = {
+# Further observables if the contact law knows the spectrum of the surface.
+AREA_ROWS = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),
     "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
 }
-"""Further observables if the contact law knows the spectrum of the surface."""

@@ -131,11 +131,10 @@ _ROWS = (
     ),
 )
 
+# Numbers of laws that a fit may free, by name, from what it is mostly after to what is mostly known.
 PART_INPUTS = {row.name: row for row in _ROWS}
-"""Numbers of laws that a fit may free, by name, from what it is mostly after to what is mostly known."""
 
-PART_LETTERS = {letter: row.name for row in _ROWS for letter in row.letters}
-"""Other names of these."""
+PART_LETTERS = {letter: row.name for row in _ROWS for letter in row.letters}  # Other names of numbers of laws
 
 
 def fitted_rows(table: InputTable) -> dict[str, Input]:

@@ -12,16 +12,15 @@ from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = ["has_error", "relative_error", "split_error"]
 
-LARGEST_ERROR = 3.0
-"""Relative error beyond which a value says nothing."""
+MAX_RELATIVE_ERROR = 3.0  # Relative error beyond which a value has no information
 
-_SIGN = r"(?:\+\s*/?\s*-|±)"
-_TEXT = re.compile(rf"\s*(\S+)\s*(.*?)\s*{_SIGN}\s*([0-9.eE+-]+)\s*(.*?)\s*", re.DOTALL)
+_PLUS_MINUS = r"(?:\+\s*/?\s*-|±)"
+_VALUE_WITH_ERROR = re.compile(rf"\s*(\S+)\s*(.*?)\s*{_PLUS_MINUS}\s*([0-9.eE+-]+)\s*(.*?)\s*", re.DOTALL)
 
 
 def has_error(value: Any) -> bool:
     """Return whether a value is written with its error."""
-    return isinstance(value, Mapping) or (isinstance(value, str) and re.search(_SIGN, value) is not None)
+    return isinstance(value, Mapping) or (isinstance(value, str) and re.search(_PLUS_MINUS, value) is not None)
 
 
 def split_error(name: str, value: Any, dimension: str, example: str = "") -> tuple[Any, float | None]:
@@ -36,7 +35,7 @@ def split_error(name: str, value: Any, dimension: str, example: str = "") -> tup
         if not (isinstance(error, str) and error.strip().endswith("%")):
             error = _number(f"the error of {name}", error, dimension)
     else:
-        parts = _TEXT.fullmatch(value)
+        parts = _VALUE_WITH_ERROR.fullmatch(value)
         if parts is None:
             raise InputError(f"{name} = {show(value)} cannot be read; write it as '1.0 +- 0.2 um' or '1.0 um +- 20 %'.")
         number, unit, size, last = parts.groups()
@@ -47,10 +46,10 @@ def split_error(name: str, value: Any, dimension: str, example: str = "") -> tup
             error = _number(f"the error of {name}", f"{size} {last or unit}", dimension)
     known = _number(name, center, dimension, example)
     relative = _percent(name, error) if isinstance(error, str) else float(error) / known if known else math.inf
-    if not 0 < relative <= LARGEST_ERROR:
+    if not 0 < relative <= MAX_RELATIVE_ERROR:
         raise InputError(
             f"{name} = {show(value)} has an error of {format_percent(relative, 3)}; it must be positive and below "
-            f"{100 * LARGEST_ERROR:.0f} % of a positive value."
+            f"{100 * MAX_RELATIVE_ERROR:.0f} % of a positive value."
         )
     return known, relative
 

@@ -118,7 +118,7 @@ FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of 
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
-_LONGEST_UNIT = 40
+_MAX_UNIT_LETTERS = 40
 
 
 def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:
@@ -269,7 +269,7 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
 
     # pint evaluates what it is given and m^9^9^9^9 would never end: units, products, one-digit powers pass.
     shape = _EXPONENT.sub("#", unit)
-    if len(unit) > _LONGEST_UNIT or not _UNIT.fullmatch(shape) or re.search(r"\*\*|#[\s()]*#", shape):
+    if len(unit) > _MAX_UNIT_LETTERS or not _UNIT.fullmatch(shape) or re.search(r"\*\*|#[\s()]*#", shape):
         raise InputError(f"{received} is not a number with a unit; {_advice(kind)}.")
 
     registry = _registry()

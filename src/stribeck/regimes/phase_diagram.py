@@ -24,7 +24,7 @@ from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.regimes import phase_from_atlas as atlas_phase
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["phase_diagram"]
 
 
-@refuse_former
+@answers_typos
 @one_blas_thread
 def phase_diagram(
     problem: Contact | Groups | None = None,

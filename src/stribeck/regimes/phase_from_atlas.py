@@ -19,7 +19,7 @@ from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_grid import MARKS, Diagram
 
@@ -62,7 +62,7 @@ class TransitionSpeeds:
     error: Array
 
 
-@refuse_former
+@answers_typos
 @one_blas_thread
 def transition_speeds(
     groups: Groups,

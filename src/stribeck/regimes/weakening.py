@@ -21,7 +21,7 @@ from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.contact_values import refuse_former
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.path.corrector import Corrector
@@ -111,7 +111,7 @@ class _Slopes:
         return self.rubbing * values.contact_load_share + self.beta * float(getattr(values, f"viscous_{self.definition}"))
 
 
-@refuse_former
+@answers_typos
 @one_blas_thread
 def weakening(
     groups: Groups,
@@ -147,7 +147,7 @@ def weakening(
     return Weakening(math.exp(lowest), slope.found[lowest], math.exp(s), slope.friction(s))
 
 
-@refuse_former
+@answers_typos
 def roughness_without_minimum(
     load: float,
     boundary_friction: float | None = None,

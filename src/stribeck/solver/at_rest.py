@@ -11,7 +11,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.numerics.series import along, product
 
 STATIC_LOAD = 0.01
@@ -46,7 +46,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     """
     if groups.speed > 0:
         return groups, 0.0
-    if groups.model != ARTICLE:  # at rest neither the fluid nor the end of its film matters
+    if groups.model != BASE_MODEL:  # at rest neither the fluid nor the end of its film matters
         groups = replace(groups, model=Model(solid=groups.model.solid))
     shape = groups.law
     if shape is None or is_exponential(shape):

@@ -19,8 +19,8 @@ from stribeck.contacts.regime import Regime, regime_of
 from stribeck.contacts.with_parts import model_words, part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
-from stribeck.quantities.contact_values import refuse_former
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
@@ -248,7 +248,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         """
         return self._friction()
 
-    @refuse_former
+    @answers_typos
     def _friction(
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> Friction:
@@ -286,7 +286,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 
-    @refuse_former
+    @answers_typos
     def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, object]:
         """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON.
 

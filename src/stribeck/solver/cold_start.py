@@ -18,7 +18,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.scaled import BlendedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
@@ -168,7 +168,7 @@ def first_path(groups: Groups) -> Path[State]:
 
 def first_paths(groups: Groups) -> Iterator[Path[State]]:
     """Yield paths from cold to ``groups``: with the model of the article one, with others by several ways."""
-    if groups.model != ARTICLE:
+    if groups.model != BASE_MODEL:
         ways = paths_to_cavity if groups.model.cavitation is Cavitation.REFORM else paths_to_model
         yield from ways(groups, path_of_article)
     else:

@@ -26,7 +26,7 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
@@ -285,7 +285,7 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     model, solid = groups.model, groups.model.solid
     path, state = _newtonian(groups, article, solid)
     if state is None and not isinstance(solid, HalfPlane):
-        solid = ARTICLE.solid
+        solid = BASE_MODEL.solid
         path, state = _newtonian(groups, article, solid)
     if state is None:
         yield replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)

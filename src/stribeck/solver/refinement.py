@@ -115,7 +115,7 @@ def converge(
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         state = state.corrected() if own_inverse else state
-        fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
+        fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_base_model
         [estimate] = error_estimates(state.stacked, [values], fine)
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
         # share the cause of their error.

@@ -19,7 +19,7 @@ from stribeck.equations.observables import Observables, drag_parts
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES, ENDING, NAMES, OutputTable
+from stribeck.quantities.outputs import ALL_NAMES, LINE_BY_CAVITATION, NAMES, OutputTable
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 
@@ -125,7 +125,7 @@ class Solution(BaseSolution):
     @property
     def outputs(self) -> OutputTable:
         """The table of the observables of this film."""
-        return ENDING[self.groups.model.cavitation]
+        return LINE_BY_CAVITATION[self.groups.model.cavitation]
 
     @property
     def _sliding(self) -> float:

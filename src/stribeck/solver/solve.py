@@ -17,7 +17,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.error_estimate import SAFETY
 from stribeck.equations.observables import Observables, drag_parts
@@ -401,7 +401,7 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
 
 def minimum_estimate(rtol: float, model: Model) -> float:
     """Return the smallest stated error for a tolerance, with the model of the article or another."""
-    least = MIN_ESTIMATE if model == ARTICLE else MIN_ESTIMATE_OF_OTHERS
+    least = MIN_ESTIMATE if model == BASE_MODEL else MIN_ESTIMATE_OF_OTHERS
     return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
@@ -447,11 +447,11 @@ def state_notes(
 ) -> tuple[str, ...]:
     """Return the notes on a state; ``state()`` is called for its pressures only, ``floor`` is the error by rounding."""
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
-    if groups.speed > 0 and (contact is not None or groups.model != ARTICLE):
+    if groups.speed > 0 and (contact is not None or groups.model != BASE_MODEL):
         solved = state()
         fluid = solved.equations.pressures(solved.y)[1]
         notes += [] if contact is None else cavitation_notes(contact, fluid)
-        if not solved.equations.operators.is_article:
+        if not solved.equations.operators.is_base_model:
             notes += fluid_notes(solved.equations.film, solved.gap, fluid, solved.flux_gap)
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so no fluid passes and there is no flux gap.")

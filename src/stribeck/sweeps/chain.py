@@ -12,7 +12,7 @@ from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.parts import DEFAULT, Parts
+from stribeck.contacts.parts import BASE_PARTS, Parts
 from stribeck.solver.solve import describe
 from stribeck.sweeps.columns import ERROR, failed_row, row_of
 
@@ -31,7 +31,7 @@ class Chain:
     si: bool  # Which of the two
     rtol: float  # Relative tolerance of each state
     physics: Physics  # Contact law and geometry of all, and the model of the first
-    parts: Parts = DEFAULT  # Fluid, cavitation, flow factors, solid and motion of all contacts
+    parts: Parts = BASE_PARTS  # Fluid, cavitation, flow factors, solid and motion of all contacts
 
     def contact(self, i: int) -> Contact | None:
         """Return the contact of the i-th state, where it has one."""
@@ -39,7 +39,7 @@ class Chain:
             return None
         kind = CONTACTS[self.physics["geometry"]]
         kept = {name: self.inputs[name][i] for name in kind.INPUTS.names if name in self.inputs}
-        return kind.of_kept(kept if self.parts is DEFAULT else {**kept, "parts": self.parts}, self.physics["law"])
+        return kind.of_kept(kept if self.parts is BASE_PARTS else {**kept, "parts": self.parts}, self.physics["law"])
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return boundary_friction and beta of the i-th state."""

@@ -14,7 +14,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Physics
 from stribeck.quantities.inputs import InputTable, unit_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import AREA, ENDING, OUTPUT_TABLES
+from stribeck.quantities.outputs import AREA_ROWS, LINE_BY_CAVITATION, OUTPUT_TABLES
 from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
@@ -29,7 +29,7 @@ OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
 def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each number of a row, in their order."""
     line = physics["geometry"] == "line"
-    table = ENDING[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
+    table = LINE_BY_CAVITATION[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
     found = dict(table.listed)
     for name in table.names:
         if name in table.listed:
@@ -45,7 +45,7 @@ def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     if si:
         found |= table.films
     if isinstance(physics["law"], WithArea):
-        found |= AREA
+        found |= AREA_ROWS
     found["nodes"] = ("1", "unknown gaps in the discretisation")
     found["newton_steps"] = ("1", "steps of the Newton iteration")
     found["outcome"] = ("1", "how the solve of the state ended")
@@ -75,7 +75,7 @@ def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tup
     values.append(float(solution.groups.hersey_number(beta)))
     values += [value for value, _, _ in si_films(solution).values()]
     if isinstance(solution.groups.law, WithArea):
-        values += [getattr(solution, name) for name in AREA]
+        values += [getattr(solution, name) for name in AREA_ROWS]
     values += [solution.nodes, solution.newton_steps, OUTCOMES.index(solution.outcome.name)]
     said = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
     return np.array(values), "\n".join(said)

@@ -21,8 +21,8 @@ from stribeck.cases.tables import error_sentence
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry, Groups, Physics
-from stribeck.contacts.model import ARTICLE, Model
-from stribeck.contacts.parts import DEFAULT, Parts
+from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.parts import BASE_PARTS, Parts
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.formats import format_si
@@ -82,7 +82,7 @@ class SweepDesign(Shown):
     rtol: float
     law: Law
     physics: Physics = field(repr=False)
-    parts: Parts = field(default=DEFAULT, repr=False)
+    parts: Parts = field(default=BASE_PARTS, repr=False)
 
     def _card(self) -> Card:
         points = " x ".join(map(str, self.shape))
@@ -114,7 +114,7 @@ class SweepDesign(Shown):
             settings.append(self.physics["geometry"])
         if self.contact_law is not None:
             settings += [repr(self.contact_law), self.contact_law.parameters]
-        if self.parts != DEFAULT:
+        if self.parts != BASE_PARTS:
             settings.append(repr(self.parts))
         content = [json.dumps(settings).encode(), self.groups.tobytes()]
         content += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
@@ -210,7 +210,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         return None
     varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
     try:
-        inputs, groups, model = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), ARTICLE)
+        inputs, groups, model = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), BASE_MODEL)
     except InputError as problem:
         problems.append(str(problem))
         return None
@@ -227,7 +227,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         rtol=checked["solver"]["rtol"],
         law=law,
         physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry, model=model).physics,
-        parts=Parts(**parts) if parts else DEFAULT,
+        parts=Parts(**parts) if parts else BASE_PARTS,
     )
 
 

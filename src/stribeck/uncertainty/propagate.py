@@ -13,8 +13,8 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.friction_rules import IMAGINARY, RULES
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
@@ -130,7 +130,7 @@ def propagate(
     def friction_of(states: dict[str, Array]) -> Array:
         return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
 
-    if groups.model == ARTICLE:
+    if groups.model == BASE_MODEL:
         states, method, notes = states_of(groups, offsets @ of_groups, definition, rtol, contact, friction_of)
     else:
         widths = np.array([sigmas[name] for name in names])
@@ -221,9 +221,9 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     found = {}
     for name, value in inputs.items():
         if 0 < value < math.inf and groups.speed > 0:
-            moved = {**inputs, name: value * (1 + 1j * IMAGINARY), "far": far_film(groups.model)}
+            moved = {**inputs, name: value * (1 + 1j * COMPLEX_STEP), "far": far_film(groups.model)}
             here = rule.viscous(parts, groups.speed, groups.load, moved, definition)
-            found[name] = float(np.imag(here) / IMAGINARY / np.real(here))
+            found[name] = float(np.imag(here) / COMPLEX_STEP / np.real(here))
     return found
 
 

@@ -19,7 +19,7 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.formats import LEAST_SHARE, format_factor, format_share, format_si
+from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_share, format_si
 from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
@@ -117,7 +117,7 @@ def _way(mark: Landmark, speed: float) -> str:
 
 def _change_text(change: float) -> str:
     """Return a relative change of friction in per cent."""
-    return f"{100 * change:+.2g} % friction" if abs(change) >= LEAST_SHARE else "no change"
+    return f"{100 * change:+.2g} % friction" if abs(change) >= MIN_STATED_SHARE else "no change"
 
 
 def _change(factor: float, slope: float) -> float:

@@ -16,7 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.cut_off import CAVITATED, FarFilm
+from stribeck.contacts.cut_off import CAVITATED_FAR_FILM, FarFilm
 from stribeck.equations.cavities.cavitated import TornEquations
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
@@ -33,7 +33,7 @@ STREAKS = 0.18
 class CavitatedEquations(TornEquations):
     """The discretised problem of a film that ends at ambient pressure."""
 
-    far: ClassVar[FarFilm] = CAVITATED
+    far: ClassVar[FarFilm] = CAVITATED_FAR_FILM
     finest: ClassVar[float] = 1e-4
 
     @cached_property

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array
-from stribeck.contacts.cut_off import FULL, FarFilm
+from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 
 DEFLECTION = 4.0 / (3.0 * math.pi)
 """b: the deflection under the load, far away, times the distance."""
@@ -30,7 +30,9 @@ POINTS = 40
 """Gauss points of the integrals from the rim to infinity."""
 
 
-def particular(r: Array, offset: float, speed: float, far: FarFilm = FULL, bulge: float = DEFLECTION) -> tuple[Array, Array]:
+def particular(
+    r: Array, offset: float, speed: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION
+) -> tuple[Array, Array]:
     """Return the factor of cos(theta) in the first part, and its derivative in r."""
     rigid = offset + 0.5 * r * r
     bent = 1.0 - 16.0 * bulge / r**3
@@ -51,14 +53,14 @@ def _rule() -> tuple[Array, Array]:
     return 0.5 * (t + 1.0), 0.5 * w
 
 
-def logarithms(rim: float, speed: float, far: FarFilm = FULL) -> tuple[float, float, float]:
+def logarithms(rim: float, speed: float, far: FarFilm = FULL_FAR_FILM) -> tuple[float, float, float]:
     """Return what shear, pressure flow and moment lack of their logarithms at the rim."""
     log = speed * math.log(rim)
     return -far.couette * log, -far.poiseuille * log, 2.0 * far.poiseuille * log
 
 
 def tails(
-    rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL, bulge: float = DEFLECTION
+    rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION
 ) -> tuple[float, float, float]:
     """Return the parts of shear, pressure flow and moment beyond the rim, without the logarithms at infinity.
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
 from stribeck.equations.thinning.column import has_viscosity_at_rest
@@ -106,7 +106,7 @@ class Resolution:
     degree: int  # Degree of the polynomials, and number of cosines
     modes: int  # Degree of the polynomials, and number of cosines
     splits: tuple[float, ...] = ()  # Radii at which panels are split besides [a]
-    model: Model = ARTICLE  # Fluid, cavitation and solid, whose equations are solved on the mesh
+    model: Model = BASE_MODEL  # Fluid, cavitation and solid, whose equations are solved on the mesh
     farther: int = 0  # Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity
     far_growth: float = math.inf  # Largest width of panels beyond twice the scale over their radius
     closing: tuple[float, ...] = ()
@@ -190,7 +190,7 @@ QUIET = 0.03
 """Suction at the rim over that of a cavity, at most."""
 
 
-def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float, float]:
+def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[float, float]:
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
     speed = film_speed(speed, model)
     decay = float(np.max(law.decay_length))
@@ -209,7 +209,7 @@ def is_too_thin(speed: float, law: ContactLaw) -> bool:
     return fewest_modes(speed, law) > MOST_MODES
 
 
-def fewest_modes(speed: float, law: ContactLaw, model: Model = ARTICLE) -> float:
+def fewest_modes(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> float:
     """Return the number of modes with which all but the minimum of a film that is thicker than roughness is good to 1e-2."""
     width = layout(speed, law, model)[0] / EDGE
     is_smooth = film_scale(film_speed(speed, model)) > float(np.max(law.decay_length))
@@ -226,7 +226,7 @@ def lift(speed: float, model: Model) -> float:
     return float(min(rigid, (RIGID_SUCTION * speed / -model.cavity_pressure) ** (2 / 3)))
 
 
-def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = ARTICLE) -> Resolution:
+def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = BASE_MODEL) -> Resolution:
     """Return the resolution of a state."""
     width, scale = layout(speed, law, model)
     halvings, doublings = math.ceil(-math.log2(1.2 * width)), round(math.log2(scale))
@@ -349,7 +349,7 @@ _lock = threading.Lock()
 
 def operators_of(found: Resolution, mesh: PolarMesh | None = None) -> Operators:
     """Return the operators of a resolution, on its mesh where that is known; the last ones are kept."""
-    found = replace(found, model=replace(ARTICLE, solid=found.model.solid))
+    found = replace(found, model=replace(BASE_MODEL, solid=found.model.solid))
     with _lock:
         if found in _kept:
             _kept.move_to_end(found)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array
-from stribeck.contacts.cut_off import FULL, FarFilm
+from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import logarithms, tails
 from stribeck.equations.point.films import Beyond
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
@@ -187,6 +187,6 @@ def _running(mesh: PolarMesh, local: Array) -> Array:
     return found
 
 
-def identity_error(values: dict[str, float], speed: float, far: FarFilm = FULL) -> float:
+def identity_error(values: dict[str, float], speed: float, far: FarFilm = FULL_FAR_FILM) -> float:
     """Return ``J_balanced - J_published - J_pcx + c lambda``, zero for every state; c = 0.4 pi for the full film."""
     return values["J_balanced"] - values["J_published"] - values["J_pcx"] + far.poiseuille * speed

@@ -23,7 +23,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.cut_off import FULL, FarFilm
+from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION, particular, rates
 from stribeck.equations.point.films import PLAIN, Beyond, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -117,7 +117,7 @@ class Equations:
     least: float = -np.inf
     """The lowest film pressure."""
 
-    far: ClassVar[FarFilm] = FULL
+    far: ClassVar[FarFilm] = FULL_FAR_FILM
     finest: ClassVar[float] = 0.0
     """Smallest tolerance that is aimed at."""
 

@@ -25,7 +25,7 @@ from typing import Any, ClassVar, NamedTuple, cast
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.contacts.cut_off import FULL
+from stribeck.contacts.cut_off import FULL_FAR_FILM
 from stribeck.equations.thinning.column import Column, column, pull
 from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
 from stribeck.fluids.laws import RateLaw
@@ -202,6 +202,10 @@ class FarPower(BeyondRim):
         first = self._unit * float(base.pressure[0] + part * change.pressure[0])
         moment = math.pi * self._unit * float(-base.pressure[0] / q + part * change.pressure[0] / (2.0 - q))
         # By parts: (r h f)/2 at the rim, and half the moment; the constant is that of the other fluids.
-        poiseuille = -0.25 * math.pi * (1.0 + part) * first - 0.5 * moment - 0.5 * FULL.poiseuille * self.speed
-        strength = FULL.poiseuille * self.speed * log
-        return self.speed / 3.0 * drag + FULL.couette * self.speed * log, poiseuille + strength, moment - 2.0 * strength
+        poiseuille = -0.25 * math.pi * (1.0 + part) * first - 0.5 * moment - 0.5 * FULL_FAR_FILM.poiseuille * self.speed
+        strength = FULL_FAR_FILM.poiseuille * self.speed * log
+        return (
+            self.speed / 3.0 * drag + FULL_FAR_FILM.couette * self.speed * log,
+            poiseuille + strength,
+            moment - 2.0 * strength,
+        )

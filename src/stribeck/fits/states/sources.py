@@ -12,7 +12,7 @@ from stribeck import atlas
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.fits.states.balls import OnState, curve_parts, kept_balls, lattice_parts
 from stribeck.fits.states.cylinders import kept_parts, solved_parts
 from stribeck.fits.states.interpolation import Between
@@ -89,7 +89,7 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_s
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
-    if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
+    if any(each.groups.model != BASE_MODEL for each in model.contacts):  # lattices know one model
         kept = Made(kept_balls, model, definition, max(rtol, BALL_RTOL), on_state=on_state)
         if in_atlas(model):
             return Ways(Made(atlas_or, kept, definition), kept)

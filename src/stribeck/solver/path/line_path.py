@@ -106,7 +106,7 @@ class LineProblem:
         )
         self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
-        self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
+        self.analytic = uniform and Operators(ANY_MESH, start.model).is_base_model
         exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDERS if exact else POLYNOMIAL_ORDERS
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= MAX_LAW_MISFIT * rtol)
@@ -268,7 +268,7 @@ class LineProblem:
         errors = np.full(POSITION + 1, np.nan)
         errors[: len(estimate.relative)] = np.maximum(estimate.relative, ERROR_FLOOR_RATIO * estimate.total)
         errors[POSITION] = estimate.minimum_position
-        if state.equations.operators.is_article:
+        if state.equations.operators.is_base_model:
             errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
         self._keep(state, inverse)
         point = LinePoint(replace(refined, state=state), state, unknowns, refined.fine)

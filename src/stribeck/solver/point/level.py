@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.cavities.cavitated import iterate_cavitated, just_above
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
@@ -81,7 +81,7 @@ TORN, COUPLED = 3, 1e-2
 the speed below which films thicker than roughness couple so many modes that they are three to ten times as many."""
 
 
-def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
+def band_for(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
     like = film_speed(speed, model)
     band = 5 if like > LITTLE * speed else THINNED

@@ -10,7 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import NEAR_EDGE
+from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.point.observables import OBSERVABLES
@@ -430,9 +430,10 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
             "a ball is known to the first order in that ratio only."
         )
     wetted = values._wetted_radius
-    if wetted is not None and wetted < NEAR_EDGE:
+    if wetted is not None and wetted < FAR_FILM_MIN_RADIUS:
         notes.append(
             f"The liquid ends at {wetted:.2g} Hertz radii: friction is counted up to that edge, and films, pressures and load "
-            f"shares are those of a ball in liquid, which one that ends below about {NEAR_EDGE:g} Hertz radii changes."
+            "shares are those of a ball in liquid, which one that ends below about "
+            f"{FAR_FILM_MIN_RADIUS:g} Hertz radii changes."
         )
     return tuple(notes)

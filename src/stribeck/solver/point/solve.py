@@ -13,7 +13,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
@@ -76,7 +76,7 @@ def _of_constant_viscosity(film: Film) -> Film:
     """Return the film of a fluid whose viscosity and density are constant, through the same roughness."""
     if isinstance(film, Newtonian):
         return replace(film, viscosity=Constant(), density=Incompressible())
-    return ARTICLE.film
+    return BASE_MODEL.film
 
 
 def solve_from(
@@ -258,7 +258,7 @@ def _nowhere(x: Array, y: Array) -> PointFields:
 def _at_rest(groups: Groups, rtol: float) -> PointState:
     """Return the dry contact: a problem of one dimension, refined in the degree alone."""
     base, shift = with_positive_gap(groups)
-    law, model = contact_law(base), replace(ARTICLE, solid=groups.model.solid)
+    law, model = contact_law(base), replace(BASE_MODEL, solid=groups.model.solid)
     coarse: Level | None = None
     outcome = Outcome.REFINEMENT_LIMIT
     found: Pair | None = None
@@ -288,7 +288,7 @@ def _dry_level(law: ContactLaw, degree: int, tolerance: float, model: Model, hal
 
 def _hertz(groups: Groups, rtol: float) -> PointState:
     """Return the closed form of the dry, smooth contact."""
-    if groups.model.solid != ARTICLE.solid:
+    if groups.model.solid != BASE_MODEL.solid:
         raise InputError(
             f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of a smooth ball is known in "
             "closed form on the half-space alone; give a small speed or roughness."

@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.dry import dry_contact
 from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
@@ -138,7 +138,7 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
     return solved, Unknowns(np.tile(dry.gap, (modes, 1)), np.tile(fluid, (modes, 1)), dry.offset)
 
 
-def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level | Outcome:
+def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Level | Outcome:
     """Return a coarse state at a speed, or the outcome of the failure."""
     if is_too_thin(speed, law):
         return Outcome.MESH_LIMIT
@@ -179,13 +179,13 @@ def _downward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
 
 def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
-    if model.film == ARTICLE.film:
+    if model.film == BASE_MODEL.film:
         return
     here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
 
     def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
         if not history:
-            plain = first_state(speed, law, replace(model, film=ARTICLE.film))
+            plain = first_state(speed, law, replace(model, film=BASE_MODEL.film))
             return plain if isinstance(plain, Level) else None
         weights = extrapolation_weights([at for at, _ in history], part)
         on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=model.film.milder(part)))
