@@ -18,8 +18,8 @@ from stribeck.equations.observables import ROW, observables_of_stacked
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.path import corrector, line_path
-from stribeck.solver.path.expansion import expand_any_film, expand_article
+from stribeck.solver.path import line_path
+from stribeck.solver.path.expansion import expand_article
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.refinement import converge, verify
 
@@ -179,30 +179,6 @@ def test_landmarks_of_a_coarse_curve_share_their_meshes(monkeypatch):
         assert mark.friction == pytest.approx(exact.friction, abs=sum(stated))
     assert len(coarse.transitions) == 4
     assert len(meshes) <= 4  # one for each at most; two states are solved for each
-
-
-def test_a_curve_like_another_needs_few_meshes_no_cold_start_and_is_the_same(monkeypatch):
-    before, moved = sb.stribeck_curve(CONTACT, points=200, rtol=1e-4), CONTACT.replace(load="31 N/m")
-    begun, meshes = [], []
-    monkeypatch.setattr(corrector, "first_path", lambda groups: begun.append(groups) or first_path(groups))
-    monkeypatch.setattr(corrector, "converge", lambda *given, **more: meshes.append(given) or converge(*given, **more))
-    curve = sb.stribeck_curve(moved, points=200, rtol=1e-4, like=before)
-    used = len(meshes)
-    assert not begun and curve._function.problem.like == []  # it holds no other curve
-    anew = sb.stribeck_curve(moved, points=200, rtol=1e-4)
-    assert len(begun) == 1 and used < 0.7 * (len(meshes) - used)
-    speeds = np.geomspace(1.01 * max(curve.values[0], anew.values[0]), 0.99 * min(curve.values[-1], anew.values[-1]), 40)
-    one, two = curve.at(speeds), anew.at(speeds)
-    assert (np.abs(one.friction - two.friction) <= one.friction_error + two.friction_error).all()
-
-
-def test_a_curve_like_one_beside_expands_each_state_once_as_the_radius_is_known(monkeypatch):
-    """Samples at a distance from the radius of the neighbour along the curve were wrong for one state in three."""
-    expanded, barus = [], CONTACT.replace(fluid=sb.fluids.Barus("20 1/GPa"))
-    before = sb.stribeck_curve(barus, points=200, rtol=1e-4)
-    monkeypatch.setattr(line_path, "expand_any_film", lambda *around: expanded.append(around) or expand_any_film(*around))
-    curve = sb.stribeck_curve(barus.replace(load="30.3 N/m"), points=200, rtol=1e-4, like=before)
-    assert len(expanded) == curve.states
 
 
 def test_a_curve_is_sampled_anew_without_a_state(curve):
@@ -377,11 +353,6 @@ def test_a_curve_is_sampled_at_a_whole_number_of_points(points):
         curve.sampled(points)
 
 
-def test_a_curve_like_none_that_is_one_is_refused():
-    with pytest.raises(sb.InputError, match="similar contact"):
-        sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3, like="the last")
-
-
 def test_marks_of_a_coarse_curve_with_a_cavity_at_ambient_pressure_are_states_of_that_cavity():
     curve = sb.stribeck_curve(
         load=0.1, roughness=1e-3, speed=(1e-5, 1e-1), points=3, rtol=1e-3, cavitation="reform", cavity_pressure=0.0
@@ -391,7 +362,7 @@ def test_marks_of_a_coarse_curve_with_a_cavity_at_ambient_pressure_are_states_of
     assert len(curve.transitions) == 4 and np.isfinite(found[-1].profile(np.array([0.0])).gap).all()
 
 
-def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends_and_needs_no_cold_start(monkeypatch):
+def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends():
     contact = CONTACT.replace(cavitation="reform")
     curve = sb.stribeck_curve(contact, points=41, rtol=1e-4)
     ends = sb.stribeck_curve(CONTACT.replace(cavitation="exit"), points=41, rtol=1e-4)
@@ -400,11 +371,6 @@ def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends_a
     speed = float(curve.values[20])
     assert math.isnan(curve.at(speed).reformation_position)
     assert {found.groups.model.cavitation for found in (curve.solve_at(speed), curve.solutions[20])} == {"reform"}
-    begun = []
-    monkeypatch.setattr(corrector, "solve_cold_line", begun.append)
-    monkeypatch.setattr(corrector, "first_path", begun.append)
-    assert sb.stribeck_curve(contact.replace(load="31 N/m"), points=41, rtol=1e-4, like=curve).outcome.ok
-    assert not begun
 
 
 @pytest.mark.parametrize("solid", [sb.solids.HalfPlane(), sb.solids.Layer(1.0, 0.4)])
@@ -438,20 +404,3 @@ def test_a_cusp_that_passes_through_the_nodes_asks_for_few_states():
     assert curve.states <= 25  # 33
     for roughness in (0.006, 0.008):
         assert worst(curve, roughness, replace(base, roughness=roughness), 1e-8) < 2
-
-
-def test_a_curve_like_one_of_the_same_groups_takes_over_its_states():
-    contact = sb.load_case("examples/pdms_cylinder.toml").contact
-    first = sb.stribeck_curve(contact, rtol=1e-4, slide_to_roll=1.0)
-    first = sb.stribeck_curve(contact, rtol=1e-4, slide_to_roll=1.0, like=first)  # steps are longer where guesses are near
-    thicker = contact.replace(viscosity=1.1 * contact.viscosity)
-    found = sb.stribeck_curve(thicker, rtol=1e-4, slide_to_roll=1.0, like=first)
-    known = {id(one.point) for one in first._solved_path.expansions}
-    new = [one for one in found._solved_path.expansions if id(one.point) not in known]
-    assert len(new) <= 1  # where the curve ends is found to 1e-6 only
-    alone = sb.stribeck_curve(thicker, rtol=1e-4, slide_to_roll=1.0)
-    inside = np.geomspace(1.01 * alone.values[0], 0.99 * alone.values[-1], 50)
-    assert np.allclose(found.at(inside).friction, alone.at(inside).friction, rtol=4e-4)
-    heavier = contact.replace(load=1.001 * contact.load)
-    others = sb.stribeck_curve(heavier, rtol=1e-4, slide_to_roll=1.0, like=first)._solved_path.expansions
-    assert not known & {id(one.point) for one in others}

@@ -1144,16 +1144,11 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     assert found.boundary[0] == 0  # the fluid carries more than a twentieth at the slowest speed
 
 
-def test_rows_of_a_map_that_start_from_the_curve_of_the_contact_are_those_of_their_own(monkeypatch):
+def test_rows_of_a_map_that_are_sought_around_the_curve_of_the_contact_are_those_of_their_own(monkeypatch):
     monkeypatch.setitem(curves.SOLVED_ROWS, "line", curves.SOLVED_ROWS["line"]._replace(step=8))
     contact = choices.choose(START, "motion", "rolling").contact
-    like = curves.solved_curve(contact, "balanced", lambda _: None).solved
-    asked = []
-    monkeypatch.setattr(
-        curves, "stribeck_curve", lambda *args, **kw: asked.append(kw["like"]) or sb.stribeck_curve(*args, **kw)
-    )
-    *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None, like)
-    assert asked[0] is like and len({*asked}) > 1  # each from its neighbour
+    own = curves.solved_curve(contact, "balanced", lambda _: None).solved
+    *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None, own)
     assert len(found.roughness) == 33
     for roughness, boundary, hydrodynamic in zip(
         found.roughness[::8], found.boundary[::8], found.hydrodynamic[::8], strict=True

@@ -169,11 +169,3 @@ def test_a_curve_of_states_goes_on_from_those_it_has(monkeypatch):
     for name in SMOOTH:
         error = faster.solutions[-1].state.absolute_errors[name] + known.absolute_errors[name]
         assert abs(faster.solutions[-1].state.values[name] - known.values[name]) <= error, name
-
-
-def test_a_curve_over_the_load_begins_at_a_state_of_one_over_the_speed(curve, monkeypatch):
-    cold = sb.stribeck_curve(groups(1e-2), load=(0.5 * LOAD, LOAD), points=2, rtol=RTOL, beta=BETA)
-    monkeypatch.setattr("stribeck.solver.point.path.solve_cold", None)  # a start from cold would fail
-    found = sb.stribeck_curve(groups(1e-2), load=(0.5 * LOAD, LOAD), points=2, rtol=RTOL, beta=BETA, like=curve)
-    assert found.friction == pytest.approx(cold.friction, rel=2 * RTOL)
-    assert found.observable("contact_load_share") == pytest.approx(cold.observable("contact_load_share"), abs=2 * RTOL)

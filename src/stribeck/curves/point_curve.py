@@ -69,13 +69,6 @@ class PointCurve(StribeckCurve):
     solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
     _solver: NeighbourSolver = field(kw_only=True, repr=False, compare=False)
 
-    @property
-    def _known_states(self) -> tuple[PointState, ...]:
-        """The states that were solved for it."""
-        if self._function is None:
-            return tuple(self._solver.states.values())
-        return tuple(one.point.state for one in self._function.expansions)
-
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array."""
         return observed(self.solutions, name)
@@ -306,7 +299,6 @@ def point_curve(
     values: Array,
     rtol: float,
     on_point: Callable[[int, int], object] | None,
-    like: StribeckCurve | None = None,
     **settings: Any,
 ) -> PointCurve:
     """Return the curve of a ball."""
@@ -318,8 +310,7 @@ def point_curve(
         and coordinate.is_uniform(values)
     )
     trace = _followed if is_function else _point_by_point
-    known = like._known_states if isinstance(like, PointCurve) else ()
-    solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]), known)
+    solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]))
     solutions, where, path, outcome, failed = trace(coordinate, values, solver, on_point)
     contact = coordinate.base if isinstance(coordinate.base, Contact) else None
     if not solutions:
@@ -348,10 +339,9 @@ def _followed(
     coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
 ) -> _Traced:
     """Return the points of a curve, read off its function, from fast to slow, as the film is smooth at high speed."""
-    problem, places = PointProblem(coordinate.groups_at, solver.rtol, solver.like), np.log(values)
+    problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
     path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, Progress(places, on_point))
     problem.release()
-    solver.like = ()
     known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
     solutions: tuple[PointSolution, ...] = ()
     try:

@@ -25,9 +25,7 @@ from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, 
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, show
 from stribeck.solver.cavities.reforming_line import line_problem
-from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
@@ -49,7 +47,6 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = ...,
     law: str | AsperityLaw | None = ...,
     method: Literal["solver"] = ...,
-    like: StribeckCurve | None = ...,
     **parts: Any,
 ) -> StribeckCurve: ...
 
@@ -69,7 +66,6 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = ...,
     law: str | AsperityLaw | None = ...,
     method: Literal["atlas"],
-    like: StribeckCurve | None = ...,
     **parts: Any,
 ) -> AtlasCurve: ...
 
@@ -90,7 +86,6 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = None,
     law: str | AsperityLaw | None = None,
     method: Method = "solver",
-    like: StribeckCurve | None = None,
     **parts: Any,
 ) -> StribeckCurve | AtlasCurve:
     """Solve the contact along speed, load or roughness.
@@ -119,10 +114,6 @@ def stribeck_curve(
         Whether each state is solved, or read off :mod:`stribeck.atlas`: within the stated error of its
         table, thousands of times as fast, without
         fields; ``rtol`` and ``on_point`` then have no effect.
-    like : StribeckCurve, optional
-        The curve of a similar contact, as of one that changes little by little: its states and meshes serve as first guesses,
-        in 0.5 to 0.8 of the time at ``rtol`` 1e-6, and the curve is the same within its errors.  A ball takes over the
-        nearest state alone, which spares its cold start.
     **parts
         ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
         :func:`stribeck.solve`.  What depends on the speed moves along the curve; of groups, numbers of the fluid are in the
@@ -157,8 +148,6 @@ def stribeck_curve(
         check_solid(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     check_points(points)
-    if like is not None and not isinstance(like, StribeckCurve):
-        raise InputError(f"like = {show(like)}; it must be the curve of a similar contact, as stribeck_curve returns it.")
     coordinate = Coordinate(over, base)
     grows = ends is None and check_method(method) == "solver" and coordinate.geometry not in CURVES
     grows = grows and bool(coordinate.groups_at(0.0).roughness > 0)
@@ -174,13 +163,12 @@ def stribeck_curve(
     if coordinate.geometry in CURVES:
         trace, _ = CURVES[coordinate.geometry]()
         settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
-        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, like=like, **settings)
+        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
         return found_curve
     places = np.log(values)
     progress = Progress(places, on_point)
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
-    similar = () if like is None else _states_along(like, coordinate)
-    line = line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values), similar)
+    line = line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)
@@ -194,7 +182,6 @@ def stribeck_curve(
         path = follow(line, float(places[-1]), float(places[0]), rtol, progress)
         if path.outcome is not Outcome.INTERRUPTED and path.expansions:
             progress.done = int((places >= path.coordinates[0]).sum())
-    line.like = []  # or each curve would hold all those before it
     done = progress.done
     if not done:
         if path.outcome is Outcome.INTERRUPTED and grows:
@@ -261,14 +248,6 @@ def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float,
 
 CURVES = {"point": _of_ball}
 """How curves are traced, and where they begin and end, for geometries other than the line."""
-
-
-def _states_along(curve: StribeckCurve, coordinate: Coordinate) -> Sequence[Expansion]:
-    """Return the states of a curve if they lie along the same coordinate."""
-    path = curve._function
-    if path is None or not isinstance(path.problem, LineProblem) or curve.over != coordinate.over:
-        return ()
-    return path.expansions if (curve.contact is None) is isinstance(coordinate.base, Groups) else ()
 
 
 def _automatic(

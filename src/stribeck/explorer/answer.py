@@ -161,9 +161,7 @@ class Answerer:
         if in_atlas(contact) or (key in self._kept and (known is None or known.solved is None or known.solved.rtol <= rtol)):
             return False
         try:
-            last = known or self._last_curves.get(geometry)
-            like = None if last is None else last.solved
-            found = solved_curve(contact, definition, report, like, rtol)
+            found = solved_curve(contact, definition, report, rtol)
             self._kept.pop(key, None)
             self._keep(key, lambda: found)
         except (InputError, SolveError) as problem:
@@ -183,8 +181,8 @@ class Answerer:
         if key in self._kept and self._kept[key].part == 1.0:
             return
         curve: Curve | None = self._kept.get(("solved", _key(contact), definition))
-        like = None if curve is None else curve.solved
-        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, like):
+        own = None if curve is None else curve.solved
+        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, own):
             self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
             yield
 

@@ -205,7 +205,6 @@ def solved_curve(
     contact: Contact,
     definition: Definition,
     report: Report,
-    like: StribeckCurve | None = None,
     rtol: float = SOLVED_RTOL,
 ) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
@@ -215,7 +214,6 @@ def solved_curve(
         rtol=rtol,
         definition=definition,
         on_point=lambda done, of: report(done / of),
-        like=like,
     )
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
@@ -268,7 +266,7 @@ def solved_diagram(
     speeds: tuple[float, float],
     decade: int,
     report: Report,
-    like: StribeckCurve | None = None,
+    own_curve: StribeckCurve | None = None,
 ) -> Iterator[Diagram]:
     """Give the diagram at the load of a contact as its rows are solved, those beside the contact first."""
     step = SOLVED_ROWS[contact.INPUTS.geometry].step
@@ -278,7 +276,7 @@ def solved_diagram(
     lines = np.full((3, len(roughness)), math.nan)
     own = contact.roughness or roughness[0]
     order = sorted(range(len(roughness)), key=lambda i: abs(math.log(roughness[i] / own)))
-    solved = {} if like is None else {own: like}
+    solved = {} if own_curve is None else {own: own_curve}
     for number, i in enumerate(order):
         here = float(roughness[i])
         near = solved[min(solved, key=lambda other: abs(math.log(other / here)))] if solved else None  # noqa: B023
@@ -296,7 +294,7 @@ def solved_diagram(
 
 
 def _row(
-    contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report, like: StribeckCurve | None
+    contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report, neighbour: StribeckCurve | None
 ) -> tuple[tuple[float, float, float], StribeckCurve]:
     """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve.
 
@@ -304,7 +302,7 @@ def _row(
     """
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
     whole = speeds[0] / solved.room, speeds[1] * solved.room
-    for low, high in (_expected(contact.roughness, whole, like), whole):
+    for low, high in (_expected(contact.roughness, whole, neighbour), whole):
         found = stribeck_curve(
             contact,
             speed=(low, high),
@@ -312,13 +310,11 @@ def _row(
             rtol=solved.rtol,
             definition=definition,
             on_point=lambda done, of: report(done / of),
-            like=like,
         )
         is_slow = low == whole[0] or found.regimes[0] == "boundary"
         rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
         if is_slow and (rises or high == whole[1]):
             break
-        like = found
     marks = {mark.name: mark.speed for mark in _marks_of(found)}
     slow = found.regimes[0]
     ends = found.values[-1] >= 0.99 * high
@@ -328,12 +324,12 @@ def _row(
     return (boundary, hydrodynamic, marks.get("minimum", math.nan)), found
 
 
-def _expected(roughness: float, whole: tuple[float, float], like: StribeckCurve | None) -> tuple[float, float]:
+def _expected(roughness: float, whole: tuple[float, float], neighbour: StribeckCurve | None) -> tuple[float, float]:
     """Return speeds between which the transitions at a roughness should lie, by those of a curve at another one."""
-    marks = {} if like is None else {mark.name: mark.speed for mark in _marks_of(like)}
-    if like is None or like.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
+    marks = {} if neighbour is None else {mark.name: mark.speed for mark in _marks_of(neighbour)}
+    if neighbour is None or neighbour.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
         return whole
-    factors = [(roughness / like.contact.roughness) ** power for power in STEEPNESS]
+    factors = [(roughness / neighbour.contact.roughness) ** power for power in STEEPNESS]
     low, high = min(factors) * marks["boundary"] / MARGIN, max(factors) * max(marks.values()) * MARGIN
     low, high = max(low, whole[0]), min(high, whole[1])
     return (low, high) if low < high else whole

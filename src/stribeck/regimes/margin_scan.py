@@ -112,7 +112,7 @@ class Scan:
     rtol: float
     definition: Definition
     on_point: Callable[[int, int], object] | None
-    like: StribeckCurve | None = None
+    whole: StribeckCurve | None = None  # A curve over one of the inputs that is solved already
     done: int = 0
     known: dict[float, StribeckCurve] = field(default_factory=dict)
 
@@ -182,8 +182,7 @@ class Scan:
                 else:
                     ends: Any = {name: (low, high)}
                     settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
-                    curve = stribeck_curve(start, **ends, points=points, like=self.like, **settings)
-                    self.like = curve if self.like is None else self.like
+                    curve = stribeck_curve(start, **ends, points=points, **settings)
             except SolveError:
                 return None
         if curve.outcome is Outcome.INTERRUPTED:
@@ -194,8 +193,8 @@ class Scan:
         return curve
 
     def _part_known(self, name: Over, near: float, low: float, high: float, points: int) -> StribeckCurve | None:
-        """Return the states between two values as far as the curve gives them with which the search began."""
-        whole, contact = self.like, self.contact
+        """Return the states between two values as far as the curve that is solved already gives them."""
+        whole, contact = self.whole, self.contact
         if whole is None or not whole.is_function or whole.over != name or not whole.rtol <= self.rtol:
             return None
         of_friction = (whole.definition, whole.boundary_friction, whole.beta)

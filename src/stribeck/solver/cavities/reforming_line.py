@@ -52,14 +52,13 @@ def line_problem(
     direction: Direction,
     rtol: float,
     uniform: bool = True,
-    like: Sequence[Expansion] = (),
 ) -> LineProblem:
     """Return the states of the line along a path, by how its film ends."""
     groups = groups_at(0.0)
     may_open = groups.model.cavitation is Cavitation.REFORM and groups.speed > 0
     if may_open and groups.model.cavity_pressure < 0:
         return ReformingLine(groups_at, direction, rtol, uniform)
-    return (EndingLine if may_open else LineProblem)(groups_at, direction, rtol, uniform, like)
+    return (EndingLine if may_open else LineProblem)(groups_at, direction, rtol, uniform)
 
 
 class EndingLine(LineProblem):
@@ -71,13 +70,12 @@ class EndingLine(LineProblem):
         direction: Direction,
         rtol: float,
         uniform: bool,
-        like: Sequence[Expansion],
     ) -> None:
         def ending_at(s: float) -> Groups:
             groups = groups_at(s)
             return replace(groups, model=replace(groups.model, cavitation=Cavitation.EXIT))
 
-        super().__init__(ending_at, direction, rtol, uniform, like)
+        super().__init__(ending_at, direction, rtol, uniform)
         self.asked_at = groups_at
 
     def point_at(

@@ -160,12 +160,6 @@ class Corrector:
         tail, gap_tail = self._widest
         self.tolerances = min(tail, RELAX_FACTOR * self.tolerances[0]), min(gap_tail, RELAX_FACTOR * self.tolerances[1])
 
-    def move_to(self, operators: Operators, fine: FineOperators) -> None:
-        """Take a mesh whose operators are known already."""
-        if self.operators is None or self.operators.mesh is not operators.mesh:
-            self._change_to(operators, fine)
-            self.inverse = None
-
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
         """Take another mesh, and drop the largest operators of the meshes left longest ago."""
         if self.operators is not None:

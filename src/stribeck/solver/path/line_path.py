@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
-from stribeck.solver.path.corrector import FIRST_MINIMUM_SHIFT, Corrector, keeps_cavity, solve_cold_line
+from stribeck.solver.path.corrector import Corrector, keeps_cavity, solve_cold_line
 from stribeck.solver.path.expansion import (
     Direction,
     Expanded,
@@ -70,10 +69,6 @@ ERROR_FLOOR_RATIO = 0.25  # Least error of an observable over the largest: one e
 KEPT_INVERSES = 3  # Inverses held at a time, for both ends of an interval and a state between; each fills a matrix
 SECOND_MESH_RTOL_FRACTION = 0.6  # Error of the minimum gap over rtol above which it is read on both meshes
 NEGLIGIBLE_RTOL_FRACTION = 0.1  # Error of the minimum gap's polynomial over rtol up to which it replaces the reading
-SIMILAR_RADIUS_RATIO = 0.5  # Distance from a similar contact's state over its radius up to which it is a guess
-SAME_RADIUS_LOG_DISTANCE = 0.3  # Log distance of a similar contact's groups up to which its radius of convergence is taken
-REUSE_MESH_RTOL_RATIO = 5.0  # The nearer state's mesh is tried if that state's error is within this multiple of rtol
-SAME_GROUPS_RTOL = 1e-9  # Relative difference up to which groups are the same
 MAX_LOG_GAP_CHANGE = 12.0  # Change of the least or largest log gap in a step above which a prediction is refused
 MAX_PREDICTION_DOUBT = 0.8  # Uncertainty of a prediction's log unknowns above which Newton's iteration does not start
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
@@ -87,15 +82,12 @@ ANY_MESH = Mesh(np.array([-1.0, 0.0, 1.0]), 2)  # Operators of a model are asked
 class LineProblem:
     """The states of the line at the groups ``groups_at(s)``, whose logarithms change along ``direction``."""
 
-    # States along a similar contact, ``like``, are guesses with meshes: they spare the cold start and most new meshes.
-
     def __init__(
         self,
         groups_at: Callable[[float], Groups],
         direction: Direction,
         rtol: float,
         uniform: bool = True,
-        like: Sequence[Expansion] = (),
     ) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
@@ -117,22 +109,6 @@ class LineProblem:
         self.corrector = Corrector(groups_at, self.rtol, GAP_TAIL_RATIO, own_inverse=True)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
-        kind = _unknowns_of(start.model)
-        reforms = start.model.cavitation is Cavitation.REFORM
-        alike = [one for one in like if _unknowns_of(one.point.state.groups.model) == kind and not reforms]
-        self.like = [replace(one, coordinate=one.coordinate + self._shift(one)) for one in alike]
-
-    def _shift(self, one: Expansion) -> float:
-        """Return the coordinate here of the groups nearest to those of a similar contact's state."""
-        d = np.array(self.direction)
-        return float(d @ self._logs_from(one) / (d @ d))
-
-    def _logs_from(self, one: Expansion) -> Array:
-        """Return the logarithms of the groups of a similar contact's state over the groups here."""
-        there, here = one.point.refined.groups, self.groups_at(one.coordinate)
-        # A speed or a roughness of zero is none along the whole path.
-        each = ((getattr(there, name), getattr(here, name)) for name in ("speed", "load", "roughness"))
-        return np.log([float(a or 1.0) / float(b or 1.0) for a, b in each])
 
     @cached_property
     def controlled(self) -> Flags:
@@ -169,13 +145,8 @@ class LineProblem:
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.path.Problem`."""
         groups = self.groups_at(s)
-        same = self._same(s, groups)
-        if same is not None:
-            return same
-        refined = self._from_similar(s, groups, near)
-        if refined is not None:
-            pass
-        elif near and same_unknowns(*near):
+        refined: RefinedState | None
+        if near and same_unknowns(*near):
             guess, doubt = self._guess(s, groups, near)
             if not doubt <= MAX_PREDICTION_DOUBT:
                 return Outcome.PATH_LOST
@@ -200,46 +171,7 @@ class LineProblem:
             self.failure = refined
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
-        similar = self._similar(s)
-        if similar is not None and (np.abs(self._logs_from(similar)) < SAME_RADIUS_LOG_DISTANCE).all():
-            near = [similar]
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
-
-    def _similar(self, s: float) -> Expansion | None:
-        """Return the nearest state of a similar contact, if its series reaches here."""
-        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
-        return None if found is None or abs(found.coordinate - s) > SIMILAR_RADIUS_RATIO * found.radius else found
-
-    def _same(self, s: float, groups: Groups) -> Expansion | None:
-        """Return the state of a similar contact with equal groups, as where only its friction or viscosity differs."""
-        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
-        if found is None or abs(found.coordinate - s) > SAME_GROUPS_RTOL:
-            return None
-        point: LinePoint = found.point
-        estimate = point.refined.estimate
-        if not _same_but_for_rounding(point.refined.groups, groups):
-            return None
-        if estimate is None or estimate.total > self.tolerance or found.order < self.order:
-            return None
-        self.corrector.move_to(point.state.equations.operators, point.fine)
-        return replace(found, coordinate=s)
-
-    def _from_similar(self, s: float, groups: Groups, near: Sequence[Expansion]) -> RefinedState | None:
-        """Return the state from the nearest one of a similar contact on its mesh; None without one, or if it fails."""
-        found = self._similar(s)
-        if found is None:
-            return None
-        point: LinePoint = found.point
-        w, doubt = beyond(point.unknowns, s - found.coordinate)
-        if not doubt <= MAX_PREDICTION_DOUBT:
-            return None
-        base = with_positive_gap(groups)[0]
-        guess = self.state(replace(base, model=with_ending_of(point.state, base.model)), point, w)
-        positions = [one.point.state.minimum_position for one in near]
-        spread = max((abs(guess.minimum_position - each) for each in positions), default=FIRST_MINIMUM_SHIFT)
-        self.corrector.move_to(guess.equations.operators, point.fine)
-        refined = self.corrector.solve(guess, groups, spread)
-        return refined if refined.outcome.ok else None
 
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate
@@ -355,7 +287,7 @@ class LineProblem:
                 return point
         guess = self.guess_at(left, right, s)
         end = on(guess.mesh, (left, right))
-        if end is not None and end.refined.estimate is not None and end.refined.estimate.total <= REUSE_MESH_RTOL_RATIO * rtol:
+        if end is not None and end.refined.estimate is not None and end.refined.estimate.total <= rtol:
             point = self._verified(guess, guess.groups, groups, end.fine, rtol)
             if point is not None:
                 return point
@@ -468,19 +400,6 @@ class LineProblem:
             better = of_others < error
             values, error = np.where(better, others, values), np.where(better, of_others, error)
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ_COLUMNS
-
-
-def _same_but_for_rounding(one: Any, other: Any) -> bool:
-    """Return whether groups, models or their parts are the same but for the rounding of their numbers."""
-    if one is other:
-        return True
-    if isinstance(one, float | np.ndarray):
-        return np.shape(one) == np.shape(other) and np.allclose(one, other, rtol=SAME_GROUPS_RTOL, atol=0.0, equal_nan=True)
-    if is_dataclass(one) and type(one) is type(other):
-        return all(
-            _same_but_for_rounding(getattr(one, each.name), getattr(other, each.name)) for each in fields(one) if each.compare
-        )
-    return bool(one == other)
 
 
 def same_unknowns(*near: Expansion) -> bool:

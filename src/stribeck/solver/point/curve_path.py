@@ -31,7 +31,7 @@ from stribeck.solver.path.path import (
     SolvedPath,
 )
 from stribeck.solver.point.level import Level, band_for
-from stribeck.solver.point.path import next_state, similar, without_factors
+from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
 
@@ -68,10 +68,9 @@ class PointPoint(NamedTuple):
 
 
 class PointProblem:
-    """The states of a ball with a full film at the groups ``groups_at(s)``, the first from the nearest in ``like``."""
+    """The states of a ball with a full film at the groups ``groups_at(s)``."""
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, like: Sequence[PointState] = ()) -> None:
-        self.like = like
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
         self.groups_at, self.allowed, self.rtol = groups_at, rtol, STATE_RTOL_FRACTION * rtol
         self.exact = is_exponential(groups_at(0.0).law)
         self.order = next(order for least, order in SERIES_ORDERS if rtol >= least)
@@ -111,7 +110,7 @@ class PointProblem:
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.path.Problem`."""
         groups = self.groups_at(s)
-        start, predicted = similar(self.like, groups), None
+        start, predicted = None, None
         if near:
             nearest = min(near, key=lambda one: abs(one.coordinate - s))
             start, predicted = nearest.point.state, self.guess(nearest, s)
@@ -239,7 +238,7 @@ class PointProblem:
 
     def release(self) -> None:
         """Drop the factors of the last state, which fill the memory."""
-        self._last, self.like = None, ()
+        self._last = None
 
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved to the given tolerance."""

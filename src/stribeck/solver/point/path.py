@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.continuation import extrapolation_weights
-from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.results import same
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
@@ -56,23 +53,11 @@ def next_state(
     return cold if cold.outcome.ok else state
 
 
-def similar(states: Iterable[PointState], groups: Groups) -> PointState | None:
-    """Return the nearest of some states of the same law that move, within :data:`REACH`; None if there is none."""
-
-    def distance(state: PointState) -> float:
-        pairs = [(float(getattr(groups, name)), float(getattr(state.groups, name))) for name in GROUPS]
-        return sum(abs(math.log(one / other)) if one * other > 0 else math.inf for one, other in pairs if one != other)
-
-    near = [(distance(state), i, state) for i, state in enumerate(states) if same(state.groups.law, groups.law)]
-    near = [each for each in near if each[0] <= REACH and isinstance(each[2].work, Pair)]
-    return min(near)[2] if near else None
-
-
 class NeighbourSolver:
     """Solves the states of a coordinate in any order, and keeps them."""
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, like: Sequence[PointState] = ()) -> None:
-        self.groups_at, self.rtol, self.like = groups_at, rtol, like
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        self.groups_at, self.rtol = groups_at, rtol
         self.states: dict[float, PointState] = {}
         self._last: tuple[float, PointState] | None = None
 
@@ -90,7 +75,7 @@ class NeighbourSolver:
         """Return the nearest state that is solved, the last one with its factors; None where none is near."""
         near = [(abs(c - s), state) for c, state in self.states.items() if abs(c - s) <= REACH]
         if not near:
-            return similar(self.like, self.groups_at(s))
+            return None
         distance, state = min(near, key=lambda pair: pair[0])
         if self._last is not None and abs(self._last[0] - s) <= 1.01 * distance:
             return self._last[1]
