@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from stribeck import atlas
-from stribeck.atlas.grid import BREAK_TERMS, HEAVY
-from stribeck.atlas.table import STEP, TABULATED
+from stribeck.atlas.grid import BREAK_TERMS, MAX_L_OF_HEAVY
+from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
 from stribeck.quantities.units import DIMENSIONS
@@ -62,24 +62,24 @@ def planes(whole: np.ndarray) -> bytes:
 
 def table() -> dict:
     """Return all that the script needs, ready for JSON."""
-    chosen = [TABULATED.index(name) for name in FUNCTIONS]
+    chosen = [LINE_FUNCTIONS.index(name) for name in FUNCTIONS]
     with files("stribeck.atlas").joinpath(TABLE.file).open("rb") as stream, np.load(stream) as data:
         flat, breaks, film = data["blocks"], data["breaks"], data["film"]
     parts, position = [], 0
     for region in TABLE.grid.regions:
         for _ in range(region.pieces[0] * region.pieces[1]):
             for count in region.speeds:
-                size = len(TABULATED) * count * region.nodes[0] * region.nodes[1]
-                parts.append(flat[position : position + size].reshape(len(TABULATED), -1)[chosen].ravel())
+                size = len(LINE_FUNCTIONS) * count * region.nodes[0] * region.nodes[1]
+                parts.append(flat[position : position + size].reshape(len(LINE_FUNCTIONS), -1)[chosen].ravel())
                 position += size
     assert position == len(flat)
     film = np.ascontiguousarray(film[:, :, [k - 1 for k in chosen[1:]]])  # smooth films have no odds
     return {
         "functions": FUNCTIONS,
         "regions": [asdict(region) for region in TABLE.grid.regions],
-        "step": STEP,
+        "step": COEFFICIENT_UNIT,
         "breakTerms": BREAK_TERMS,
-        "heavy": HEAVY,
+        "heavy": MAX_L_OF_HEAVY,
         "filmShape": film.shape,
         "filmRange": [math.log(end) for end in TABLE.grid.films],
         "box": {"speed": atlas.BOX["speed"], "load": atlas.BOX["load"], "kappa": atlas.BOX["relative_roughness"]},

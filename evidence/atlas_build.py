@@ -24,9 +24,9 @@ from evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
 from stribeck._types import Array
 from stribeck.atlas.grid import (
     BREAK_TERMS,
+    MAX_YIELD_OF_ROUGHNESS,
+    SEGMENT_SHARES,
     SEGMENTS,
-    SHARES,
-    YIELDING,
     Grid,
     Region,
     breaks_from,
@@ -35,7 +35,7 @@ from stribeck.atlas.grid import (
     segment_nodes,
     to_coefficients,
 )
-from stribeck.atlas.table import STEP, pack, solver_hash
+from stribeck.atlas.table import COEFFICIENT_UNIT, pack, solver_hash
 from stribeck.atlas.tables import TABLES, TableRow
 
 NEGLIGIBLE = 2e-8
@@ -141,7 +141,7 @@ def key_of(name: str, region: int, *more: Any) -> str:
     grid, plan = ROWS[name].grid, PLANS[name]
     where = grid.regions[region]
     coordinates = grid.heaviest, grid.load_factor, grid.power, where.roughness, where.logs, where.closing, where.has_rest
-    coarse = plan.coarse_nodes, plan.coarse_step, plan.coarse_rtol, SHARES, YIELDING
+    coarse = plan.coarse_nodes, plan.coarse_step, plan.coarse_rtol, SEGMENT_SHARES, MAX_YIELD_OF_ROUGHNESS
     return f"{name}-{hashlib.sha256(repr((coordinates, coarse, *more)).encode()).hexdigest()[:8]}"
 
 
@@ -201,7 +201,7 @@ def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
         "states": int(sum(result.shape[0] * result.shape[1] for result in lines.values())),
         "rtol": plan.rtol,
         "functions": list(row.functions),
-        "unit": STEP,
+        "unit": COEFFICIENT_UNIT,
     }
     target.parent.mkdir(exist_ok=True)
     np.savez_compressed(target, **pack(breaks, blocks, film, about, law_of(row)))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.grid import MIN_SPEED, SHARES, YIELDING, Region
+from stribeck.atlas.grid import MAX_YIELD_OF_ROUGHNESS, MIN_SPEED, SEGMENT_SHARES, Region
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TableRow
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import persson_law
@@ -163,7 +163,7 @@ def speed_range(row: TableRow, log_load: float, kappa: float, has_rest: bool = T
         gap = rest
     wedge = 2 * math.log(kappa) + math.log(5) + 2.55 * math.log(gap)
     if row.geometry == "point" and row.cavitation is not Cavitation.NONE:
-        film, last = (_slow_for_torn_film(kappa * s) for s in (gap, gap + SHARES[-1]))
+        film, last = (_slow_for_torn_film(kappa * s) for s in (gap, gap + SEGMENT_SHARES[-1]))
     else:
         film, last = (math.log((kappa * s / 0.446) ** (5 / 3) + (2.88 * kappa * s) ** 1.5) for s in (gap, max(gap, 1.0)))
     half = -float(np.logaddexp(-wedge, -film))
@@ -190,15 +190,15 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
     s, odds, central = log_speeds[there], odds[there], central[there]
     if not has_rest and row.law != "exponential":
         ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(GAPS)))
-        last = PchipInterpolator(odds, s)(SHARES[-1])
+        last = PchipInterpolator(odds, s)(SEGMENT_SHARES[-1])
         return np.array([math.log(row.box["speed"][0]), *ends.tolist(), float(last)])
     first = math.log(MIN_SPEED)
     if has_rest:
         yielding = np.exp(odds) + central / central[0] - 1
-        early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
+        early = np.arange(1, 1 + int(np.argmax(yielding > 8 * MAX_YIELD_OF_ROUGHNESS)))
         early = early[yielding[early] > 0.02]  # below is the tolerance of the states
-        first = float(PchipInterpolator(np.log(yielding[early]), s[early])(math.log(YIELDING)))
-    return np.array([first, *PchipInterpolator(np.logaddexp(0, odds), s)(SHARES).tolist()])
+        first = float(PchipInterpolator(np.log(yielding[early]), s[early])(math.log(MAX_YIELD_OF_ROUGHNESS)))
+    return np.array([first, *PchipInterpolator(np.logaddexp(0, odds), s)(SEGMENT_SHARES).tolist()])
 
 
 def coarse_breaks(row: TableRow, region: Region, log_load: float, kappa: float) -> Array:

@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
-from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS, blank_figure, picture
+from stribeck.files.pictures import CONTACT, GREY, INK, PICTURE_ENDINGS, TINTS, blank_figure, picture
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.quantities.units import InputError
 
@@ -102,7 +102,7 @@ def plot_error_maps(
                 _draw_lines(ax, *panel, left=j == 0)
     _explain(figure, image, lines)
     if path is not None:
-        with atomic_write(path, PICTURES, force=force) as temporary:
+        with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
             save(figure, temporary)
     return figure
 

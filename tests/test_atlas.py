@@ -364,13 +364,13 @@ def test_a_table_is_packed_and_unpacked_within_its_unit():
         (n, *region.nodes, 7) for region in atlas_grid.REGIONS for _ in range(math.prod(region.pieces)) for n in region.speeds
     ]
     dense = [rng.normal(size=shape) for shape in shapes]
-    about = {"functions": list(atlas_table.TABULATED)}
+    about = {"functions": list(atlas_table.LINE_FUNCTIONS)}
     again = atlas_table.unpack(table.grid, atlas_table.pack(table.breaks, dense, table.film, about))
     assert again.about == about
     for block, wanted in zip(again.blocks, dense, strict=True):
         if block is not None:
             found = block.coefficients.transpose(0, 2, 1).reshape(wanted.shape)
-            assert np.abs(found - wanted).max() <= 0.5 * atlas_table.STEP
+            assert np.abs(found - wanted).max() <= 0.5 * atlas_table.COEFFICIENT_UNIT
 
 
 def test_a_build_goes_on_with_what_is_kept(tmp_path):

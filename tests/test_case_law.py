@@ -10,7 +10,7 @@ from command_line import CONTACT, PDMS, call, case_text
 from sweep_files import write
 
 import stribeck as sb
-from stribeck.cases.law import LAWS, MAY_HAVE, NEEDED
+from stribeck.cases.law import LAWS, NEEDED_TABLE, TABLES_BY_LAW
 from stribeck.contact_laws.scaled import NAMED
 
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
@@ -75,8 +75,8 @@ def test_asperities_give_the_coefficients_or_the_contact_does(case, law, kind):
 
 
 def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_one_in_disguise(case):
-    assert set(MAY_HAVE) == set(LAWS)
-    for law in sorted(set(LAWS) - set(NEEDED)):
+    assert set(TABLES_BY_LAW) == set(LAWS)
+    for law in sorted(set(LAWS) - set(NEEDED_TABLE)):
         found = sb.load_case(case(law, {"alpha": "1.0"})).contact.law
         assert found == NAMED[law]
         assert (found is None) == (law == "exponential")

@@ -16,7 +16,7 @@ from rich.console import Console
 
 import stribeck as sb
 from stribeck import FitSettings
-from stribeck.cases.fit_settings import OF_CONTACT as FREE
+from stribeck.cases.fit_settings import CONTACT_INPUTS as FREE
 from stribeck.cases.fit_settings import Prior
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of

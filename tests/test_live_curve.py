@@ -13,7 +13,7 @@ import pytest
 from test_browser import LONG, chromium  # noqa: F401
 
 import stribeck as sb
-from stribeck.atlas.table import STEP, TABULATED
+from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
 from stribeck.quantities.inputs import QUANTITIES
 
@@ -56,8 +56,8 @@ def test_the_script_holds_the_coefficients_of_the_packaged_atlas(made):
     shape = region["speeds"][0], *region["nodes"]
     first = whole[: 4 * math.prod(shape)].reshape(4, *shape)
     for row, name in enumerate(table["functions"]):
-        expected = block.coefficients[:, TABULATED.index(name)]
-        np.testing.assert_array_equal(STEP * first[row][:, block.first, block.second], expected)
+        expected = block.coefficients[:, LINE_FUNCTIONS.index(name)]
+        np.testing.assert_array_equal(COEFFICIENT_UNIT * first[row][:, block.first, block.second], expected)
 
 
 def test_the_front_page_has_a_picture_that_the_curve_can_replace():

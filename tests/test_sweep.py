@@ -21,7 +21,7 @@ import stribeck as sb
 from stribeck import Outcome
 from stribeck.batches import chain as sweep_chain
 from stribeck.quantities.inputs import INPUTS
-from stribeck.sweeps.lock import LOCK
+from stribeck.sweeps.lock import LOCK_FILE
 
 LONG = RANDOM.format(kind="sobol", points=1024)
 """Enough states to be stopped in the middle of."""
@@ -316,7 +316,7 @@ def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, wo
         "run the same command again to resume.\n"
     )
     assert f"Computed now: {found.finished}, " in out
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()
     assert json.loads((store / "runs.jsonl").read_text().splitlines()[-1])["outcome"] == "INTERRUPTED"
 
     def enough(progress):
@@ -369,7 +369,7 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
     before = chunks(store)
     kept = sb.open_sweep(store)
     assert kill_at <= kept.finished < total
-    assert (store / LOCK).exists()
+    assert (store / LOCK_FILE).exists()
     again = sb.sweep(file, store)
     assert "the lock was taken over" in again.note
     assert again.finished == total
@@ -438,7 +438,7 @@ sys.exit(main(sys.argv[1:]))
     )
     assert run.returncode == 1
     assert run.stderr.startswith("stribeck: Worker processes died 4 times; is the memory of this machine large enough, ")
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()
 
 
 def test_a_second_sweep_on_the_store_is_refused_while_the_first_runs(capsys, tmp_path):
@@ -504,7 +504,7 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
         found = sb.open_sweep(store)
         assert 0 < found.finished < 128
         assert found.outcomes == {"CONVERGED": found.finished}
-        assert not (store / LOCK).exists()
+        assert not (store / LOCK_FILE).exists()
         assert not [name for array in ("values", "text", "done") for name in os.listdir(store / array) if name.startswith(".")]
         larger = tmp_path / "larger"
         shutil.copytree(store, larger)

@@ -15,7 +15,7 @@ from sweep_files import RANDOM, chunks, done_rows, finish, write
 from test_sweep import right, start, until
 
 import stribeck as sb
-from stribeck.sweeps.lock import LOCK
+from stribeck.sweeps.lock import LOCK_FILE
 
 DASK = str(Path(sys.executable).with_name("dask"))
 
@@ -134,7 +134,7 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
             process.kill()
     assert process.returncode == 130, err
     assert "the lock was taken over" in err and "run the same command again to resume" in err
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()
     kept = sb.open_sweep(store).finished
     last = sb.sweep(file, store)
     assert (last.finished, last.computed) == (256, 256 - kept)
@@ -144,7 +144,7 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
 
 
 def test_where_no_scheduler_answers_is_a_sentence(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr("stribeck.sweeps.workers.CONNECTION_TIME", 0.5)
+    monkeypatch.setattr("stribeck.sweeps.workers.CONNECTION_TIMEOUT", 0.5)
     file = write(tmp_path, RANDOM.format(kind="sobol", points=4))
     began = time.monotonic()
     answer = call(capsys, "sweep", file, "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:9")
@@ -168,4 +168,4 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_sentence(tmp_path):
     assert process.returncode == 1, err
     assert "stribeck: The cluster failed (the connection to its scheduler was lost); run the same sweep" in err
     assert 5 <= sb.open_sweep(store).finished < 1024
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()

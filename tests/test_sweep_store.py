@@ -23,8 +23,8 @@ from stribeck.files.writing import MissingExtraError
 from stribeck.sweeps import rows as sweep_rows
 from stribeck.sweeps import store as sweep_store
 from stribeck.sweeps.columns import OUTCOMES, columns_of
-from stribeck.sweeps.lock import LOCK, locked
-from stribeck.sweeps.seal import SEALED, SUMS
+from stribeck.sweeps.lock import LOCK_FILE, locked
+from stribeck.sweeps.seal import SEALED_FILES, SUMS_FILE
 
 PHYSICS = sb.Groups(0.0, 1.0, 0.0).physics
 SMALL = GRID.replace("17", "3")
@@ -150,7 +150,7 @@ def test_a_state_without_its_flag_and_temporary_files_are_cleared_away(copy):
     store, file = copy
     (store / "done" / "c.7").unlink()
     (store / "values" / ".c.7.0-0123abcd").write_bytes(b"half")
-    (store / "text" / "c.7.0").write_bytes(b"left by a run that was killed".ljust(sweep_store.TEXT, b"\0"))
+    (store / "text" / "c.7.0").write_bytes(b"left by a run that was killed".ljust(sweep_store.TEXT_BYTES, b"\0"))
     assert sb.sweep(file, store).computed == 1
     assert not list((store / "values").glob(".*"))
     assert sb.open_sweep(store).finished == 12
@@ -177,7 +177,7 @@ def test_data_come_before_the_flag_and_whole(tmp_path, monkeypatch):
 
 def test_a_long_text_is_cut_at_a_letter(tmp_path):
     cut = sweep_rows._text("µ" * 2000)
-    assert len(cut) == sweep_store.TEXT
+    assert len(cut) == sweep_store.TEXT_BYTES
     assert cut.rstrip(b"\0").decode().endswith("µ...")
 
 
@@ -241,7 +241,7 @@ def test_whatever_happens_to_a_file_of_a_store_its_export_is_right_or_refused(co
     store, _ = copy
     good = filled.to_dataset()
     said = next(row for row, text in enumerate(filled.rows.texts) if text)
-    names = [*SEALED, SUMS, "values/c.3.0", "done/c.3", f"text/c.{said}.0", f"values/c.{said}.0", f"done/c.{said}"]
+    names = [*SEALED_FILES, SUMS_FILE, "values/c.3.0", "done/c.3", f"text/c.{said}.0", f"values/c.{said}.0", f"done/c.{said}"]
     refused = incomplete = 0
     for name in names:
         file = store / name
@@ -256,7 +256,7 @@ def test_whatever_happens_to_a_file_of_a_store_its_export_is_right_or_refused(co
             if isinstance(found, str):
                 refused += 1
             else:
-                assert assert_right(found, good) == (12 if name == SUMS else 11), name  # more lines are no matter there
+                assert assert_right(found, good) == (12 if name == SUMS_FILE else 11), name  # more lines are no matter there
                 incomplete += 1
         file.unlink()
         for odd in ("missing", "folder", "pipe"):
@@ -295,8 +295,8 @@ def test_a_flipped_bit_in_the_inputs_is_told_by_the_command_and_at_resume(copy, 
 def test_sha256sum_checks_a_store(filled):
     if shutil.which("sha256sum") is None:
         pytest.skip("there is no sha256sum here")
-    run = subprocess.run(["sha256sum", "--check", SUMS], cwd=filled.path, capture_output=True, text=True)
-    assert run.stdout.splitlines() == [f"{name}: OK" for name in SEALED]
+    run = subprocess.run(["sha256sum", "--check", SUMS_FILE], cwd=filled.path, capture_output=True, text=True)
+    assert run.stdout.splitlines() == [f"{name}: OK" for name in SEALED_FILES]
 
 
 def test_chunks_of_two_states_that_changed_places_are_not_done(copy):
@@ -436,12 +436,12 @@ def test_a_number_of_workers_that_is_none_is_refused(tmp_path, workers):
 
 def lock_of(store, process=None, host=None, born=None):
     """Write the lock of a process into a store, as filelock does."""
-    with SoftFileLock(str(store / LOCK)):
-        record = (store / LOCK).read_text().splitlines()
+    with SoftFileLock(str(store / LOCK_FILE)):
+        record = (store / LOCK_FILE).read_text().splitlines()
     for place, value in enumerate((process, host, born)):
         if value is not None:
             record[place] = str(value)
-    (store / LOCK).write_text("\n".join(record) + "\n")
+    (store / LOCK_FILE).write_text("\n".join(record) + "\n")
 
 
 def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
@@ -449,7 +449,7 @@ def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
     lock_of(store)
     with pytest.raises(sb.InputError, match=rf"is in use by process {os.getpid()} on this machine; wait for it"):
         sb.sweep(file, store)
-    assert (store / LOCK).exists()
+    assert (store / LOCK_FILE).exists()
 
 
 def test_the_lock_of_another_machine_is_refused_with_what_to_do(copy):
@@ -457,7 +457,7 @@ def test_the_lock_of_another_machine_is_refused_with_what_to_do(copy):
     lock_of(store, host="node17", process=4711)
     with pytest.raises(sb.InputError, match=r"in use by process 4711 on node17, .*; if it does not, delete that file and run"):
         sb.sweep(file, store)
-    (store / LOCK).unlink()
+    (store / LOCK_FILE).unlink()
     assert sb.sweep(file, store).note == ""
 
 
@@ -477,13 +477,13 @@ def test_the_lock_of_a_dead_process_is_taken_over_with_a_note(copy, how):
     assert re.fullmatch(
         r"An earlier sweep on this store \(process \d+\) ended without releasing its lock; .* over\.", found.note
     )
-    assert not list(store.glob(f"*{LOCK}*"))
+    assert not list(store.glob(f"*{LOCK_FILE}*"))
 
 
 @pytest.mark.parametrize("odd", ["torn", "empty", "of another program", "not text", "huge", "a folder", "a pipe"])
 def test_a_lock_that_no_sweep_has_written_is_refused_with_what_to_do(copy, odd):
     store, file = copy
-    lock = store / LOCK
+    lock = store / LOCK_FILE
     if odd == "a folder":
         lock.mkdir()
     elif odd == "a pipe":
@@ -520,7 +520,7 @@ def test_of_many_who_want_a_dead_lock_one_has_it_at_a_time(copy):
     for thread in threads:
         thread.join()
     assert held and max(most) == 1
-    assert not list(store.glob(f"*{LOCK}*"))
+    assert not list(store.glob(f"*{LOCK_FILE}*"))
 
 
 def test_the_lock_is_gone_after_success_failure_and_interruption(tmp_path):
@@ -534,10 +534,10 @@ def test_the_lock_is_gone_after_success_failure_and_interruption(tmp_path):
 
     store = tmp_path / "store"
     assert sb.sweep(file, store, on_progress=stop).interrupted
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()
     with pytest.raises(ZeroDivisionError):
         sb.sweep(file, store, on_progress=fail)
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()
     assert len(done_rows(store)) == 2
     assert sb.sweep(file, store).computed == 10
-    assert not (store / LOCK).exists()
+    assert not (store / LOCK_FILE).exists()

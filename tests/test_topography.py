@@ -89,7 +89,7 @@ def test_a_zip_archive_is_not_unpacked_where_it_would_fill_the_memory(tmp_path, 
         for name in ("bindata/data.bin", "more.bin"):
             archive.writestr(name, bytes(600_000))
     assert bomb.stat().st_size < 3000
-    monkeypatch.setattr(scan_files, "LARGEST_FILE", 1_000_000)
+    monkeypatch.setattr(scan_files, "MAX_FILE_BYTES", 1_000_000)
     monkeypatch.setattr(zipfile.ZipFile, "open", lambda *arguments, **options: pytest.fail("it was unpacked"))
     with pytest.raises(sb.InputError, match=r"bomb\.x3p would be 0\.0012 GB unpacked, more than 0 GB; crop the scan"):
         read_topography(bomb)
@@ -101,7 +101,7 @@ def test_a_zip_archive_is_not_unpacked_where_it_would_fill_the_memory(tmp_path, 
 
 def test_a_scan_of_too_many_points_is_refused_before_they_are_read(tmp_path, heights, monkeypatch):
     write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
-    monkeypatch.setattr(scan_files, "MOST_POINTS", heights.size - 1)
+    monkeypatch.setattr(scan_files, "MAX_POINTS", heights.size - 1)
     with pytest.raises(sb.InputError, match=rf"a\.x3p has \d+ x \d+ points, more than {heights.size - 1}; crop the scan"):
         read_topography(tmp_path / "a.x3p")
 

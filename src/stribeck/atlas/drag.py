@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.table import FAR
+from stribeck.atlas.table import FRICTION_RADIUS
 from stribeck.contacts.cut_off import FarFilm
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Geometry
@@ -17,8 +17,8 @@ from stribeck.solids import hertz
 
 __all__ = ["DRAG", "Drag"]
 
+# An observable, and if wanted its derivatives by ln(speed), ln(load) and ln(roughness), shape (3, n).
 Part = tuple[Array, Array | None]
-"""An observable, and if wanted its derivatives by ln(speed), ln(load) and ln(roughness), shape (3, n)."""
 
 
 class Drag(NamedTuple):
@@ -59,14 +59,14 @@ def _ball_parts(logs: dict[str, Part], speed: Array, load: Array, film: FarFilm)
     couette, poiseuille = integrals["couette"], integrals["poiseuille"]
     found = {}
     for name, part, constant in (("J_couette", couette, film.couette), ("J_poiseuille", poiseuille, film.poiseuille)):
-        far = speed * (constant * math.log(FAR))
+        far = speed * (constant * math.log(FRICTION_RADIUS))
         found[name] = _sum((part, (far, np.stack([far, 0 * far, 0 * far]))), (1.0, -1.0))
     found["J_pcx"] = _sum((couette, poiseuille, integrals["published"]), (1.0, 1.0, -1.0))
     return found
 
 
+# The rules by geometry.
 DRAG: dict[Geometry, Drag] = {
     "line": Drag(_line_names, _line_parts, hertz.OFFSET),
     "point": Drag(_ball_names, _ball_parts, -1.0),
 }
-"""The rules by geometry."""

@@ -26,30 +26,25 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 
-MIN_LOAD = 1e-6
-"""Minimum load group of the atlas."""
+MIN_LOAD = 1e-6  # Minimum load group of the atlas
 
-MIN_SPEED = 1e-12
-"""Minimum speed group of the atlas beside rest."""
+MIN_SPEED = 1e-12  # Minimum speed group of the atlas beside rest
 
-NEARLY_SMOOTH = 1e-3
-"""Relative roughness up to which heavy loads are a region of their own."""
+MAX_ROUGHNESS_OF_HEAVY = 1e-3  # Relative roughness up to which heavy loads are a region of their own
 
-HEAVY = -math.log(0.99)
-"""L of the smallest of them. Towards load 1 the gap at rest closes, to 2 kappa, and the speed at which roughness begins to
-yield falls below the minimum speed: this region begins at that."""
+# L of the smallest heavy load. Towards load 1 the gap at rest closes, to 2 kappa, and the speed at which roughness begins to
+# yield falls below the minimum speed: this region begins at that.
+MAX_L_OF_HEAVY = -math.log(0.99)
 
-SHARES = (1.1, 2.6, 6.5, 30.0)
-"""Minus the logarithms of the contact shares at which the segments of speed end."""
+SEGMENT_SHARES = (1.1, 2.6, 6.5, 30.0)  # Minus the logarithms of the contact shares at which the segments of speed end
 
-YIELDING = 0.2
-"""Sum of fluid over contact share and relative growth of the central gap up to which the coordinate is the squared speed."""
+# Fluid over contact share plus relative growth of the central gap, up to which the coordinate is the squared speed
+MAX_YIELD_OF_ROUGHNESS = 0.2
 
-BREAK_TERMS = 8
-"""Terms in load and in roughness of the polynomials for the speeds at which segments end."""
+BREAK_TERMS = 8  # Terms in load and in roughness of the polynomials for the speeds at which segments end
 
+# Segments of speed with a table: the squared speed, two up to the share exp(-1.1), and three beyond; then the film.
 SEGMENTS = 6
-"""Segments of speed with a table: the squared speed, two up to the share exp(-1.1), and three beyond; then the film."""
 
 
 @dataclass(frozen=True)
@@ -111,15 +106,15 @@ class Region:
         return np.full_like(kappa, self.closing) if self.closing else 2 * kappa / (1 + kappa)
 
 
-LIGHTEST = -math.log(MIN_LOAD)
+MAX_L = -math.log(MIN_LOAD)  # L of the minimum load
 
+# The regions: nearly smooth ones, the heavy loads of these, and rougher ones.
 REGIONS = (
-    Region((1e-6, NEARLY_SMOOTH), (HEAVY, LIGHTEST), (2, 2), (10, 12), (10, 13, 12, 10, 14, 16)),
-    Region((1e-6, NEARLY_SMOOTH), (0.0, HEAVY), (2, 1), (10, 9), (0, 14, 14, 10, 12, 15), 0.006),
-    Region((NEARLY_SMOOTH, 1e-1), (0.0, LIGHTEST), (2, 3), (11, 10), (10, 12, 11, 10, 12, 16)),
-    Region((1e-1, 1e2), (0.0, LIGHTEST), (2, 2), (11, 9), (9, 11, 10, 9, 11, 14)),
+    Region((1e-6, MAX_ROUGHNESS_OF_HEAVY), (MAX_L_OF_HEAVY, MAX_L), (2, 2), (10, 12), (10, 13, 12, 10, 14, 16)),
+    Region((1e-6, MAX_ROUGHNESS_OF_HEAVY), (0.0, MAX_L_OF_HEAVY), (2, 1), (10, 9), (0, 14, 14, 10, 12, 15), 0.006),
+    Region((MAX_ROUGHNESS_OF_HEAVY, 1e-1), (0.0, MAX_L), (2, 3), (11, 10), (10, 12, 11, 10, 12, 16)),
+    Region((1e-1, 1e2), (0.0, MAX_L), (2, 2), (11, 9), (9, 11, 10, 9, 11, 14)),
 )
-"""The regions: nearly smooth ones, the heavy loads of these, and rougher ones."""
 
 
 @dataclass(frozen=True)
@@ -167,25 +162,25 @@ class Grid:
         return found
 
 
-LINE_EXPONENTIAL = Grid(REGIONS)
-"""Cylinder, exponential law, full film."""
+LINE_EXPONENTIAL = Grid(REGIONS)  # Cylinder, exponential law, full film
 
+# Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact.
 LINE_PERSSON = Grid(
     (Region((1e-3, 1.0), (0.0, math.log(2e3)), (2, 2), (6, 6), (6, 9, 7, 8, 9, 9), 8.0),),
     heaviest=20.0,
 )
-"""Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact."""
 
+# Cylinder, exponential law, a film that ends: slow, its share is of first order in the speed.
 LINE_EXIT = Grid(
     (
-        Region((1e-3, 1e-1), (-math.log(0.9), LIGHTEST), (1, 1), (12, 12), (7, 10, 8, 8, 10, 11)),
-        Region((1e-1, 1e1), (-math.log(0.9), LIGHTEST), (1, 1), (10, 11), (7, 10, 8, 8, 10, 11)),
+        Region((1e-3, 1e-1), (-math.log(0.9), MAX_L), (1, 1), (12, 12), (7, 10, 8, 8, 10, 11)),
+        Region((1e-1, 1e1), (-math.log(0.9), MAX_L), (1, 1), (10, 11), (7, 10, 8, 8, 10, 11)),
     ),
     power=1,
     films=(1e-7, 1e4),
 )
-"""Cylinder, exponential law, a film that ends: slow, its share is of first order in the speed."""
 
+# Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load.
 BALL_EXPONENTIAL = Grid(
     (
         Region((1e-5, 1e-3), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (11, 7), (4, 7, 7, 6, 8, 8), nested=True),
@@ -194,16 +189,17 @@ BALL_EXPONENTIAL = Grid(
     load_factor=2 / 3,
     films=(1e-5, 1e3),
 )
-"""Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load."""
 
+# Ball, exponential law, a film that ends at ambient pressure.
 BALL_EXIT = Grid(
     (Region((5e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e4)), (1, 1), (15, 6), (5, 6, 6, 6, 7, 8), nested=True),),
     load_factor=2 / 3,
     power=1,
     films=(1e-4, 10.0),
 )
-"""Ball, exponential law, a film that ends at ambient pressure."""
 
+# Ball, Persson's law, full film. Above load 30 nearly all of the dry surface is in contact, and the share of slow fluid goes
+# with so small a power of the speed that rest is far from every speed of use: segments begin at the smallest.
 BALL_PERSSON = Grid(
     (
         Region((5e-4, 0.05), (0.0, math.log(1e4 / 300)), (1, 1), (8, 5), (0, 8, 8, 6, 7, 8), 6.0),
@@ -214,8 +210,6 @@ BALL_PERSSON = Grid(
     films=(1e-3, 1e3),
     resting=math.log(1e4 / 30),
 )
-"""Ball, Persson's law, full film. Above load 30 nearly all of the dry surface is in contact, and the share of slow fluid goes
-with so small a power of the speed that rest is far from every speed of use: segments begin at the smallest."""
 
 
 def chebyshev(x: Array, terms: int) -> Array:

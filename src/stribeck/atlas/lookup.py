@@ -10,9 +10,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.atlas.drag import DRAG
-from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
+from stribeck.atlas.grid import MAX_L_OF_HEAVY, MAX_ROUGHNESS_OF_HEAVY
 from stribeck.atlas.table import Values
-from stribeck.atlas.tables import SLACK, TableRow, table_for
+from stribeck.atlas.tables import BOX_RTOL, TableRow, table_for
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
@@ -38,6 +38,7 @@ __all__ = [
 
 Value = float | Array
 
+# Names of functions in the tables
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
 
 
@@ -69,8 +70,9 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
     closing = (speed == 0) & (inside > 0) & ~grid.has_rest[grid.region_at(log_load, inside)]
     if FLUX in names and closing.any():
         raise InputError(
-            f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
-            f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
+            f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below "
+            f"{MAX_ROUGHNESS_OF_HEAVY:g}, "
+            f"the atlas holds the flux gap for loads up to {math.exp(-MAX_L_OF_HEAVY):.4g}. Use solve."
         )
     unheld = [name for name in (CENTRAL, MINIMUM, DEFLECTION) if name in names]
     if unheld and (heavy := closing & (log_load < grid.resting)).any():
@@ -79,9 +81,9 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
             f"{grid.load_at(grid.resting):g}. Use solve."
         )
     functions = tuple(held.functions.index(name) for name in names)
-    found = held.table.read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
+    found = held.table.read(functions, log_speed, np.where(closing, MAX_L_OF_HEAVY, log_load), inside, slopes)
     # At rest the load shifts the gap and does nothing else.
-    shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
+    shift = 0.5 * inside[closing] * (log_load[closing] - MAX_L_OF_HEAVY)
     dry = (speed == 0) & (kappa == 0)
     for row, name in enumerate(names):
         if name in (CENTRAL, MINIMUM):
@@ -155,7 +157,7 @@ def flat(groups: Groups, value: Any) -> Array:
 
 def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:
     """Refuse values outside a side of the box."""
-    outside = (values < low * (1 - SLACK)) | (values > high * (1 + SLACK))
+    outside = (values < low * (1 - BOX_RTOL)) | (values > high * (1 + BOX_RTOL))
     if zero:
         outside &= values != 0
     if outside.any():

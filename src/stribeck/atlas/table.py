@@ -1,8 +1,8 @@
 """The table of the atlas: Chebyshev coefficients on blocks of speed, load and roughness, and their summation.
 
 On a block the observables are tensor products of Chebyshev polynomials in the coordinates of :mod:`stribeck.atlas.grid`.  What
-is tabulated are logarithms, see :data:`TABULATED`.  States are sorted by block; then the products of the polynomials in load
-and roughness of many states are one matrix, and the sum over them one matrix product.
+is tabulated are logarithms, see :data:`LINE_FUNCTIONS`.  States are sorted by block; then the products of the polynomials in
+load and roughness of many states are one matrix, and the sum over them one matrix product.
 """
 
 from __future__ import annotations
@@ -31,40 +31,36 @@ from stribeck.atlas.grid import (
     local,
 )
 
-TABULATED = ("log_odds", "viscous_published", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
-r"""What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
-:math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
-segments end at, the logarithm of the power of the speed with which the fluid's share begins is taken off the first."""
+# What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
+# :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
+# segments end at, the logarithm of the power of the speed with which the fluid's share begins is taken off the first.
+LINE_FUNCTIONS = ("log_odds", "viscous_published", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
 
-BALL = ("log_odds", "couette", "poiseuille", "published", "central_gap", "minimum_gap", "deflection")
-"""The same for balls, with the logarithms of the two parts and the published sum of the friction integral over lambda, up to
-the radius :data:`FAR`."""
+# What is tabulated of balls: as of the line, with the logarithms of the two parts and the published sum of the friction
+# integral over lambda, up to the radius :data:`FRICTION_RADIUS`.
+BALL_FUNCTIONS = ("log_odds", "couette", "poiseuille", "published", "central_gap", "minimum_gap", "deflection")
 
-FAR = 1e3
-"""Radius of the disc of liquid of which the friction of balls is tabulated [a]."""
+FRICTION_RADIUS = 1e3  # Radius of the disc of liquid of which the friction of balls is tabulated [a]
 
-FUNCTIONS = {"line": TABULATED, "point": BALL}
-"""What is tabulated, by geometry."""
+FUNCTIONS = {"line": LINE_FUNCTIONS, "point": BALL_FUNCTIONS}  # What is tabulated, by geometry
 
-SOLVER = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
-"""Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
-are its own."""
+# Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
+# are its own.
+SOLVER_MODULES = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
 
-NUMBERS = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
-"""Packages that have a part in the numbers; the others have words."""
+# Packages that have a part in the numbers; the others have words
+NUMERIC_PACKAGES = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 
-STEP = 2.0**-25
-"""Unit of the coefficients in the file, which holds whole numbers."""
+COEFFICIENT_UNIT = 2.0**-25  # Unit of the coefficients in the file, which holds whole numbers
 
-CHUNK = 1024
-"""States that are summed at once: their polynomials then fit into the cache."""
+CHUNK_STATES = 1024  # States that are summed at once: their polynomials then fit into the cache
 
 
 @dataclass(frozen=True, eq=False)
 class Values:
     """What was read off the table for many states."""
 
-    values: Array  # The wanted of :data:`TABULATED`
+    values: Array  # The wanted of :data:`LINE_FUNCTIONS`
     slopes: Array | None  # Their derivatives by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
     film: Array  # Where no asperities are left: there the first function, if wanted, is infinite
 
@@ -145,8 +141,8 @@ class Table:
         regions = np.where(kappa > 0, self.grid.region_at(log_load, kappa), -1)
         for number, region in enumerate(self.grid.regions):
             inside = np.nonzero(regions == number)[0]
-            for start in range(0, inside.size, 4 * CHUNK):
-                part = inside[start : start + 4 * CHUNK]
+            for start in range(0, inside.size, 4 * CHUNK_STATES):
+                part = inside[start : start + 4 * CHUNK_STATES]
                 block[part], coordinates[:, part], found_chain = self._place(
                     number, region, log_speed[part], log_load[part], kappa[part], slopes
                 )
@@ -180,8 +176,8 @@ class Table:
         for number in np.nonzero(counts[:-1])[0].tolist():
             here = self.blocks[number]
             assert here is not None
-            for start in range(ends[number] - int(counts[number]), ends[number], CHUNK):
-                part = slice(start, min(start + CHUNK, ends[number]))
+            for start in range(ends[number] - int(counts[number]), ends[number], CHUNK_STATES):
+                part = slice(start, min(start + CHUNK_STATES, ends[number]))
                 t, k, y = coordinates[:, part]
                 found[..., part] = here.sum(functions, t, k, y, slopes)
         result = np.empty_like(found)
@@ -261,11 +257,11 @@ class Table:
 def pack(
     breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any], law: Array | None = None
 ) -> dict[str, Any]:
-    """Return the arrays of the file for dense blocks, in whole units of :data:`STEP`."""
+    """Return the arrays of the file for dense blocks, in whole units of :data:`COEFFICIENT_UNIT`."""
     joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
     return {
         "breaks": np.stack(breaks),
-        "blocks": np.round(joined / STEP).astype(np.int32),
+        "blocks": np.round(joined / COEFFICIENT_UNIT).astype(np.int32),
         "film": film,
         "about": np.array(json.dumps(about)),
         "law": np.empty((2, 0)) if law is None else law,
@@ -277,7 +273,7 @@ def unpack(grid: Grid, data: Any) -> Table:
     about = json.loads(str(data["about"]))
     functions = len(about["functions"])
     law = data["law"] if "law" in data else np.empty((2, 0))
-    flat, position = data["blocks"] * STEP, 0
+    flat, position = data["blocks"] * COEFFICIENT_UNIT, 0
     blocks: list[Block | None] = []
     for region in grid.regions:
         for _ in range(math.prod(region.pieces)):
@@ -291,9 +287,9 @@ def unpack(grid: Grid, data: Any) -> Table:
 
 
 def solver_sources() -> list[str]:
-    """Return the modules of the solver: :data:`SOLVER` and all that these import, at once or on first use, sorted."""
+    """Return the modules of the solver: :data:`SOLVER_MODULES` and all that these import, at once or on first use, sorted."""
     found: set[str] = set()
-    waiting = list(SOLVER)
+    waiting = list(SOLVER_MODULES)
     while waiting:
         name = waiting.pop()
         if name in found:
@@ -303,7 +299,7 @@ def solver_sources() -> list[str]:
             if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("stribeck."):
                 module = node.module.removeprefix("stribeck.")
                 inner = [f"{module}.{alias.name}" for alias in node.names]
-                waiting += [each for each in (module, *inner) if each.split(".")[0] in NUMBERS and _source(each)]
+                waiting += [each for each in (module, *inner) if each.split(".")[0] in NUMERIC_PACKAGES and _source(each)]
     return sorted(found)
 
 

@@ -19,28 +19,25 @@ from stribeck.atlas.grid import (
     MIN_SPEED,
     Grid,
 )
-from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
+from stribeck.atlas.table import FRICTION_RADIUS, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = ["BOX", "SLACK", "TABLES", "Box", "TableRow", "covers", "for_groups", "holds_for", "table_for"]
+__all__ = ["BOX", "BOX_RTOL", "TABLES", "Box", "TableRow", "covers", "for_groups", "holds_for", "table_for"]
 
 Box = dict[str, tuple[float, float]]
 
+# Smallest and largest groups of the first table, beside speed 0, at rest, and roughness 0, smooth
 BOX: Box = {"speed": (MIN_SPEED, 1e6), "load": (MIN_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
-"""Smallest and largest groups of the first table, beside speed 0, at rest, and roughness 0, smooth."""
 
-REFERENCE_SPECTRUM = {"h_rms": 1e-6, "q0": 1e4, "q1": 1e6, "hurst": 0.8}
-"""The surface of the tables of Persson's law."""
+REFERENCE_SPECTRUM = {"h_rms": 1e-6, "q0": 1e4, "q1": 1e6, "hurst": 0.8}  # The surface of the tables of Persson's law
 
-SAME_LAW = 1e-4
-"""Largest difference of ln Phi of a law from that of its table: about so much of the friction."""
+LAW_ATOL = 1e-4  # Largest difference of ln Phi of a law from that of its table: about so much of the friction
 
-SLACK = 1e-12
-"""Relative excess over an end of a box that is rounding."""
+BOX_RTOL = 1e-12  # Relative excess over an end of a box that is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +66,7 @@ class TableRow:
     @property
     def radius(self) -> float:
         """Radius up to which the friction of a ball is tabulated [a]."""
-        return FAR
+        return FRICTION_RADIUS
 
     @property
     def table(self) -> Table:
@@ -81,10 +78,10 @@ class TableRow:
         return groups.geometry == self.geometry and groups.model == self.model
 
     def is_of_law(self, law: AsperityLaw | None) -> bool:
-        """Return whether a contact law is that of the table, of Persson's within :data:`SAME_LAW`."""
+        """Return whether a contact law is that of the table, of Persson's within :data:`LAW_ATOL`."""
         if self.law == "exponential":
             return is_exponential(law)
-        return law is not None and law.name == self.law and _departure(self.file, self.grid, law) < SAME_LAW  # type: ignore[arg-type]
+        return law is not None and law.name == self.law and _departure(self.file, self.grid, law) < LAW_ATOL  # type: ignore[arg-type]
 
     def speeds(self, groups: Groups) -> tuple[float, float]:
         """Return the smallest and largest speed of groups, of which none or all are smooth, beside zero [-]."""
@@ -96,10 +93,12 @@ class TableRow:
         found = np.ones(groups.shape, dtype=bool)
         for name, (low, high) in self.box.items():
             value = np.asarray(getattr(groups, name))
-            inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
+            inside = (low * (1 - BOX_RTOL) <= value) & (value <= high * (1 + BOX_RTOL))
             found &= inside if name == "load" else inside | (value == 0)
         smooth, speed, (low, high) = np.asarray(groups.roughness) == 0, np.asarray(groups.speed), self.grid.films
-        return np.asarray(found & (~smooth | (speed == 0) | ((low * (1 - SLACK) <= speed) & (speed <= high * (1 + SLACK)))))
+        return np.asarray(
+            found & (~smooth | (speed == 0) | ((low * (1 - BOX_RTOL) <= speed) & (speed <= high * (1 + BOX_RTOL))))
+        )
 
 
 @lru_cache(maxsize=128)
@@ -109,6 +108,7 @@ def _departure(file: str, grid: Grid, law: AsperityLaw) -> float:
     return float(np.abs(law.log_pressure(separation) - log_pressure).max())
 
 
+# The tables; the first that holds answers.
 TABLES = (
     TableRow("line-exponential", "line", "exponential", Cavitation.NONE, BOX, 1e-4, "atlas.npz", LINE_EXPONENTIAL),
     TableRow(
@@ -162,7 +162,6 @@ TABLES = (
         BALL_EXIT,
     ),
 )
-"""The tables; the first that holds answers."""
 
 
 def for_groups(groups: Groups) -> TableRow | None:

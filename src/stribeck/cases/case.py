@@ -16,9 +16,8 @@ __all__ = ["Case", "CurveSettings", "curve_range"]
 Axis = Literal["speed", "load", "roughness"]
 
 
-USUAL: dict[str, tuple[int, float]] = {"line": (101, 1e-6), "point": (31, 1e-4)}
-"""Points of a curve and relative tolerance of a case that gives none, by geometry: a state of a ball takes a tenth of a second
-or more."""
+# By geometry: a state of a ball takes a tenth of a second or more.
+DEFAULT_POINTS_AND_RTOL: dict[str, tuple[int, float]] = {"line": (101, 1e-6), "point": (31, 1e-4)}
 
 
 @dataclass(frozen=True)

@@ -19,27 +19,25 @@ from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, 
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
+__all__ = ["FREE_INPUTS", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-OF_CONTACT = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
-"""Inputs of all contacts that may be fitted, from what a fit is mostly after to what is mostly known."""
+# Inputs of all contacts that may be fitted, from what a fit is mostly after to what is mostly known.
+CONTACT_INPUTS = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
 
-FREE = (*OF_CONTACT, *PART_INPUTS)
-"""These, and numbers of fluids and solids."""
+FREE_INPUTS = (*CONTACT_INPUTS, *PART_INPUTS)  # Inputs of all contacts and numbers of fluids and solids, which a fit may free
 
-MEANT = {**PART_LETTERS, **LETTERS}
-"""Other names of what may be fitted."""
+INPUT_OF_LETTER = {**PART_LETTERS, **LETTERS}  # Other names of what may be fitted
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
+# Kinds of columns of the data, beside the inputs of :data:`CONTACT_INPUTS`, which distinguish curves.
 COLUMNS = (
     *("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve"),
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
     *("friction_force", "normal_force", "torque", "run"),
 )
-"""Kinds of columns of the data, beside the inputs of :data:`OF_CONTACT`, which distinguish curves."""
 
 KEYS = (
     *("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row"),
@@ -47,7 +45,7 @@ KEYS = (
 )
 TABLES = ("columns", "units", "bounds", "priors", "curves")
 
-LARGEST_FACTOR = 1e6
+MAX_BOUND_FACTOR = 1e6
 
 
 @dataclass(frozen=True)
@@ -212,21 +210,21 @@ def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
 
 
 def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
-    """Return names of inputs to fit, checked, in the order of :data:`FREE`."""
+    """Return names of inputs to fit, checked, in the order of :data:`FREE_INPUTS`."""
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise InputError(f"{where} = {show(names)} must be a list of inputs, such as ['boundary_friction', 'roughness'].")
     found = []
     for name in names:
-        meant = MEANT.get(name, name) if isinstance(name, str) else name
+        meant = INPUT_OF_LETTER.get(name, name) if isinstance(name, str) else name
         if meant in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
-        if meant not in FREE:
-            hint = advice_on(str(name), FREE) or f"known are {', '.join(FREE)}"
+        if meant not in FREE_INPUTS:
+            hint = advice_on(str(name), FREE_INPUTS) or f"known are {', '.join(FREE_INPUTS)}"
             raise InputError(f"{where} has {show(name)}, which cannot be fitted; {hint}.")
         if meant in found:
             raise InputError(f"{where} has {meant} twice; name each input once.")
         found.append(meant)
-    return tuple(sorted(found, key=FREE.index))
+    return tuple(sorted(found, key=FREE_INPUTS.index))
 
 
 def _setting(key: str, value: Any) -> Any:
@@ -270,7 +268,7 @@ def _entry(table: str, name: str, value: Any, inputs: InputTable = LINE) -> tupl
         [meant] = free_names([name], f"[fit.{table}]")
         return meant, _bounds(meant, value, inputs) if table == "bounds" else _prior(meant, value, inputs)
     columns = (each for each in COLUMNS if table == "columns" or each not in ("curve", "run"))
-    known = (*columns, *(each for each in OF_CONTACT if each != "boundary_friction"))
+    known = (*columns, *(each for each in CONTACT_INPUTS if each != "boundary_friction"))
     meant = LETTERS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))
@@ -294,7 +292,7 @@ def _prior(name: str, value: Any, inputs: InputTable) -> Prior:
     if not isinstance(value, dict) or set(value) != {"value", "factor"}:
         raise InputError(f"{name} = {show(value)} must be a table such as {{ value = ..., factor = 1.2 }}.")
     factor, median = value["factor"], _value(name, value["value"], inputs)
-    if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= LARGEST_FACTOR:
+    if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= MAX_BOUND_FACTOR:
         raise InputError(f"{name} has factor = {show(factor)}, which must be a number above 1: 1.2 is 'known within 20 %'.")
     if median == 0:
         raise InputError(f"{name} has value = {show(value['value'])}, which must be positive.")
@@ -321,7 +319,7 @@ def _curve(name: str, entry: Any, inputs: InputTable) -> dict[str, Any]:
     found: dict[str, Any] = {**rest.pop("contact"), **parts}
     known = (*(each for each in inputs.names if each != "speed"), *PART_INPUTS)
     for key, value in rest.items():
-        meant = MEANT.get(key, key)
+        meant = INPUT_OF_LETTER.get(key, key)
         if meant not in known:
             raise InputError(f"{name}: {_unknown(key, value, known)}")
         if meant in found:

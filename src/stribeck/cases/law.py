@@ -21,12 +21,12 @@ from stribeck.files.text_table import read_two_columns
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
-    "ASPERITIES",
-    "FROM_TABLES",
+    "ASPERITY_KEYS",
+    "INPUTS_OF_SURFACES",
     "LAWS",
-    "SURFACE",
-    "TABLE",
-    "TABLES_OF",
+    "SURFACE_KEYS",
+    "TABLE_KEYS",
+    "FIRST_TABLE_BY_LAW",
     "Law",
     "LawOfFile",
     "law_of_file",
@@ -37,7 +37,7 @@ Law = Literal["exponential", "persson", "greenwood-williamson", "greenwood-tripp
 
 LAWS: tuple[Law, ...] = get_args(Law)
 
-SURFACE = (
+SURFACE_KEYS = (
     "h_rms",
     "hurst",
     "q0",
@@ -52,22 +52,18 @@ SURFACE = (
     "density",
     "shape_only",
 )
-"""Keys of the table ``[surface]``."""
 
-ROWS = {"surface": ("spectrum", ("wavenumber", "density")), "table": ("file", ("separation", "pressure"))}
-"""The key that names a file in a table, and the two lists of numbers that may stand in its place."""
+# The key that names a file in a table, and the two lists of numbers that may stand in its place.
+FILE_KEYS = {"surface": ("spectrum", ("wavenumber", "density")), "table": ("file", ("separation", "pressure"))}
 
-ASPERITIES = ("density", "radius", "deviation")
-"""Keys of the table ``[asperities]``."""
+ASPERITY_KEYS = ("density", "radius", "deviation")
 
-TABLE = ("file", "separation", "pressure")
-"""Keys of the table ``[table]``."""
+TABLE_KEYS = ("file", "separation", "pressure")
 
-FROM_TABLES = ("alpha", "beta", "roughness")
-"""Inputs of a contact that follow from a table of its surface."""
+INPUTS_OF_SURFACES = ("alpha", "beta", "roughness")  # Inputs of a contact that follow from a table of its surface
 
-NEEDED: dict[Law, str] = {"persson": "surface", "table": "table"}
-MAY_HAVE: dict[Law, tuple[str, ...]] = {
+NEEDED_TABLE: dict[Law, str] = {"persson": "surface", "table": "table"}
+TABLES_BY_LAW: dict[Law, tuple[str, ...]] = {
     "exponential": ("surface",),
     "persson": ("surface",),
     "greenwood-williamson": ("asperities",),
@@ -76,8 +72,8 @@ MAY_HAVE: dict[Law, tuple[str, ...]] = {
 }
 
 
-TABLES_OF: dict[Law, str] = {law: names[0] for law, names in MAY_HAVE.items() if names}
-"""The table that each law may come from, where there is one."""
+# The table that each law may come from, where there is one.
+FIRST_TABLE_BY_LAW: dict[Law, str] = {law: names[0] for law, names in TABLES_BY_LAW.items() if names}
 
 
 @dataclass(frozen=True)
@@ -94,10 +90,10 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
         name: {k: v for k, v in entries.items() if v is not None} for name, entries in tables.items() if entries is not None
     }
     for name in given:
-        if name not in MAY_HAVE[law]:
-            users = " and ".join(repr(other) for other in LAWS if name in MAY_HAVE[other])
+        if name not in TABLES_BY_LAW[law]:
+            users = " and ".join(repr(other) for other in LAWS if name in TABLES_BY_LAW[other])
             raise InputError(f"the table [{name}] is not used by law = {show(law)}; it belongs to {users}.")
-    needed = NEEDED.get(law)
+    needed = NEEDED_TABLE.get(law)
     if needed is not None and needed not in given:
         keys = {"surface": "h_rms, hurst, q0 and q1", "table": "file"}[needed]
         raise InputError(f"the table [{needed}] is missing, which law = {show(law)} needs; give {keys} there.")
@@ -109,7 +105,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     shape_only = given[name].pop("shape_only", False)
     if not isinstance(shape_only, bool):
         raise InputError(f"[{name}] shape_only = {show(shape_only)} must be true or false, without quotes.")
-    doubled = [] if shape_only else [key for key in FROM_TABLES if contact.get(key) is not None]
+    doubled = [] if shape_only else [key for key in INPUTS_OF_SURFACES if contact.get(key) is not None]
     if doubled:
         raise InputError(
             f"[contact] {doubled[0]} = {contact[doubled[0]]:g} follows from the table [{name}]; remove one of them."
@@ -174,7 +170,7 @@ def _rows_of_spectrum(path: Path) -> tuple[Array, tuple[float, float]]:
 
 def _file_of(table: str, entries: dict[str, Any], folder: Path) -> Path:
     """Return the path of the file that a table names; refuse lists of numbers beside it."""
-    key, lists = ROWS[table]
+    key, lists = FILE_KEYS[table]
     doubled = [name for name in lists if name in entries]
     if doubled:
         raise InputError(f"{key} = {show(entries[key])} and {doubled[0]} are both given; remove one of them.")
@@ -186,7 +182,7 @@ def _file_of(table: str, entries: dict[str, Any], folder: Path) -> Path:
 def _lists(table: str, entries: dict[str, Any]) -> list[Array]:
     """Return the two lists of numbers of a table."""
     found = []
-    for name in ROWS[table][1]:
+    for name in FILE_KEYS[table][1]:
         values = entries.get(name)
         if values is None:
             raise InputError(f"{name} is missing; add as many numbers as the other list has.")
@@ -197,14 +193,14 @@ def _lists(table: str, entries: dict[str, Any]) -> list[Array]:
             raise InputError(f"{name} = {show(values)} must be a list of numbers, without quotes.")
         found.append(np.array(values, dtype=float))
     if len(found[0]) != len(found[1]):
-        first, second = ROWS[table][1]
+        first, second = FILE_KEYS[table][1]
         raise InputError(f"{first} has {len(found[0])} numbers and {second} {len(found[1])}; they must have the same length.")
     return found
 
 
 def _of_asperities(law: Law, entries: dict[str, Any]) -> LawOfFile:
     examples = {"density": "1e10 m^-2", "radius": "10 um", "deviation": "1 um"}
-    for name in ASPERITIES:
+    for name in ASPERITY_KEYS:
         if name not in entries:
             raise InputError(f"{name} is missing; add {name} = {show(examples[name])}.")
     shape = GreenwoodWilliamson() if law == "greenwood-williamson" else GreenwoodTripp()

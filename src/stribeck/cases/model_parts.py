@@ -55,20 +55,20 @@ VISCOSITY_LAWS = {
     "roelands": Part(Roelands, PRESSURE, ("reference_pressure", "reference_viscosity")),
 }
 DENSITIES = {"incompressible": Part(), "dowson-higginson": Part(DowsonHigginson)}
+# Key of ``[fluid]`` -> the laws that the key names; the first law does nothing.
 FLUID_LAWS = {"model": RHEOLOGIES, "viscosity_law": VISCOSITY_LAWS, "density": DENSITIES}
-"""Key of ``[fluid]`` -> the laws that it names; the first does nothing."""
 
+# What ``[flow_factors]`` may name.
 FLOW_FACTORS: dict[str, Callable[..., Any] | None] = {
     "none": None,
     "patir-cheng": PatirCheng,
     "effective-medium": EffectiveMedium,
 }
-"""What ``[flow_factors]`` may name."""
 
 CONDITIONS = ("weight_fraction", "temperature", "grade")
-NAMES = ("name", "type", "kind", "law", "fluid", "liquid")
-"""Keys that people write for the one that says which."""
+KEYS_OF_NAME = ("name", "type", "kind", "law", "fluid", "liquid")  # Keys that people write for the one that says which
 
+# Table -> its keys.
 KEYS = {
     "fluid": (
         *FLUID_LAWS,
@@ -81,13 +81,13 @@ KEYS = {
     "flow_factors": ("model", "gamma", "substrate_share", "friction_factors", "argument"),
     "solid": ("layer_thickness", "poisson_ratio", "retardation_time", "modulus_ratio", "relaxation_times", "moduli"),
 }
-"""Table -> its keys."""
 
 
+# Keys of ``[contact]``, for those who write them below another table.
 CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
-"""Keys of ``[contact]``, for those who write them below another table."""
 
 
+# Argument in Python, with which the sentence of a problem may begin -> table and key of a case.
 ARGUMENTS = {
     "cavitation": ("cavitation", "model"),
     "cavity_pressure": ("cavitation", "pressure"),
@@ -100,7 +100,6 @@ ARGUMENTS = {
     "time": ("solid", "retardation_time"),
     "times": ("solid", "relaxation_times"),
 }
-"""Argument in Python, with which the sentence of a problem may begin -> table and key of a case."""
 
 
 def in_file(problem: str, table: str) -> str:
@@ -151,7 +150,7 @@ def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[s
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
     named = ARGUMENTS.get(key, ("", ""))[1]  # as in Python
     near = [named] if named in known else difflib.get_close_matches(key, known, n=1, cutoff=0.8)
-    meant = near or [each for each in ("preset", "model") if key in NAMES and each in known]
+    meant = near or [each for each in ("preset", "model") if key in KEYS_OF_NAME and each in known]
     advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
     if key in CONTACT_KEYS:
         advice = "it belongs in the table [contact]: keys go to the last [table] above them"
@@ -258,11 +257,11 @@ def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     return {"flow_factors": None if made is None else made(**rest)}
 
 
+# Viscoelastic bodies, and their keys with examples.
 MEMORIES: tuple[tuple[type[Any], dict[str, str]], ...] = (
     (StandardLinearSolid, {"retardation_time": '"10 ms"', "modulus_ratio": "3.0"}),
     (Prony, {"relaxation_times": '["1 ms", "10 ms"]', "moduli": "[1.0, 0.5]"}),
 )
-"""Viscoelastic bodies, and their keys with examples."""
 
 
 def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
@@ -295,6 +294,7 @@ def _layer(table: dict[str, Any]) -> Layer | None:
     return Layer(table["layer_thickness"], **ratio)
 
 
+# Table -> what makes arguments of a contact of it.
 READERS: dict[str, Callable[[dict[str, Any], Any], dict[str, Any]]] = {
     "fluid": _fluid,
     "cavitation": _cavitation,
@@ -302,4 +302,3 @@ READERS: dict[str, Callable[[dict[str, Any], Any], dict[str, Any]]] = {
     "flow_factors": _flow_factors,
     "solid": _solid,
 }
-"""Table -> what makes arguments of a contact of it."""

@@ -11,7 +11,7 @@ from typing import Any
 
 from stribeck.cases.case import Case, CurveSettings
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
-from stribeck.cases.law import FROM_TABLES, law_of_file
+from stribeck.cases.law import INPUTS_OF_SURFACES, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, preset_said, take_parts
 from stribeck.cases.tables import error_sentence, example_of, file_model
 from stribeck.contacts.geometries import CONTACTS, check_geometry
@@ -217,4 +217,4 @@ def _missing_from_surface(table: dict[str, Any]) -> list[str]:
     shape_only = isinstance(surface, dict) and surface.get("shape_only") is True
     if not shape_only and ("surface" in table or "asperities" in table or contact.get("law") == "persson"):
         return []
-    return [f"[contact] {key} is missing; {example_of(key)}." for key in FROM_TABLES if key not in contact]
+    return [f"[contact] {key} is missing; {example_of(key)}." for key in INPUTS_OF_SURFACES if key not in contact]

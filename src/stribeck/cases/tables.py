@@ -4,8 +4,8 @@ import functools
 from types import SimpleNamespace
 from typing import Annotated, Any
 
-from stribeck.cases.case import USUAL, Axis, Case, CurveSettings, curve_range
-from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law
+from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
+from stribeck.cases.law import ASPERITY_KEYS, INPUTS_OF_SURFACES, LAWS, SURFACE_KEYS, TABLE_KEYS, Law
 from stribeck.contacts.friction import Definition
 from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.facts import FACTS
@@ -42,7 +42,7 @@ def shared_types() -> SimpleNamespace:
         law=(Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law),
         rtol=(Annotated[float, tolerance], Case.rtol),
         ends={
-            "table": optional_table("table", TABLE),
+            "table": optional_table("table", TABLE_KEYS),
             "title": (text, Case.title),
             "notes": (text, Case.notes),
         },
@@ -62,7 +62,7 @@ def file_model(geometry: str) -> Any:
 
     inputs, shared = INPUT_TABLES[geometry], shared_types()
     number = Annotated[float, BeforeValidator(check_quantity)]
-    optional = inputs.choices | set(FROM_TABLES)
+    optional = inputs.choices | set(INPUTS_OF_SURFACES)
     keys: dict[str, Any] = {name: (number | None, None) if name in optional else (number, ...) for name in inputs.quantities}
     contact = create_model("Contact", __base__=shared.Table, **keys, law=shared.law)
     over: Any = (Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")], CurveSettings.over)
@@ -72,10 +72,10 @@ def file_model(geometry: str) -> Any:
         __base__=shared.Table,
         over=over,
         range=(Annotated[Any, BeforeValidator(check_range)], None),
-        points=(Annotated[int, points], USUAL[geometry][0]),
+        points=(Annotated[int, points], DEFAULT_POINTS_AND_RTOL[geometry][0]),
     )
     definition: Any = (Annotated[Definition, Field(description="'balanced' or 'published'")], Case.definition)
-    rtol = shared.rtol[0], USUAL[geometry][1]
+    rtol = shared.rtol[0], DEFAULT_POINTS_AND_RTOL[geometry][1]
     solver = create_model("Solver", __base__=shared.Table, rtol=rtol, definition=definition)
     return create_model(
         "File",
@@ -83,8 +83,8 @@ def file_model(geometry: str) -> Any:
         contact=(contact, Field(description="a table, [contact]")),
         curve=(curve, Field(description="a table, [curve]", default_factory=curve)),
         solver=(solver, Field(description="a table, [solver]", default_factory=solver)),
-        surface=optional_table("surface", SURFACE),
-        asperities=optional_table("asperities", ASPERITIES),
+        surface=optional_table("surface", SURFACE_KEYS),
+        asperities=optional_table("asperities", ASPERITY_KEYS),
         check=optional_table("check", tuple(FACTS)),
         **shared.ends,
     )

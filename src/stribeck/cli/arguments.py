@@ -188,13 +188,13 @@ def bare_or_text(text: str) -> float | str:
 
 def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple[list[Path], list[Path]]:
     """Return the files to write, after a look at whether that will be possible."""
-    from stribeck.files.datasets import DATA, NETCDF
+    from stribeck.files.datasets import DATA_ENDINGS, NETCDF_ENDINGS
 
     for path in data:
-        check_writable(path, DATA, force=force)
+        check_writable(path, DATA_ENDINGS, force=force)
     if data:
         need_extra("a data file", "data", "xarray")
-    if any(path.suffix.lower() in NETCDF for path in data):
+    if any(path.suffix.lower() in NETCDF_ENDINGS for path in data):
         need_extra("a NetCDF file", "data", "netCDF4")
     pictures = check_pictures(plot, force)
     targets = [path.resolve() for path in (*data, *pictures)]
@@ -206,11 +206,11 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
 
 def check_pictures(plot: Path | None, force: bool) -> list[Path]:
     """Return the pictures to write, after a look at whether that will be possible."""
-    from stribeck.files.pictures import PICTURES
+    from stribeck.files.pictures import PICTURE_ENDINGS
 
     if plot is None:
         return []
-    check_writable(plot, PICTURES, force=force)
+    check_writable(plot, PICTURE_ENDINGS, force=force)
     need_extra("a picture", "plot", "matplotlib")
     return [plot]
 

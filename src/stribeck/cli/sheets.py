@@ -59,14 +59,14 @@ def report_command(
     Sources of the inputs are the comments of the case file. Where inputs have errors ("1.0 +- 0.2 um"), the page has
     intervals and the probability of each regime.
     """
-    from stribeck.data_sheet.report import ENDINGS
+    from stribeck.data_sheet.report import REPORT_ENDINGS
 
     if case is None or output is None:
         missing = "CASE" if case is None else "output"
         raise InputError(
             f"{missing} is missing; give a case file and a page, as in: stribeck report case.toml -o report.html."
         )
-    check_writable(output, ENDINGS, force=force)
+    check_writable(output, REPORT_ENDINGS, force=force)
     need_extra("a report", "report", "matplotlib")
     with interruptible() as progress:
         content = sb.write_report(case, output, data, force=force, on_step=lambda n, m: progress(n, m, "report"))

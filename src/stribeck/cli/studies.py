@@ -56,7 +56,7 @@ def sweep_command(
     store too, with their outcome.
     """
     from stribeck.cli.reports import sweep as report_sweep
-    from stribeck.files.datasets import NETCDF
+    from stribeck.files.datasets import NETCDF_ENDINGS
     from stribeck.sweeps.design import load_sweep
     from stribeck.sweeps.sweep import sweep
 
@@ -65,7 +65,7 @@ def sweep_command(
     if out is None:
         raise InputError("out is missing; give the folder of the store with --out.")
     if export is not None:
-        check_writable(export, NETCDF, force=force)
+        check_writable(export, NETCDF_ENDINGS, force=force)
         need_extra("a NetCDF file", "data", "netCDF4")
     plan = load_sweep(design)
     _say_unusual(plan)

@@ -35,21 +35,19 @@ from stribeck.uncertainty.result import Uncertainty
 
 __all__ = ["Content", "InputLine", "Lever", "content_of"]
 
-POINTS = 41
+CURVE_POINTS = 41
 
-GOAL = 0.8
-"""Friction that a lever should reach, relative to the present one."""
+LEVER_FRICTION_RATIO = 0.8  # Friction that a lever should reach, relative to the present one
 
-FARTHEST = 100.0
-"""Largest factor of a lever."""
+MAX_LEVER_FACTOR = 100.0  # Largest change of an input by a lever
 
-NO_ERRORS = (
+# What a report says of its certainty if no input has an error.
+NO_ERRORS_TEXT = (
     'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.'
 )
-"""What a report says of its certainty if no input has an error."""
 
-HANDS_ON = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "boundary_friction")
-"""Inputs that a designer may change."""
+# Inputs that a designer may change
+DESIGN_INPUTS = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "boundary_friction")
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,7 @@ def content_of(
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
     contact, definition = case.contact, case.definition
     solution, slopes, _ = sensitivities_if_known(contact, rtol=case.rtol, definition=definition)
-    curve = stribeck_curve(contact, points=POINTS, rtol=scanned_rtol(contact, case.rtol), definition=definition)
+    curve = stribeck_curve(contact, points=CURVE_POINTS, rtol=scanned_rtol(contact, case.rtol), definition=definition)
     step(1, 5)
     checks = checks_of(Subject(contact, case.facts, definition, solution, curve))
     step(2, 5)
@@ -184,7 +182,7 @@ def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Unce
     if found is None:
         return (
             first,
-            NO_ERRORS,
+            NO_ERRORS_TEXT,
         )
     return (first, f"Probability of each regime: {found.probabilities}.", *found.sources)
 
@@ -207,14 +205,22 @@ def _levers(case: Case, solution: Solution, slopes: dict[str, float]) -> tuple[L
     """Return the two inputs that lower friction by a fifth with the smallest change, with the friction that is then solved."""
     contact = case.contact
     before = solution.friction(definition=case.definition).total
-    factors = {name: float(np.exp(np.log(GOAL) / slopes[name])) for name in HANDS_ON if abs(slopes.get(name, 0.0)) > 0.01}
+    factors = {
+        name: float(np.exp(np.log(LEVER_FRICTION_RATIO) / slopes[name]))
+        for name in DESIGN_INPUTS
+        if abs(slopes.get(name, 0.0)) > 0.01
+    }
     nearest = sorted(factors, key=lambda name: abs(np.log(factors[name])))
     found: list[Lever] = []
     for name in nearest:
         factor = factors[name]
         # Speed and viscosity enter as a product: two names of one lever.
         twin = {"speed": "viscosity", "viscosity": "speed"}.get(name)
-        if len(found) == 2 or not 1 / FARTHEST < factor < FARTHEST or any(twin == each.label for each in found):
+        if (
+            len(found) == 2
+            or not 1 / MAX_LEVER_FACTOR < factor < MAX_LEVER_FACTOR
+            or any(twin == each.label for each in found)
+        ):
             continue
         row = contact.INPUTS.quantities[name]
         value = getattr(contact, name) * factor

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from stribeck.cases.case import USUAL
-from stribeck.cases.law import FROM_TABLES, LAWS, NEEDED, Law
+from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
+from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contacts.geometries import check_geometry
 from stribeck.contacts.groups import Geometry
@@ -20,7 +20,7 @@ from stribeck.quantities.units import DIMENSIONS
 
 __all__ = ["new_case"]
 
-PARTS = """
+MODEL_TEXT = """
 # A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
 # [fluid]
 # preset = "water"   # or {presets}: gives the viscosity too, at temperature = "25 degC"
@@ -35,7 +35,7 @@ PARTS = """
 # # A viscoelastic body has {memories}.
 """
 
-OPTIONS = """
+OPTIONS_TEXT = """
 [curve]
 # What varies: "speed", "load" or "roughness"; range = ["1 mm/s", "1 m/s"] if the automatic one does not fit.
 over = "speed"
@@ -48,10 +48,10 @@ rtol = {usual}
 definition = "balanced"
 """
 
-SMALLEST = {"line": "1e-11", "point": "1e-8"}
-"""Smallest tolerance of each geometry."""
+MIN_RTOL = {"line": "1e-11", "point": "1e-8"}  # By geometry
 
-SURFACES = {
+# The end of [contact] by geometry, with the contact law that holds for its load.
+SURFACE_TEXT = {
     "line": """# In the place of alpha, beta and roughness a table [surface] may stand:
 # h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".
 # The exponential law is the article's. It holds for load groups below 1 and gaps of 0.4 to 2 roughness heights, as at this
@@ -69,7 +69,6 @@ longest_wavelength = "150 um"
 shortest_wavelength = "1.5 um"
 """,
 }
-"""The end of [contact] by geometry, with the contact law that holds for its load."""
 
 
 @answers_typos
@@ -92,7 +91,7 @@ def new_case(geometry: Geometry = "line") -> str:
         If it is no geometry.
     """
     table = INPUT_TABLES[check_geometry(geometry)]
-    body, (points, rtol) = "ball" if geometry == "point" else "cylinder", USUAL[geometry]
+    body, (points, rtol) = "ball" if geometry == "point" else "cylinder", DEFAULT_POINTS_AND_RTOL[geometry]
     lines = [
         f"# A lubricated rough {body}. Replace the values by yours; a bare number is in SI units. A value may carry its",
         '# standard error, as in "1.0 +- 0.2 um" or "46 cSt +- 5 %". Then: stribeck check, solve, curve, regimes, report.',
@@ -105,7 +104,7 @@ def new_case(geometry: Geometry = "line") -> str:
     for row in table.rows:
         if row.derived:
             continue
-        left_out = row.optional or (geometry == "point" and row.name in FROM_TABLES)
+        left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
         lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {_value(row)}"]
         for other in table.alternatives:
             if other.of == row.name:
@@ -130,9 +129,9 @@ def new_case(geometry: Geometry = "line") -> str:
         ]
     lines += [
         f"# Contact law: {', '.join(map(_law, LAWS))}.",
-        SURFACES[geometry].rstrip(),
+        SURFACE_TEXT[geometry].rstrip(),
         _parts().rstrip(),
-        OPTIONS.format(points=points, smallest=SMALLEST[geometry], usual=f"{rtol:g}".replace("e-0", "e-")),
+        OPTIONS_TEXT.format(points=points, smallest=MIN_RTOL[geometry], usual=f"{rtol:g}".replace("e-0", "e-")),
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]
@@ -141,7 +140,7 @@ def new_case(geometry: Geometry = "line") -> str:
 
 
 def _law(name: Law) -> str:
-    return f'"{name}" (with [{NEEDED[name]}])' if name in NEEDED else f'"{name}"'
+    return f'"{name}" (with [{NEEDED_TABLE[name]}])' if name in NEEDED_TABLE else f'"{name}"'
 
 
 def _parts() -> str:
@@ -154,7 +153,7 @@ def _parts() -> str:
             with_them = f"   # with {needed}" if needed else ""
             laws.append(f'# {"" if name == first else "# or "}{key} = "{name}"{with_them}')
     factors = [f'"{name}"' for name, made in FLOW_FACTORS.items() if made]
-    return PARTS.format(
+    return MODEL_TEXT.format(
         presets=", ".join(name for name in PRESETS if name != "water"),
         laws="\n".join(laws),
         flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",

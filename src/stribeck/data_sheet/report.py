@@ -19,12 +19,13 @@ from stribeck.fits.measurements import Measurements
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["ENDINGS", "write_report"]
+__all__ = ["REPORT_ENDINGS", "write_report"]
 
-ENDINGS = (".html", ".pdf")
+REPORT_ENDINGS = (".html", ".pdf")
 
-PAGE, COLUMNS, ROWS = (8.27, 11.69), 104, 78
-"""Of the PDF: A4 [inch], letters on a line, lines on a page."""
+PAGE_INCH = (8.27, 11.69)  # A4
+PAGE_COLUMNS = 104  # Letters on a line of the PDF
+PAGE_ROWS = 78  # Lines on a page of the PDF
 
 
 @answers_typos
@@ -65,7 +66,7 @@ def write_report(
     MissingExtraError
         If matplotlib or jinja2 is not installed.
     """
-    target = check_writable(path, ENDINGS, force=force)
+    target = check_writable(path, REPORT_ENDINGS, force=force)
     _need(target.suffix.lower())
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
@@ -73,7 +74,7 @@ def write_report(
         case = load_case(case)
     given = data if isinstance(data, Measurements) or data is None else path_of(data, "data")
     content = content_of(case, given, on_step)
-    with atomic_write(path, ENDINGS, force=force) as temporary:
+    with atomic_write(path, REPORT_ENDINGS, force=force) as temporary:
         if target.suffix.lower() == ".pdf":
             _write_pdf(content, temporary)
         else:
@@ -108,10 +109,10 @@ def _write_pdf(content: Content, path: Path) -> None:
     from matplotlib.figure import Figure
 
     lines = list(_lines(content))
-    pages = [lines[i : i + ROWS] for i in range(0, len(lines), ROWS)]
+    pages = [lines[i : i + PAGE_ROWS] for i in range(0, len(lines), PAGE_ROWS)]
     with PdfPages(path) as book:
         for page in pages:
-            figure = Figure(figsize=PAGE)
+            figure = Figure(figsize=PAGE_INCH)
             for i, (text, strong) in enumerate(page):
                 weight = "bold" if strong else "normal"
                 place = 0.07, 0.955 - i * 0.0117
@@ -124,14 +125,14 @@ def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     """Yield the lines of the PDF, and whether each is a heading."""
 
     def wrapped(text: str, indent: str = "") -> Iterator[tuple[str, bool]]:
-        for line in textwrap.wrap(text, COLUMNS, subsequent_indent=indent) or [""]:
+        for line in textwrap.wrap(text, PAGE_COLUMNS, subsequent_indent=indent) or [""]:
             yield line, False
 
     def heading(text: str) -> Iterator[tuple[str, bool]]:
         yield "", False
         yield text, True
 
-    for line in textwrap.wrap(content.headline, COLUMNS):
+    for line in textwrap.wrap(content.headline, PAGE_COLUMNS):
         yield line, True
     if content.checks.first_line:
         yield from wrapped(content.checks.first_line)

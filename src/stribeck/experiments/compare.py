@@ -38,15 +38,14 @@ if TYPE_CHECKING:
 
 __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 
+# Caveats of a comparison.
 CAVEATS = (
     "The weights say which of these is nearest to the data, not that it is right: look at the residuals of the best.",
     "They hold if errors of rows are independent; a systematic error of the rig counts as evidence otherwise.",
     "Contact laws differ most where asperities are few, near the minimum: without rows there data cannot distinguish them.",
 )
-"""Caveats of a comparison."""
 
-CLEAR = 10.0
-"""Difference of AICc from which a law is practically excluded."""
+EXCLUDED_AICC = 10.0  # Difference of AICc from which a law is practically excluded
 
 
 @dataclass(frozen=True)
@@ -100,7 +99,7 @@ class Comparison(Exported, Shown):
         if others[0].difference < 2:
             near = [each.name for each in self.candidates if each.difference < 2]
             return f"The data do not distinguish {' and '.join(near)} (differences of AICc below 2)."
-        out = [each.name for each in others if each.difference > CLEAR]
+        out = [each.name for each in others if each.difference > EXCLUDED_AICC]
         excluded = f"; practically excluded: {', '.join(out)}" if out else ""
         return f"The data prefer {best.name}, by {others[0].difference:.1f} in AICc over {others[0].name}{excluded}."
 
@@ -259,10 +258,10 @@ def _models(models: str | Mapping[str, Mapping[str, Any]], contact: Contact, row
     """Return the models that are compared: those given, or those of a name."""
     if not isinstance(models, str):
         return dict(models)
-    if models not in KINDS:
-        known = " or ".join(map(repr, KINDS))
+    if models not in MODEL_KINDS:
+        known = " or ".join(map(repr, MODEL_KINDS))
         raise InputError(f"models = {show(models)} must be {known}, or in Python a mapping from names to models.")
-    return KINDS[models](contact, rows)
+    return MODEL_KINDS[models](contact, rows)
 
 
 def _cavitations(contact: Contact, rows: Measurements) -> dict[str, Any]:
@@ -280,8 +279,8 @@ def _fluids(contact: Contact, rows: Measurements) -> dict[str, Any]:
     }
 
 
-KINDS: dict[str, Callable[[Contact, Measurements], dict[str, Any]]] = {"cavitation": _cavitations, "fluid": _fluids}
-"""Models that are compared by a name."""
+# Models that are compared by a name
+MODEL_KINDS: dict[str, Callable[[Contact, Measurements], dict[str, Any]]] = {"cavitation": _cavitations, "fluid": _fluids}
 
 
 def _laws(contact: Contact) -> dict[str, AsperityLaw | None]:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["NextRun", "Plan", "next_runs"]
 
-WORDS = {
+COLUMN_WORDS = {
     "curve": "curve whose contact it is",
     "speed": "sum of the surface speeds",
     "load": "load",
@@ -44,22 +44,18 @@ WORDS = {
     "gain": "growth of half the logarithm of the determinant of the information",
     "cost": "cost",
 }
-"""What is listed of a run."""
 
-SPEEDS, BEYOND = 17, 3.0
-"""Candidate speeds: from the slowest measured over this factor to the fastest times it."""
+CANDIDATE_SPEEDS = 17  # Speeds from the slowest measured to the fastest, and a factor of SPEED_MARGIN to both sides
+SPEED_MARGIN = 3.0  # Ratio of speeds
 
-LOADS = (1 / 3, 1.0, 3.0)
-"""Candidate loads, over the load of the first curve."""
+LOAD_RATIOS = (1 / 3, 1.0, 3.0)  # Candidate loads, over the load of the first curve
 
-COST = {"point": 1.0, "load": 2.0, "viscosity": 3.0}
-"""Cost of a run at another speed, and of another load or fluid."""
+DEFAULT_COST = {"point": 1.0, "load": 2.0, "viscosity": 3.0}  # Cost of a run at another speed, and of another load or fluid
 
-IGNORANCE = math.log(10)
-"""Standard error of the logarithm of an input that the data do not constrain: a factor of ten."""
+PRIOR_LOG_ERROR = math.log(10)  # Standard error of the logarithm of an input that the data do not constrain: a factor of ten
 
 RTOL = 1e-4
-MOST = 50
+MAX_RUNS = 50
 
 
 @dataclass(frozen=True)
@@ -167,7 +163,7 @@ class Plan(Exported, Shown):
         units = {"speed": "m s-1", "load": DIMENSIONS[self.load_dimension].unit, "viscosity": "Pa s"}
         columns: dict[str, Column] = {
             name: ("run", listed([getattr(each, name) for each in self.runs]), units.get(name, "1"), words)
-            for name, words in WORDS.items()
+            for name, words in COLUMN_WORDS.items()
         }
         for name in self.before:
             after = np.array([each.errors[name] for each in self.runs])
@@ -224,11 +220,11 @@ def next_runs(
     checked_callback("on_step", on_step)
     if not fit.converged:
         raise InputError(f"the fit did not converge, so that no run can be advised. {fit.outcome.value}")
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
-        raise InputError(f"count = {show(count)}; it must be a whole number from 1 to {MOST}.")
-    prices = COST | dict(cost or {})
-    if set(prices) != set(COST) or min(prices.values()) < 0 or prices["point"] <= 0:
-        raise InputError(f"cost = {show(cost)}; it may hold {', '.join(COST)}, each zero or positive, point positive.")
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_RUNS:
+        raise InputError(f"count = {show(count)}; it must be a whole number from 1 to {MAX_RUNS}.")
+    prices = DEFAULT_COST | dict(cost or {})
+    if set(prices) != set(DEFAULT_COST) or min(prices.values()) < 0 or prices["point"] <= 0:
+        raise InputError(f"cost = {show(cost)}; it may hold {', '.join(DEFAULT_COST)}, each zero or positive, point positive.")
     noise = _noise(fit)
     information = _information(fit)
     places = _places(fit, speeds, loads, viscosities)
@@ -278,7 +274,7 @@ def _information(fit: Fit) -> Array:
     at = fit._minimum
     priors, _ = at.objective.priors
     found = at.jacobian.T @ at.jacobian + priors.T @ priors
-    return np.asarray(found + np.eye(len(fit.inputs)) / IGNORANCE**2)
+    return np.asarray(found + np.eye(len(fit.inputs)) / PRIOR_LOG_ERROR**2)
 
 
 def _places(
@@ -293,13 +289,13 @@ def _places(
     low, high = _speed_range(fit)
     tried = given["speed"]
     if tried is None:
-        tried = np.geomspace(low / BEYOND, high * BEYOND, SPEEDS).tolist()
+        tried = np.geomspace(low / SPEED_MARGIN, high * SPEED_MARGIN, CANDIDATE_SPEEDS).tolist()
     if any(not values for values in given.values() if values is not None) or min(tried) <= 0:
         raise InputError("speeds, loads and viscosities must hold at least one value, and speeds be positive.")
     states: dict[tuple[float, float], tuple[str, Contact]] = {}
     for name, contact in zip(fit.data.curves, fit.contacts, strict=True):
         first = contact is fit.contacts[0]
-        own_loads = given["load"] or ([contact.load * f for f in LOADS] if first else [contact.load])
+        own_loads = given["load"] or ([contact.load * f for f in LOAD_RATIOS] if first else [contact.load])
         for load in own_loads:
             for viscosity in given["viscosity"] or [contact.viscosity]:
                 states.setdefault((load, viscosity), (name, contact.replace(load=load, viscosity=viscosity)))

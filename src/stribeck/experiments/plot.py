@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.experiments.compare import CLEAR, Comparison
+from stribeck.experiments.compare import EXCLUDED_AICC, Comparison
 from stribeck.experiments.next_runs import Plan
 from stribeck.files.pictures import (
     CONTACT,
@@ -60,10 +60,10 @@ def plot_comparison(
         ax.annotate(
             f"weight {each.weight:.2g}", (each.difference, row), (4, 0), textcoords="offset points", va="center", size=8
         )
-    ax.axvline(CLEAR, color=MARK, lw=1.0, ls=(0, (5, 3)), zorder=0, label="practically excluded beyond")
+    ax.axvline(EXCLUDED_AICC, color=MARK, lw=1.0, ls=(0, (5, 3)), zorder=0, label="practically excluded beyond")
     ax.set_yticks(rows, [each.name for each in laws])
     ax.set_ylim(len(laws) - 0.4, -0.6)
-    ax.set_xlim(0.0, 1.25 * max(CLEAR, *(each.difference for each in laws)))
+    ax.set_xlim(0.0, 1.25 * max(EXCLUDED_AICC, *(each.difference for each in laws)))
     ax.set_xlabel("difference of AICc")
     ax.legend(frameon=False, fontsize=8, loc="lower right")
     return finish_figure(figure, path, force)

@@ -21,7 +21,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, Report, figure_names, load_figure
-from stribeck.files.datasets import NETCDF, import_xarray, write_netcdf
+from stribeck.files.datasets import NETCDF_ENDINGS, import_xarray, write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
@@ -180,7 +180,7 @@ def _make(figure: PaperFigure, place: Path, force: bool, on_progress: OnProgress
     for ending in PICTURES:
         with atomic_write(stem.with_suffix(ending), PICTURES, force=True) as temporary:
             style.save(picture, temporary)
-    files = tuple(stem.with_suffix(ending) for ending in (*PICTURES, *NETCDF))
+    files = tuple(stem.with_suffix(ending) for ending in (*PICTURES, *NETCDF_ENDINGS))
     return Made(figure.name, "reused" if reused else "solved", files)
 
 
@@ -231,5 +231,5 @@ def _check_files(figure: PaperFigure, place: Path, force: bool) -> None:
     """Refuse to replace files that this command has not made."""
     stem = place / figure.stem
     ours = force or _read(figure, stem.with_suffix(".nc")) is not None
-    for ending in (*PICTURES, *NETCDF):
+    for ending in (*PICTURES, *NETCDF_ENDINGS):
         check_writable(stem.with_suffix(ending), (ending,), force=ours)

@@ -10,7 +10,7 @@ from pathlib import Path
 from stribeck.quantities.units import InputError
 
 __all__ = [
-    "MISSING",
+    "MISSING_CELLS",
     "cells_of",
     "has_number",
     "header_words",
@@ -22,28 +22,27 @@ __all__ = [
     "split_header",
 ]
 
-MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
-"""Cells that hold no value, in lower case."""
+# Cells that hold no value, in lower case.
+MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 
-MOST_LISTED = 10
-"""Rows that a sentence lists."""
+MAX_LISTED_ROWS = 10  # Rows that a sentence lists
 
-SYMBOLS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
-"""What may stand in the brackets of a header in place of a unit: the letter of the quantity."""
+# What may stand in the brackets of a header in place of a unit: the letter of the quantity
+QUANTITY_LETTERS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
 
+# Brackets that say which statistic of the samples a column holds, and no unit.
 _STATISTIC = re.compile(
     r"\s*[\[(](mean|average|avg|median|sd|s\.d\.|std|st\.? ?dev\.?|se|sem|err(?:or)?|std\.? ?(?:dev|error)\.?)[\])]",
     re.IGNORECASE,
 )
-"""Brackets that say which statistic of the samples a column holds, and no unit."""
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 
 _LETTER = re.compile(r"(?<=[a-zäöüß]{3}) (?:u|v|mu|[µμ]|f ?[nt]|w)$")
 
-POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
-COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
-WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
+NUMBER_WITH_POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+NUMBER_WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
+NUMBER_WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
 _UNIT = re.compile(
     r"(?:[pnuµμcmkMG]?(?:m|g|s|N|Pa|J|W|V|A|Hz|C|St|P|Nm|bar)|K|%|‰|°|°C|°F|deg|rad|sec|min|h|hr|hour|rpm|RPM|rev|in|ft|lbf?|"
     r"k?gf|[Nn]ewton|a\.?u\.?|1)(?:\^?[-−]?[0-9]|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
@@ -65,7 +64,7 @@ def split_header(header: str) -> tuple[str, str]:
     if parts is None or not parts[1]:
         return header.strip(), ""
     unit = next(unit for unit in parts.groups()[1:] if unit is not None).strip()
-    return parts[1].strip(), "" if unit in SYMBOLS else re.sub("_per_|_", "/", unit)
+    return parts[1].strip(), "" if unit in QUANTITY_LETTERS else re.sub("_per_|_", "/", unit)
 
 
 def header_words(header: str) -> str:
@@ -93,13 +92,13 @@ def number_of(cell: str, decimal: str = ".") -> tuple[float, str] | None:
     """Return the number that a cell holds and its own unit, or None; with ``decimal = ","`` points pass too."""
     text = cell.replace("\N{MINUS SIGN}", "-").strip()
     unit = ""
-    bare = POINT.fullmatch(text) or COMMA.fullmatch(text)
-    with_unit = None if bare else WITH_UNIT.fullmatch(text)
+    bare = NUMBER_WITH_POINT.fullmatch(text) or NUMBER_WITH_COMMA.fullmatch(text)
+    with_unit = None if bare else NUMBER_WITH_UNIT.fullmatch(text)
     if with_unit:
         text, unit = with_unit.groups()
-    if decimal == "," and COMMA.fullmatch(text):
+    if decimal == "," and NUMBER_WITH_COMMA.fullmatch(text):
         text = text.replace(",", ".")
-    return (float(text), unit) if POINT.fullmatch(text) else None
+    return (float(text), unit) if NUMBER_WITH_POINT.fullmatch(text) else None
 
 
 def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
@@ -139,7 +138,7 @@ def has_number(cell: str) -> bool:
     return any(sign.isdigit() for sign in cell) and number_of(cell, ",") is not None
 
 
-def rows_listed(numbers: Iterable[object], most: int = MOST_LISTED) -> str:
+def rows_listed(numbers: Iterable[object], most: int = MAX_LISTED_ROWS) -> str:
     """Return rows of a file as a sentence lists them, the first of them where there are many."""
     named = list(map(str, numbers))
     return ", ".join(named[:most]) + (", ..." if len(named) > most else "")

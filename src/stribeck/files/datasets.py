@@ -1,4 +1,4 @@
-"""Datasets of xarray as NetCDF and CSV files.
+"""Datasets of xarray as NetCDF and CSV_ENDINGS files.
 
 xarray and netCDF4 come with the extra ``data`` and are imported on first use.
 """
@@ -18,15 +18,23 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["CSV", "DATA", "NETCDF", "import_xarray", "listed", "new_dataset", "write_csv", "write_data", "write_netcdf"]
+__all__ = [
+    "CSV_ENDINGS",
+    "DATA_ENDINGS",
+    "NETCDF_ENDINGS",
+    "import_xarray",
+    "listed",
+    "new_dataset",
+    "write_csv",
+    "write_data",
+    "write_netcdf",
+]
 
-Column = tuple[str | Sequence[str], Any, str, str]
-"""Dimensions, values, unit and long name of a variable."""
+Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit and long name of a variable
 
-NETCDF = (".nc",)
-CSV = (".csv",)
-DATA = (*NETCDF, *CSV)
-"""Endings of the data files."""
+NETCDF_ENDINGS = (".nc",)
+CSV_ENDINGS = (".csv",)
+DATA_ENDINGS = (*NETCDF_ENDINGS, *CSV_ENDINGS)
 
 
 def import_xarray(what: str = "a dataset") -> Any:
@@ -63,7 +71,7 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
         import netCDF4  # noqa: F401
     except ImportError:
         raise MissingExtraError("a NetCDF file", "data", "netCDF4") from None
-    with atomic_write(path, NETCDF, force=force) as temporary:
+    with atomic_write(path, NETCDF_ENDINGS, force=force) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
         except RuntimeError as problem:  # of the HDF5 library, as on a full disk
@@ -74,11 +82,13 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
     """Write a dataset as text: comments, one line of names with units, one line for each point."""
     if len(dataset.sizes) != 1:
         dimensions = ", ".join(map(str, dataset.sizes)) or "none"
-        raise InputError(f"a CSV file has one dimension and this dataset has {dimensions}; write NetCDF (.nc) instead.")
+        raise InputError(
+            f"a CSV_ENDINGS file has one dimension and this dataset has {dimensions}; write NetCDF (.nc) instead."
+        )
     (over,) = dataset.sizes
     columns = [dataset[over], *dataset.data_vars.values()]
     with (
-        atomic_write(path, CSV, force=force) as temporary,
+        atomic_write(path, CSV_ENDINGS, force=force) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
         for name, value in dataset.attrs.items():
@@ -91,7 +101,7 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as the ending of ``path`` says: ``.nc`` or ``.csv``."""
-    write = write_csv if str(path).lower().endswith(CSV) else write_netcdf
+    write = write_csv if str(path).lower().endswith(CSV_ENDINGS) else write_netcdf
     write(dataset, path, force=force)
 
 

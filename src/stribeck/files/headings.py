@@ -8,19 +8,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
-from stribeck.files.cells import MISSING, cells_of, has_number, looks_like_units
+from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, looks_like_units
 from stribeck.quantities.units import InputError
 
 __all__ = ["Heading", "Line", "headings_in"]
 
-MARKS = ("\t", ";", ",", "|")
-"""What separates columns, beside white space: what comes first here wins where a line has several."""
+# What separates columns, beside white space: what comes first here wins where a line has several.
+COLUMN_SEPARATORS = ("\t", ";", ",", "|")
 
-GAP = "  "
-"""What separates names of several words in columns that are aligned by spaces."""
+WIDE_SPACE = "  "  # Separates names of several words in columns that are aligned by spaces
 
-MOST_LINES = 4
-"""Lines above rows of numbers that may name columns, units and curves."""
+MAX_HEADING_LINES = 4  # Lines above rows of numbers that may name columns, units and curves
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ class Heading:
         separator = _separator(lines[i].text)
         names = tuple(cells_of(lines[i].text, separator, Path(), lines[i].number))
         below = i + 1
-        while below < min(len(lines), i + MOST_LINES) and not lines[below].comment and not lines[below].numbers:
+        while below < min(len(lines), i + MAX_HEADING_LINES) and not lines[below].comment and not lines[below].numbers:
             below += 1
         plain = cls(at=i, first=i, below=below, separator=separator, names=names)
         return plain if below == len(lines) else plain._with_others(lines, range(i, below))
@@ -101,7 +99,7 @@ class Heading:
             if not cells:
                 continue
             if i > self.at and not units and _are_units(cells):
-                units = tuple("" if cell.lower() in MISSING else cell.strip("[]()") for cell in cells)
+                units = tuple("" if cell.lower() in MISSING_CELLS else cell.strip("[]()") for cell in cells)
             elif not labels and self._tells_apart(cells):
                 labels, first = cells, min(first, i)
         return replace(self, units=units, labels=labels, first=first)
@@ -136,8 +134,8 @@ def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Hea
         else:
             if stack or (comments and not found):
                 # A comment names the columns only where nothing else does.
-                heading = _best(lines, stack[-MOST_LINES:], i, knows) or (
-                    _best(lines, comments[-MOST_LINES:], i, knows) if not found else None
+                heading = _best(lines, stack[-MAX_HEADING_LINES:], i, knows) or (
+                    _best(lines, comments[-MAX_HEADING_LINES:], i, knows) if not found else None
                 )
                 if heading:
                     found.append(heading)
@@ -154,7 +152,7 @@ def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callab
         for mark in _separators(lines[i]):
             names = tuple(_names(lines[i].text, mark))
             given = [name for name in names if name]
-            separator = _separator(lines[below].text) if lines[i].comment or mark == GAP else mark
+            separator = _separator(lines[below].text) if lines[i].comment or mark == WIDE_SPACE else mark
             heading = Heading(at=i, first=i, below=below, separator=separator, names=names)
             if len(given) < 2 or any(map(has_number, names)) or not heading.fits(lines[below]):
                 continue
@@ -168,18 +166,18 @@ def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callab
 
 def _separators(line: Line) -> tuple[str, ...]:
     """Return what may separate names in a line; a comment need not have the separator of the numbers."""
-    marks = tuple(mark for mark in MARKS if mark in line.text)
+    marks = tuple(mark for mark in COLUMN_SEPARATORS if mark in line.text)
     if line.comment:
-        return (*marks, "", GAP)
-    return marks[:1] or ("", GAP)
+        return (*marks, "", WIDE_SPACE)
+    return marks[:1] or ("", WIDE_SPACE)
 
 
 def _names(text: str, mark: str) -> list[str]:
-    return re.split(r"\s{2,}", text.strip()) if mark == GAP else _split(text, mark)
+    return re.split(r"\s{2,}", text.strip()) if mark == WIDE_SPACE else _split(text, mark)
 
 
 def _separator(text: str) -> str:
-    return next((mark for mark in MARKS if mark in text), "")
+    return next((mark for mark in COLUMN_SEPARATORS if mark in text), "")
 
 
 def _split(text: str, separator: str) -> list[str]:
@@ -199,5 +197,5 @@ def _numbers_in(text: str) -> int:
 
 def _are_units(cells: Sequence[str]) -> bool:
     """Return whether most cells are units and none a number."""
-    given = [cell for cell in cells if cell.lower() not in MISSING]
+    given = [cell for cell in cells if cell.lower() not in MISSING_CELLS]
     return bool(given) and 2 * sum(map(looks_like_units, given)) > len(given)

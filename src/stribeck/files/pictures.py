@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 Draws = TypeVar("Draws", bound=Callable[..., Any])
 
-PICTURES = (".png", ".svg", ".pdf")
-"""Endings of the pictures."""
+PICTURE_ENDINGS = (".png", ".svg", ".pdf")
 
 # Okabe and Ito's colours, which most colour-blind readers tell apart; dashes differ as well.
 INK = "#1f2328"
@@ -33,11 +32,11 @@ MARK = "#cc79a7"
 TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
 
 
-LINE = 0.19
-LEGEND = 0.55
-EDGE = 0.15
-"""Heights of a line of the caption and of the legend, and what stays free beside a caption [inch]."""
+CAPTION_LINE_INCH = 0.19
+LEGEND_INCH = 0.55
+CAPTION_MARGIN_INCH = 0.15  # Free beside a caption
 
+# The arguments that functions share which draw.
 ARGUMENTS = {
     "path": "str or path-like, optional\n    Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.",
     "ax": "matplotlib.axes.Axes, optional\n    Axes to draw into, in place of a new figure.",
@@ -45,7 +44,6 @@ ARGUMENTS = {
     "title": "str\n    Headline.",
     "notes": "bool\n    Whether the notes stand below the picture.",
 }
-"""The arguments that functions share which draw."""
 
 RETURNS = "matplotlib.figure.Figure\n    The figure."
 RAISES = (
@@ -99,10 +97,10 @@ def new_figure(
         return figure_of(ax), [ax]
     width, height = size
     figure = blank_figure(width, height)
-    caption = caption_lines(figure, footer, notes, width - 0.8 - EDGE)
-    height += LINE * len(caption) + LEGEND
+    caption = caption_lines(figure, footer, notes, width - 0.8 - CAPTION_MARGIN_INCH)
+    height += CAPTION_LINE_INCH * len(caption) + LEGEND_INCH
     figure.set_size_inches(width, height)
-    low = (LINE * len(caption) + LEGEND + 0.72) / height
+    low = (CAPTION_LINE_INCH * len(caption) + LEGEND_INCH + 0.72) / height
     high = 1 - top / height
     grid = figure.add_gridspec(
         rows, columns, left=left / width, right=1 - right / width, bottom=low, top=high, wspace=0.2, hspace=0.08
@@ -119,7 +117,13 @@ def new_figure(
     figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
     for i, (line, colour) in enumerate(reversed(caption)):
         figure.text(
-            0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom", parse_math=colour == GREY
+            0.8 / width,
+            (0.14 + CAPTION_LINE_INCH * i) / height,
+            line,
+            size=8,
+            color=colour,
+            va="bottom",
+            parse_math=colour == GREY,
         )
     return figure, axes
 
@@ -178,7 +182,7 @@ def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
 def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
     """Write the figure where wanted, and return it."""
     if path is not None:
-        with atomic_write(path, PICTURES, force=force) as temporary:
+        with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
             figure.savefig(temporary)
     return figure
 

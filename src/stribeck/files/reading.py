@@ -16,7 +16,7 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["content_of", "read_bounded", "text_of"]
 
-KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
+FILE_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
 
 
 def read_bounded(path: PathLike, largest: int) -> bytes:
@@ -28,7 +28,7 @@ def read_bounded(path: PathLike, largest: int) -> bytes:
         if stat.S_ISDIR(about.st_mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         if not stat.S_ISREG(about.st_mode):
-            kind = KINDS.get(stat.S_IFMT(about.st_mode), "something else")
+            kind = FILE_KINDS.get(stat.S_IFMT(about.st_mode), "something else")
             raise OSError(errno.EINVAL, f"it is {kind}, not an ordinary file", str(path))
         content = bytearray()
         while len(content) <= largest:

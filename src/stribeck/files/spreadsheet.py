@@ -17,35 +17,34 @@ from stribeck.files.cells import has_number
 from stribeck.files.reading import content_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["SPREADSHEETS", "sheets_of"]
+__all__ = ["SPREADSHEET_ENDINGS", "sheets_of"]
 
-SPREADSHEETS = (".xlsx", ".xlsm")
+SPREADSHEET_ENDINGS = (".xlsx", ".xlsm")
 
-LARGEST_WORKBOOK = 20_000_000  # [byte]
-"""Size of a workbook, and letters in a sheet: many cells may refer to one long text."""
+# Also the letters in a sheet: many cells may refer to one long text
+MAX_WORKBOOK_BYTES = 20_000_000  # [byte]
 
-LARGEST_XML = 100_000_000  # [byte]
-"""Size of the parts of a workbook once they are unpacked; a small file may unpack to any size."""
+# Size of the parts of a workbook once they are unpacked; a small file may unpack to any size
+MAX_XML_BYTES = 100_000_000  # [byte]
 
-LARGEST_CELLS = 2_000_000
-"""Cells of a sheet, with the empty ones before the last of each row."""
+MAX_SHEET_CELLS = 2_000_000  # Cells of a sheet, with the empty ones before the last of each row
 
-LAST_ROW, LAST_COLUMN = 1_048_576, 16_384
-"""Rows and columns that a sheet can have."""
+MAX_SHEET_ROWS = 1_048_576  # Rows that a sheet can have
+MAX_SHEET_COLUMNS = 16_384  # Columns that a sheet can have
 
 _CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
 
 def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int, str]]]:
     """Return the sheets of a workbook that hold numbers."""
-    content = content_of(path, LARGEST_WORKBOOK, "a workbook")
-    if len(content) > LARGEST_WORKBOOK:
-        raise InputError(f"{path} has more than {LARGEST_WORKBOOK} bytes; keep the sheet with the measured rows.")
+    content = content_of(path, MAX_WORKBOOK_BYTES, "a workbook")
+    if len(content) > MAX_WORKBOOK_BYTES:
+        raise InputError(f"{path} has more than {MAX_WORKBOOK_BYTES} bytes; keep the sheet with the measured rows.")
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as book:
             size = sum(each.file_size for each in book.infolist() if each.filename.endswith((".xml", ".rels")))
-            if size > LARGEST_XML:
-                raise InputError(f"{path} unpacks to more than {LARGEST_XML} bytes; keep the sheet with the measured rows.")
+            if size > MAX_XML_BYTES:
+                raise InputError(f"{path} unpacks to more than {MAX_XML_BYTES} bytes; keep the sheet with the measured rows.")
             sheets = dict(_sheets(path, book, wanted))
     except InputError:
         raise
@@ -189,17 +188,19 @@ class _Rows(_Handler):
         row, column = self.place
         text = _TEXTS.get(self.kind, str)("".join(self.parts)) if self.kind != "s" else self.strings[int("".join(self.parts))]
         self.length += len(text)
-        if self.length > LARGEST_WORKBOOK:
-            raise InputError(f"{self.path} holds more than {LARGEST_WORKBOOK} letters; keep the sheet with the measured rows.")
+        if self.length > MAX_WORKBOOK_BYTES:
+            raise InputError(
+                f"{self.path} holds more than {MAX_WORKBOOK_BYTES} letters; keep the sheet with the measured rows."
+            )
         self.count += max(0, column - self.widths.get(row, 0))
-        if self.count > LARGEST_CELLS:
-            raise InputError(f"{self.path} has more than {LARGEST_CELLS} cells; keep the sheet with the measured rows.")
+        if self.count > MAX_SHEET_CELLS:
+            raise InputError(f"{self.path} has more than {MAX_SHEET_CELLS} cells; keep the sheet with the measured rows.")
         self.widths[row] = max(column, self.widths.get(row, 0))
         text = " ".join(text.split())
         self.cells.setdefault(row, {})[column] = '"{}"'.format(text.replace('"', '""')) if '"' in text else text
 
     def _checked(self, row: int, column: int) -> tuple[int, int]:
-        if not 0 < row <= LAST_ROW or not 0 <= column <= LAST_COLUMN:
+        if not 0 < row <= MAX_SHEET_ROWS or not 0 <= column <= MAX_SHEET_COLUMNS:
             raise ValueError(f"it has a cell in row {row}, column {column}")
         return row, column
 

@@ -15,34 +15,39 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import COMMA, MISSING, POINT, WITH_UNIT, has_number, number_of, rows_listed, split_header
+from stribeck.files.cells import (
+    MISSING_CELLS,
+    NUMBER_WITH_COMMA,
+    NUMBER_WITH_POINT,
+    NUMBER_WITH_UNIT,
+    has_number,
+    number_of,
+    rows_listed,
+    split_header,
+)
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
-from stribeck.files.spreadsheet import SPREADSHEETS, sheets_of
+from stribeck.files.spreadsheet import SPREADSHEET_ENDINGS, sheets_of
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = ["TextTable", "comparable", "read_table", "read_two_columns", "values_of"]
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
-LARGEST_TABLE = 20_000_000  # [byte]
+MAX_TABLE_BYTES = 20_000_000  # [byte]
 
-MOST_ROWS, MOST_CELLS = 500_000, 4_000_000
-"""Rows and cells of a table that are read, in about a quarter of a minute."""
+MAX_ROWS = 500_000  # Rows of a table that are read, in about a quarter of a minute
+MAX_CELLS = 4_000_000  # Cells of a table that are read, in about a quarter of a minute
 
-BLOCK = "step"
-"""Header of the column that numbers the tables of a file that has the same header above each."""
+STEP_HEADER = "step"  # Header of the column that numbers the tables of a file that has the same header above each
 
-CURVE = "curve"
-"""Header of the column that names the curves of a file that has them side by side."""
+CURVE_HEADER = "curve"  # Header of the column that names the curves of a file that has them side by side
 
-EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
+HEADER_ADVICE = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 
-SAMPLE_ROWS = 200
-"""Rows of each table by which tables are compared."""
+SAMPLE_ROWS = 200  # Rows of each table by which tables are compared
 
-SETTING_TOLERANCE = 0.05
-"""Relative difference of numbers up to which a column has only one setting."""
+SETTING_RTOL = 0.05  # Relative difference of numbers up to which a column has only one setting
 
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
@@ -74,11 +79,11 @@ class TextTable:
             if not name or name not in names:
                 continue
             for number, row in zip(self.numbers, self.rows, strict=True):
-                parts = WITH_UNIT.fullmatch(row[at])
+                parts = NUMBER_WITH_UNIT.fullmatch(row[at])
                 text = (parts[1] if parts else row[at]).strip()
-                if comma is None and COMMA.fullmatch(text):
+                if comma is None and NUMBER_WITH_COMMA.fullmatch(text):
                     comma = number, name, row[at]
-                elif point is None and "." in text and POINT.fullmatch(text):
+                elif point is None and "." in text and NUMBER_WITH_POINT.fullmatch(text):
                     point = number, name, row[at]
                 if comma and point:
                     break
@@ -103,12 +108,12 @@ def knows_nothing(name: str) -> bool:
 def read_table(
     path: Path,
     header_row: int | None = None,
-    expected: str = EXPECTED,
+    expected: str = HEADER_ADVICE,
     knows: Callable[[str], bool] = knows_nothing,
     sheet: str | None = None,
 ) -> TextTable:
     """Return the cells of a file of columns with a header."""
-    filled_up = path.suffix.lower() in SPREADSHEETS and path.is_file()
+    filled_up = path.suffix.lower() in SPREADSHEET_ENDINGS and path.is_file()
     notes: tuple[str, ...] = ()
     if filled_up:
         name, lines, others_of_book = _sheet(path, sheet, knows)
@@ -122,8 +127,10 @@ def read_table(
     separator, number = heading.separator, lines[heading.at].number
     above = tuple((line.number, line.text) for line in lines[: heading.at])
     header = heading.names
-    elsewhere = "" if header_row or expected != EXPECTED else "; if the header is not in this row, set header_row in [fit]"
-    if all(POINT.fullmatch(cell) or COMMA.fullmatch(cell) for cell in header):
+    elsewhere = (
+        "" if header_row or expected != HEADER_ADVICE else "; if the header is not in this row, set header_row in [fit]"
+    )
+    if all(NUMBER_WITH_POINT.fullmatch(cell) or NUMBER_WITH_COMMA.fullmatch(cell) for cell in header):
         raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
     if sum(map(bool, header)) < 2:
         raise InputError(
@@ -150,7 +157,7 @@ def read_table(
         header, labels = ("X", "Y") * (len(header) // 2), header
     written = tuple(dict.fromkeys(filter(None, header)))
     if len(set(steps)) > 1:
-        header = (*header, BLOCK)
+        header = (*header, STEP_HEADER)
         rows = [(*row, str(step)) for row, step in zip(rows, steps, strict=True)]
         units = (*units, "") if units else ()
     table = TextTable(
@@ -201,7 +208,7 @@ def values_of(
             try:
                 values[k, j] = float(cell.replace(",", ".") if comma else cell)
             except ValueError:
-                if not (missing and cell.lower() in MISSING):
+                if not (missing and cell.lower() in MISSING_CELLS):
                     where = f"{path}: line {numbers[k]}, column {j + 1}"
                     raise InputError(f"{where} is {show(cell)}, not a number.") from None
                 values[k, j] = np.nan
@@ -222,14 +229,14 @@ def _lines_of_text(path: Path, sheet: str | None) -> list[Line]:
     """Return the lines of a text that are not empty."""
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
-    text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
+    text = text_of(path, MAX_TABLE_BYTES, "a table is a few pages of text", "a text file of columns")
     return _within_bounds(path, [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")])
 
 
 def _within_bounds(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
     """Return the lines of a table, or refuse one that would take minutes to read."""
     cells = sum(line.count(mark) for _, line in filled for mark in SEPARATORS)
-    for count, most, what in ((len(filled), MOST_ROWS, "rows"), (cells, MOST_CELLS, "cells")):
+    for count, most, what in ((len(filled), MAX_ROWS, "rows"), (cells, MAX_CELLS, "cells")):
         if count > most:
             raise InputError(f"{path} has more than {most} {what}; keep the rows and columns of the curve, or means of them.")
     return [Line.of(*each) for each in filled]
@@ -266,7 +273,7 @@ def _heading(
             raise InputError(
                 f"{path}: rows {first} and {second} are headers of two tables of {one} and {two} rows; say which one to "
                 f"read, header_row = {first} or header_row = {second} in [fit]."
-                if expected == EXPECTED
+                if expected == HEADER_ADVICE
                 else f"{path}: rows {first} and {second} are headers of two tables; {expected}."
             )
     return best[0], best, [each for each in found if each not in best]
@@ -286,7 +293,7 @@ def _telling(lines: list[Line], headings: list[Heading], knows: Callable[[str], 
         if knows(name):
             read = [number_of(row[at].replace(",", "."), ".") for row in cells]
             values = [abs(each[0]) for each in read if each is not None]
-            telling += bool(values) and min(values) < (1 - SETTING_TOLERANCE) * max(values)
+            telling += bool(values) and min(values) < (1 - SETTING_RTOL) * max(values)
     return telling
 
 
@@ -410,7 +417,7 @@ def _one_below_another(table: TextTable, labels: tuple[str, ...]) -> TextTable:
     if units:
         first = {name: i for where in reversed(at) for name, i in where.items()}
         units = (*(units[i] for i in shared), *(units[first[name]] for name in names), "")
-    header = (*(table.header[i] for i in shared), *names, CURVE)
+    header = (*(table.header[i] for i in shared), *names, CURVE_HEADER)
     note = f"Curves side by side: {', '.join(map(show, curves))}."
     return replace(table, header=header, rows=tuple(rows), numbers=tuple(numbers), units_row=units, notes=(*table.notes, note))
 
@@ -421,7 +428,7 @@ def _with_errors_apart(table: TextTable) -> TextTable:
         cells = [row[at] for row in table.rows]
         parts = [_PLUS_MINUS.split(cell) for cell in cells]
         pairs = [len(part) == 2 and all(map(has_number, part)) for part in parts]
-        if not any(pairs) or not all(pair or cell.lower() in MISSING for pair, cell in zip(pairs, cells, strict=True)):
+        if not any(pairs) or not all(pair or cell.lower() in MISSING_CELLS for pair, cell in zip(pairs, cells, strict=True)):
             continue
         words, unit = split_header(table.header[at])
         name = f"{words} error [{unit}]" if unit else f"{words} error"

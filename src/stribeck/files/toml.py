@@ -10,15 +10,15 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["parse_toml", "read_toml"]
 
-LARGEST_TOML = 1_000_000  # [byte]
+MAX_TOML_BYTES = 1_000_000  # [byte]
 
-_DEEPEST = 16
-_MOST_PARTS = 64
+_MAX_DEPTH = 16
+_MAX_KEY_PARTS = 64
 
 # For 20 000 parts Python's parser takes half a minute, so that these are looked for before it sees the text.  Texts may
 # hold a few that look like it.
 _PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MAX_KEY_PARTS}}}")
 
 # What Python's parser says of slips that are frequent, and what to do about them.
 _SLIPS = {
@@ -29,21 +29,21 @@ _SLIPS = {
 
 def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
     """Return the tables of a TOML file."""
-    return parse_toml(content_of(path, LARGEST_TOML, f"a TOML {kind}"), path, kind, needed)
+    return parse_toml(content_of(path, MAX_TOML_BYTES, f"a TOML {kind}"), path, kind, needed)
 
 
 def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
     """Return the tables of the content of a TOML file that comes from ``path``, as :func:`read_toml` does."""
-    if len(content) > LARGEST_TOML:
-        raise InputError(f"{path} has more than {LARGEST_TOML} bytes; a {kind} is a short TOML file.")
+    if len(content) > MAX_TOML_BYTES:
+        raise InputError(f"{path} has more than {MAX_TOML_BYTES} bytes; a {kind} is a short TOML file.")
     try:
         # Some editors write a byte-order mark, which TOML does not know.
         text = content.decode("utf-8-sig")
         if _DEEP_KEY.search(text):
-            raise ValueError(f"a key has more than {_MOST_PARTS} parts")
+            raise ValueError(f"a key has more than {_MAX_KEY_PARTS} parts")
         table = tomllib.loads(text)
-        if _depth(table) > _DEEPEST:
-            raise ValueError(f"tables or lists are nested more than {_DEEPEST} deep")
+        if _depth(table) > _MAX_DEPTH:
+            raise ValueError(f"tables or lists are nested more than {_MAX_DEPTH} deep")
     except UnicodeDecodeError as problem:
         raise InputError(
             f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file, saved as UTF-8."

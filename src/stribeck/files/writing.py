@@ -16,10 +16,9 @@ __all__ = ["MissingExtraError", "PathLike", "check_writable", "path_of", "reason
 
 PathLike = str | os.PathLike[str]
 
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Errors of a disk, a quota or a limit that takes no more."""
+FULL_DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # Errors of a disk, a quota or a limit that takes no more
 
-PROBE = 65536  # [byte]
+PROBE_BYTES = 65536  # [byte]
 
 
 class MissingExtraError(InputError, ImportError):
@@ -121,15 +120,15 @@ def sync_folder(folder: Path) -> None:
 
 def reason_of(problem: BaseException, file: Path | None = None) -> str:
     """Return what was wrong with a file, in the words of the system."""
-    if file is not None and getattr(problem, "errno", None) not in FULL:
+    if file is not None and getattr(problem, "errno", None) not in FULL_DISK_ERRORS:
         trial = _beside(file)
         try:
             with trial.open("wb") as stream:
-                stream.write(bytes(PROBE))
+                stream.write(bytes(PROBE_BYTES))
                 stream.flush()
                 os.fsync(stream.fileno())
         except OSError as found:
-            if found.errno in FULL:
+            if found.errno in FULL_DISK_ERRORS:
                 problem = found
         finally:
             with suppress(OSError):

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from stribeck.cases.case import Case
-from stribeck.cases.law import FROM_TABLES
+from stribeck.cases.law import INPUTS_OF_SURFACES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
@@ -128,7 +128,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
     """Return what changes in the file of a case whose contact has other values of some inputs."""
     edits, given = _Edits({}, {}, set()), case.tables.get("contact", {})
     from_table = [table for table in ("surface", "asperities") if table in case.tables]
-    free_of_table = [name for name in FROM_TABLES if name in names] if from_table else []
+    free_of_table = [name for name in INPUTS_OF_SURFACES if name in names] if from_table else []
     if free_of_table and not case.tables[from_table[0]].get("shape_only", False):
         table = from_table[0]
         sheet = [key for key in ("ra", "rq") if key in given]
@@ -147,9 +147,9 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
                 edits.removed.add(table)
             edits.at |= {("contact", key): [] for key in sheet}
             edits.added["contact"] = [
-                line for name in FROM_TABLES for line in (*comments(name), _entry_of(name, contact)) if line
+                line for name in INPUTS_OF_SURFACES for line in (*comments(name), _entry_of(name, contact)) if line
             ]
-        names = [name for name in names if name not in FROM_TABLES]
+        names = [name for name in names if name not in INPUTS_OF_SURFACES]
     for name in names:
         value = getattr(contact, name, None)
         if value is None:
@@ -162,7 +162,11 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
             edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure")])
         else:
             edits.put(place, key, lines, instead)
-    if isinstance(contact.law, TableLaw) and "file" in case.tables.get("table", {}) and {*FROM_TABLES, "modulus"} & set(names):
+    if (
+        isinstance(contact.law, TableLaw)
+        and "file" in case.tables.get("table", {})
+        and {*INPUTS_OF_SURFACES, "modulus"} & set(names)
+    ):
         # The numbers of a file in SI units are those of the contact that it was measured with.
         rows = {"separation": contact.law.separation, "pressure": contact.law.pressure}
         edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in rows.items()]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.fit_settings import FREE
+from stribeck.cases.fit_settings import FREE_INPUTS
 from stribeck.checks.check import Checks
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
@@ -178,8 +178,8 @@ class Fit(Exported, Shown, ByValue):
         """Names of the inputs that were held fixed; no interval includes their uncertainty."""
         fitted = {name for each in self._minimum.objective.model.free for name in each.names}
         measured = () if self.data.abscissa == "speed" else ("viscosity",)
-        there = {name for name in FREE for contact in self.contacts if getattr(contact, name, None) is not None}
-        return tuple(name for name in FREE if name in there and name not in fitted and name not in measured)
+        there = {name for name in FREE_INPUTS for contact in self.contacts if getattr(contact, name, None) is not None}
+        return tuple(name for name in FREE_INPUTS if name in there and name not in fitted and name not in measured)
 
     def __getitem__(self, name: str) -> FittedInput:
         """Return a fitted input by its name, or by name and curve as in its label.
@@ -295,7 +295,8 @@ class Fit(Exported, Shown, ByValue):
             "model_error": self.model_error,
             "evaluations": self.evaluations,
             "curves": [
-                {"name": name} | {key: value for key in (*FREE, "speed") if (value := getattr(contact, key, None)) is not None}
+                {"name": name}
+                | {key: value for key in (*FREE_INPUTS, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
             "rows": {

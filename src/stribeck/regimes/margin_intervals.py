@@ -23,7 +23,7 @@ from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.solve import SolveError
-from stribeck.uncertainty.propagate import RTOLS, kept_errors, moving_with
+from stribeck.uncertainty.propagate import STATE_RTOL, kept_errors, moving_with
 from stribeck.uncertainty.result import exact_inputs
 
 __all__ = ["with_intervals"]
@@ -75,7 +75,7 @@ def _slopes(there: Contact, by_friction: bool, definition: Definition) -> dict[s
     whole, half = (
         friction_sensitivities(
             there.replace(boundary_friction=factor * there.boundary_friction),
-            rtol=RTOLS[there.groups.geometry],
+            rtol=STATE_RTOL[there.groups.geometry],
             definition=definition,
         )
         for factor in (1.0, 0.5)

@@ -18,7 +18,7 @@ from stribeck.files.pictures import (
     FLUID,
     GREY,
     INK,
-    LEGEND,
+    LEGEND_INCH,
     MARK,
     TINTS,
     add_legend,
@@ -119,7 +119,7 @@ def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, f
     _plane(dataset, None)
     loads = dataset["load"].values
     figure, (flat,) = new_figure((9.0, 6.4), *_caption(dataset, [loads[0], loads[-1]]), title=title or "Phase diagram")
-    bottom = flat.get_position().y0 + (LEGEND - 0.72) / figure.get_figheight()
+    bottom = flat.get_position().y0 + (LEGEND_INCH - 0.72) / figure.get_figheight()
     flat.remove()
     axes = figure.add_axes((0.0, bottom, 0.97, 0.97 - bottom), projection="3d")
     draw_phase_space(axes, dataset)

@@ -20,26 +20,21 @@ from stribeck.surfaces.topography import Topography
 
 __all__ = ["Departures", "departures", "departure_notes"]
 
-SIGNIFICANT = 9.0
-"""``n |A|^2`` above which a texture is not chance: exp(-9), once in 8000 isotropic surfaces."""
+MIN_SIGNIFICANCE = 9.0  # ``n |A|^2`` above which a texture is not chance: exp(-9), once in 8000 isotropic surfaces
 
-STRETCHED = 1.5
-"""Aspect ratio of features above which a note says that the surface is anisotropic."""
+ANISOTROPY_NOTE_RATIO = 1.5  # Aspect ratio of features above which a note says that the surface is anisotropic
 
-MOST_STRETCHED = 1e4
-"""Largest aspect ratio that can be distinguished from an endless groove."""
+MAX_ASPECT_RATIO = 1e4  # Largest aspect ratio that can be distinguished from an endless groove
 
-SKEWED = 0.3
-"""Skewness above which a note says that the heights are not Gaussian, if it is also 3 standard errors."""
+SKEWNESS_NOTE = 0.3  # Skewness above which a note says that the heights are not Gaussian, if it is also 3 standard errors
 
-LARGEST_SCAN, SMALLEST_SCAN = 1.0, 1e-8
-"""Lengths of a scan that instruments reach [m]."""
+MAX_SCAN_LENGTH = 1.0  # Longest scan of instruments [m]
+MIN_SCAN_LENGTH = 1e-8  # Shortest scan of instruments [m]
 
-LARGEST_HEIGHT, SMALLEST_HEIGHT = 1e-3, 1e-11
-"""Rms heights of roughness that instruments meet [m]."""
+MAX_RMS_HEIGHT = 1e-3  # Largest rms height of roughness that instruments meet [m]
+MIN_RMS_HEIGHT = 1e-11  # Smallest rms height of roughness that instruments meet [m]
 
-STEEPEST = 3.0
-"""Rms slope between neighbouring points above which the units of heights and positions do not fit together."""
+MAX_RMS_SLOPE = 3.0  # Rms slope between neighbouring points above which the units of heights and positions do not fit together
 
 
 @dataclass(frozen=True)
@@ -74,7 +69,7 @@ def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float)
     if measured.is_line:
         return Departures(None, None, skewness, error)
     strength, modes = abs(measured.texture), float(measured.modes[measured.reliable].sum())
-    if modes * strength**2 < SIGNIFICANT:
+    if modes * strength**2 < MIN_SIGNIFICANCE:
         return Departures(1.0, None, skewness, error)
     # Long features along x have their waves, and their power, across x.
     direction = (0.5 * float(np.angle(measured.texture)) + 0.5 * math.pi) % math.pi
@@ -84,14 +79,14 @@ def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float)
 def departure_notes(topography: Topography, found: Departures) -> list[str]:
     """Return a sentence for each departure that spoils the numbers."""
     notes = _size_notes(topography)
-    if found.aspect_ratio is not None and found.direction is not None and found.aspect_ratio > STRETCHED:
-        times = f"{found.aspect_ratio:.2g} times" if found.aspect_ratio < MOST_STRETCHED else "many times"
+    if found.aspect_ratio is not None and found.direction is not None and found.aspect_ratio > ANISOTROPY_NOTE_RATIO:
+        times = f"{found.aspect_ratio:.2g} times" if found.aspect_ratio < MAX_ASPECT_RATIO else "many times"
         notes.append(
             f"The surface is anisotropic: features are about {times} longer at {math.degrees(found.direction):.0f} degrees to "
             "the first axis than across it. All numbers are averages over directions, and the errors do not include what this "
             "changes; beta may be off by more than its interval."
         )
-    if abs(found.skewness) > max(SKEWED, 3 * found.skewness_error):
+    if abs(found.skewness) > max(SKEWNESS_NOTE, 3 * found.skewness_error):
         kind = "plateaus with valleys" if found.skewness < 0 else "peaks on a plain"
         notes.append(
             f"The heights are not Gaussian: their skewness is {found.skewness:.2f} +- {found.skewness_error:.1g}, as of "
@@ -104,17 +99,17 @@ def departure_notes(topography: Topography, found: Departures) -> list[str]:
 def _size_notes(topography: Topography) -> list[str]:
     notes = []
     longest, height = max(topography.size), float(topography.heights.std())
-    if not SMALLEST_SCAN <= longest <= LARGEST_SCAN:
-        than = "longer" if longest > LARGEST_SCAN else "shorter"
+    if not MIN_SCAN_LENGTH <= longest <= MAX_SCAN_LENGTH:
+        than = "longer" if longest > MAX_SCAN_LENGTH else "shorter"
         notes.append(
             f"The scan is {format_si(longest, 'length')} long, {than} than any instrument measures; "
             "check the unit of positions."
         )
-    if not SMALLEST_HEIGHT <= height <= LARGEST_HEIGHT:
+    if not MIN_RMS_HEIGHT <= height <= MAX_RMS_HEIGHT:
         notes.append(f"The rms height is {format_si(height, 'length')}, which is not plausible; check the unit of heights.")
     steps = [np.diff(topography.heights, axis=i) / step for i, step in enumerate(topography.spacing)]
     slope = max(float(np.sqrt(np.mean(step**2))) for step in steps)
-    if slope > STEEPEST:
+    if slope > MAX_RMS_SLOPE:
         notes.append(
             f"The rms slope between neighbouring points is {slope:.2g}, steeper than instruments follow; check that heights "
             "and positions have the declared units."
@@ -134,5 +129,5 @@ def _aspect_ratio(strength: float, hurst: float) -> float:
         power = np.exp(log_power - log_power.max())
         return float(-np.sum(power * np.cos(2 * angle)) / np.sum(power)) - strength
 
-    most = math.log(MOST_STRETCHED)
-    return math.exp(brentq(harmonic, 0.0, most)) if harmonic(most) > 0 else MOST_STRETCHED
+    most = math.log(MAX_ASPECT_RATIO)
+    return math.exp(brentq(harmonic, 0.0, most)) if harmonic(most) > 0 else MAX_ASPECT_RATIO

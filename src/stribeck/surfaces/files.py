@@ -16,19 +16,17 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, path_of
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.text import LARGEST_FILE, TEXT, read_text, spacing_of
+from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
 
-AMBIGUOUS = (".dat", ".xyz")
-"""Endings of text files that binary files of instruments have too, as those of MetroPro."""
+AMBIGUOUS_ENDINGS = (".dat", ".xyz")  # Endings of text files that binary files of instruments have too, as those of MetroPro
 
-UNSIGNED = {"asc", "hgt", "xyz"}
-"""Formats of SurfaceTopography that begin with no mark of their own, so that it takes much for them that is something else."""
+# Formats of SurfaceTopography that begin with no mark of their own, so that other files pass for them
+FORMATS_WITHOUT_MARK = {"asc", "hgt", "xyz"}
 
-MOST_POINTS = LARGEST_FILE // 8
-"""Points whose heights fill as much memory as the largest file."""
+MAX_POINTS = MAX_FILE_BYTES // 8  # Points whose heights fill as much memory as the largest file
 
 
 def read_topography(
@@ -74,7 +72,7 @@ def read_topography(
     for name, value in (("unit", unit), ("height_unit", height_unit)):
         if value is not None:
             to_si(f"1 {value}", "length", name)
-    if path.suffix.lower() in TEXT and not (path.suffix.lower() in AMBIGUOUS and _is_binary(path)):
+    if path.suffix.lower() in TEXT_ENDINGS and not (path.suffix.lower() in AMBIGUOUS_ENDINGS and _is_binary(path)):
         if channel is not None:
             raise InputError(f"{path} is plain text without channels; leave out channel = {show(channel)}.")
         return read_text(path, unit=unit, height_unit=height_unit, spacing=spacing)
@@ -120,8 +118,8 @@ def _check_whole(path: Path) -> None:
     size = path.stat().st_size
     if size == 0:
         raise InputError(f"{path} is empty; copy it from the instrument again.")
-    if size > LARGEST_FILE:
-        raise InputError(f"{path} has more than {LARGEST_FILE // 10**9} GB; crop the scan.")
+    if size > MAX_FILE_BYTES:
+        raise InputError(f"{path} has more than {MAX_FILE_BYTES // 10**9} GB; crop the scan.")
     with path.open("rb") as stream:
         if stream.read(4) != b"PK\x03\x04":
             return
@@ -129,9 +127,9 @@ def _check_whole(path: Path) -> None:
         with zipfile.ZipFile(path) as archive:
             # What a part says of its size holds: no more of it is unpacked.
             size = sum(part.file_size for part in archive.infolist())
-            if size > LARGEST_FILE:
+            if size > MAX_FILE_BYTES:
                 raise InputError(
-                    f"{path} would be {size / 1e9:.3g} GB unpacked, more than {LARGEST_FILE // 10**9} GB; crop the scan."
+                    f"{path} would be {size / 1e9:.3g} GB unpacked, more than {MAX_FILE_BYTES // 10**9} GB; crop the scan."
                 )
             spoilt = archive.testzip()
     except InputError:
@@ -154,7 +152,9 @@ def _check_format(path: Path, reader: Any) -> None:
     from SurfaceTopography.IO import readers
 
     ending = path.suffix.lower().lstrip(".")
-    if reader.format() in UNSIGNED and any(ending in _endings(known) and known.format() not in UNSIGNED for known in readers):
+    if reader.format() in FORMATS_WITHOUT_MARK and any(
+        ending in _endings(known) and known.format() not in FORMATS_WITHOUT_MARK for known in readers
+    ):
         raise InputError(
             f"{path} does not start like a .{ending} file{_reason_of_its_reader(path)}: it is damaged, or has the wrong "
             "ending; copy it from the instrument again, or name it .txt if it is text."
@@ -168,7 +168,7 @@ def _reason_of_its_reader(path: Path) -> str:
     ending = path.suffix.lower().lstrip(".")
     reasons = []
     for known in readers:
-        if ending not in _endings(known) or known.format() in UNSIGNED:
+        if ending not in _endings(known) or known.format() in FORMATS_WITHOUT_MARK:
             continue
         try:
             with warnings.catch_warnings():
@@ -210,8 +210,8 @@ def _from_channel(
 ) -> Topography:
     format_name = reader.format()
     shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes
-    if math.prod(shape) > MOST_POINTS:
-        raise InputError(f"{path} has {' x '.join(map(str, shape))} points, more than {MOST_POINTS}; crop the scan.")
+    if math.prod(shape) > MAX_POINTS:
+        raise InputError(f"{path} has {' x '.join(map(str, shape))} points, more than {MAX_POINTS}; crop the scan.")
     if declared is None and unit is None:
         raise InputError(
             f"{path} does not declare its unit; add --unit um, and --height-unit nm where heights have another one "

@@ -20,14 +20,12 @@ from stribeck.surfaces.measured_spectrum import line_density
 
 __all__ = ["Estimate", "FitParameters", "SelfAffineFit", "differences"]
 
-NORMAL = 1.959964
-"""Standard errors to each side that hold 95 % of a normal distribution."""
+STANDARD_ERRORS_95 = 1.959964  # Standard errors to each side that hold 95 % of a normal distribution
 
-LONGER = (1.0, 0.3, 0.1, 1e-3)
-"""Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all."""
+# Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all
+LONGEST_WAVE_RATIOS = (1.0, 0.3, 0.1, 1e-3)
 
-SHORTEST_WAVE = 1e-9
-"""Shortest wave of any surface: a few atoms [m]."""
+SHORTEST_WAVE = 1e-9  # Shortest wave of any surface: a few atoms [m]
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,11 @@ class FitParameters:
             longer = [(1.0, 1.0)]
         else:
             # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
-            longer = [(1.0, factor) for factor in LONGER] if self.roll_off else list(itertools.product(LONGER, LONGER))
+            longer = (
+                [(1.0, factor) for factor in LONGEST_WAVE_RATIOS]
+                if self.roll_off
+                else list(itertools.product(LONGEST_WAVE_RATIOS, LONGEST_WAVE_RATIOS))
+            )
         return [(*factors, finest) for factors in longer for finest in shorter]
 
 
@@ -171,7 +173,9 @@ class SelfAffineFit:
                     return np.log(exponential_limit(known.surface(theta, *each), gamma))
 
                 turn = differences(limit, known.theta)[i]
-                ends[i] = math.exp(profile[at, i] + sign * NORMAL * math.sqrt(float(turn @ known.covariance @ turn)))
+                ends[i] = math.exp(
+                    profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ known.covariance @ turn))
+                )
         if not (known.q0_found or known.roll_off):
             low[1] = 0.0
         alpha, beta = (Estimate(*map(float, row)) for row in zip(np.exp(best), low, high, strict=True))

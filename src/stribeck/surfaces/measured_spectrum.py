@@ -31,20 +31,16 @@ __all__ = ["MeasuredSpectrum", "Window", "line_density", "power_spectrum"]
 
 Window = Literal["hann", "none"]
 
-LONGEST = 2.5
-"""Smallest number of waves in the scan that is used: detrending and window take power from longer ones."""
+MIN_WAVES_IN_SCAN = 2.5  # Fewest waves in the scan that are used: detrending and window take power from longer ones
 
-PIXELS = 4.0
-"""Smallest number of points in a wave that is used: power beyond the grid folds onto shorter ones."""
+MIN_POINTS_PER_WAVE = 4.0  # Fewest points in a wave that is used: power beyond the grid folds onto shorter ones
 
-RINGS = 24
-"""Rings in a decade of wave numbers, at most."""
+MAX_RINGS_PER_DECADE = 24  # Most rings in a decade of wave numbers
 
-INNER = 8
-"""Wave numbers that stand for those within a ring of a map when a model is averaged over it; along a line 2 do."""
+# Wave numbers that stand for those within a ring of a map when a model is averaged over it; along a line 2 do
+WAVES_PER_RING = 8
 
-ENDLESS = 14.0
-"""Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it."""
+LOG_INTEGRAL_END = 14.0  # Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -149,15 +145,18 @@ def power_spectrum(
     counts = np.diff(np.append(starts, radius.size))
     density = np.add.reduceat(power, starts) / counts
     wavenumber = np.exp(np.add.reduceat(np.log(radius), starts) / counts)
-    inner = INNER if not topography.is_line else 2
+    inner = WAVES_PER_RING if not topography.is_line else 2
     places = starts[:, None] + np.floor((np.arange(inner) + 0.5) / inner * counts[:, None]).astype(int)
     # Heights are real: half of the modes repeat the other half.  The window binds neighbours together.
     independent = float(square**2 / np.mean(weight**4))
-    highest, highest_reason = 2 * math.pi / (PIXELS * max(topography.spacing)), f"{PIXELS:g} points in a wave"
+    highest, highest_reason = (
+        2 * math.pi / (MIN_POINTS_PER_WAVE * max(topography.spacing)),
+        f"{MIN_POINTS_PER_WAVE:g} points in a wave",
+    )
     instrument = resolution if resolution is not None else topography.resolution
     if instrument is not None and 2 * math.pi / instrument < highest:
         highest, highest_reason = 2 * math.pi / instrument, "resolution of the instrument"
-    lowest = LONGEST * fundamental
+    lowest = MIN_WAVES_IN_SCAN * fundamental
     texture = 0.0 + 0.0j
     if not topography.is_line:
         used = (wavenumber >= lowest) & (wavenumber <= highest)
@@ -173,7 +172,7 @@ def power_spectrum(
         is_line=topography.is_line,
         lowest=lowest,
         highest=highest,
-        lowest_reason=f"{LONGEST:g} waves in the scan",
+        lowest_reason=f"{MIN_WAVES_IN_SCAN:g} waves in the scan",
         highest_reason=highest_reason,
         mean_square=float(np.mean(z**2) / square),
         texture=texture,
@@ -206,7 +205,7 @@ def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
     corner = np.arccosh(q_r / q)
     # The plateau from q_0 to q_r, and the power law from there on.
     total = q_r * np.tanh(corner) - q0 * np.tanh(np.arccosh(np.maximum(q0 / q, 1.0)))
-    for low, high in ((0.0, 1.0), (1.0, 3.0), (3.0, ENDLESS)):
+    for low, high in ((0.0, 1.0), (1.0, 3.0), (3.0, LOG_INTEGRAL_END)):
         v = corner + low + 0.5 * (high - low) * (t + 1)
         inner = q * np.cosh(v)
         total = total + 0.5 * (high - low) * np.sum(w * (inner / q_r) ** (-2 * (1 + H)) * inner, axis=-1, keepdims=True)
@@ -228,7 +227,7 @@ def _window(window: str, shape: tuple[int, ...]) -> Array:
 
 def _edges(fundamental: float, largest: float) -> Array:
     """Return edges of rings: a fundamental wide at first, then even on a logarithmic axis."""
-    ratio = 10 ** (1 / RINGS)
+    ratio = 10 ** (1 / MAX_RINGS_PER_DECADE)
     edges = [0.5 * fundamental]
     while edges[-1] < largest:
         edges.append(max(edges[-1] + fundamental, edges[-1] * ratio))

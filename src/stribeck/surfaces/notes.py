@@ -10,16 +10,14 @@ from stribeck.quantities.formats import format_si
 from stribeck.surfaces.detrend import Form
 from stribeck.surfaces.fit_result import SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
-from stribeck.surfaces.self_affine_fit import MISFIT
+from stribeck.surfaces.self_affine_fit import MAX_DEVIANCE_RATIO
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["fit_notes", "spike_notes"]
 
-APART = 1.3
-"""Ratio of the rms heights of scan and fit from which a note says that they differ."""
+HEIGHT_RATIO_NOTE = 1.3  # Ratio of the rms heights of scan and fit from which a note says that they differ
 
-REPAIRED = 0.05
-"""Change of the rms height of the scan by the repair of spikes from which a note warns."""
+REPAIR_NOTE = 0.05  # Relative change of the rms height of the scan by the repair of spikes from which a note warns
 
 
 def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
@@ -28,7 +26,7 @@ def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
         return []
     change = f"{format_si(spiked, 'length')} with its spikes and {format_si(repaired, 'length')} without"
     notes = [f"The rms height of the scan is {change}."]
-    if abs(repaired - spiked) > REPAIRED * repaired:
+    if abs(repaired - spiked) > REPAIR_NOTE * repaired:
         notes.append(
             f"The repair of spikes changed the rms height by {100 * (spiked - repaired) / repaired:.0f} %: look at the scan, "
             "and keep them (--keep-spikes, keep_spikes=True) if they are asperities or dust that touches."
@@ -53,7 +51,7 @@ def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fi
         )
     if "noise" in fit.found:
         notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")
-    if fit.deviance > MISFIT:
+    if fit.deviance > MAX_DEVIANCE_RATIO:
         notes.append(
             f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
             "widened by the root of it; compare alpha and beta with those of the measured spectrum."
@@ -65,7 +63,7 @@ def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fi
             f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
         )
     scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
-    if not 1 / APART < fitted / scan < APART:
+    if not 1 / HEIGHT_RATIO_NOTE < fitted / scan < HEIGHT_RATIO_NOTE:
         notes.append(
             f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
             "noise, waves too long for the fit, or a spectrum of another shape make the difference."

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_surface"]
 
-MOST_PIXELS = 1024
-"""Largest number of points along a side of the map that is drawn."""
+MAX_PIXELS = 1024  # Most points along a side of the map that is drawn
 
 
 @picture()
@@ -81,7 +80,7 @@ def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
         axes.set_xlim(0, x[-1] * factor)
         axes.set_title("Profile", size=10, color=GREY, loc="left")
         return
-    coarse = [math.ceil(n / MOST_PIXELS) for n in z.shape]
+    coarse = [math.ceil(n / MAX_PIXELS) for n in z.shape]
     limit = 3 * surface.rms_height * height
     image = axes.imshow(
         z[:: coarse[0], :: coarse[1]].T * height,

@@ -24,21 +24,19 @@ from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.units import InputError, checked_kind
 from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, differences
-from stribeck.surfaces.measured_spectrum import LONGEST, MeasuredSpectrum, line_density
+from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density
 
 __all__ = ["fit_self_affine"]
 
-MOST_STEPS = 60
-"""Steps of a fit; others take up to 30.  At the bound of the exponent, of a steep line, it creeps on without a change."""
+# Steps of a fit, which needs up to 30; at the bound of the exponent, of a steep line, it creeps on without a change
+MAX_STEPS = 60
 
-STEP = 0.3
-"""Share of the neighbouring spectrum below which the level beyond a cut-off must lie, for it to be one."""
+CUT_OFF_RATIO = 0.3  # Level beyond a cut-off over the spectrum before the cut-off, below which the cut-off counts as one
 
-UNSEEN = 0.7
-"""Standard error of the logarithm of a long cut-off beyond the scan, for the error of h_rms: about a factor of two."""
+# Standard error of the logarithm of a long cut-off beyond the scan, in the error of h_rms: a factor of two
+LONG_CUT_OFF_ERROR = 0.7
 
-MISFIT = 2.0
-"""Deviance over its expectation from which the spectrum is said not to be self-affine."""
+MAX_DEVIANCE_RATIO = 2.0  # Deviance over its expectation from which the spectrum is said not to be self-affine
 
 
 def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
@@ -169,7 +167,7 @@ def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: 
 
     # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
     for outside, edge in ((data.density[:low], low), (data.density[high:], high - 1)):
-        if outside.size and not outside.min() < STEP * data.density[edge]:
+        if outside.size and not outside.min() < CUT_OFF_RATIO * data.density[edge]:
             return None
     levels = n - (high - low)
     slope, height = np.polyfit(np.log(q[inside]) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
@@ -199,7 +197,7 @@ def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: 
     best: Any = None
     for start in starts:
         first = np.clip(start, np.array(lower) + 1e-9, np.array(upper) - 1e-9)
-        fit = least_squares(residual, first, bounds=(lower, upper), x_scale=0.1, max_nfev=MOST_STEPS)
+        fit = least_squares(residual, first, bounds=(lower, upper), x_scale=0.1, max_nfev=MAX_STEPS)
         if fit.status >= 0 and (best is None or fit.cost < best.cost):
             best = fit
     if best is None:
@@ -231,7 +229,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     inside = slice(trial.low, trial.high)
     part = replace(data, density=data.density[inside], modes=data.modes[inside], inner=data.inner[inside])
     centre = math.log(q[trial.low] * q[trial.high - 1]) / 2
-    fundamental = measured.lowest / LONGEST
+    fundamental = measured.lowest / MIN_WAVES_IN_SCAN
     cuts = {"q0": trial.low > 0, "q1": trial.high < q.size}
     if cuts["q0"]:
         q0 = float(q[trial.low])
@@ -258,7 +256,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     values, turn = parameters.physical(theta), differences(parameters.physical, theta)
     spread = covariance.copy()
     if trial.roll_off and not cuts["q0"]:
-        spread[-2, -2] = UNSEEN**2
+        spread[-2, -2] = LONG_CUT_OFF_ERROR**2
     sigma = np.sqrt(np.diag(turn @ spread @ turn.T))
     surface = parameters.surface(theta)
     errors = {"h_rms": surface.h_rms * float(sigma[0]), "hurst": float(sigma[1])}

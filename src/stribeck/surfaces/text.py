@@ -17,34 +17,42 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import MISSING, cells_of
+from stribeck.files.cells import MISSING_CELLS, cells_of
 from stribeck.files.reading import text_of
 from stribeck.files.text_table import values_of
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
-from stribeck.surfaces.topography import FEWEST, Topography
+from stribeck.surfaces.topography import MIN_POINTS, Topography
 
-__all__ = ["TEXT", "read_text", "spacing_of"]
+__all__ = ["TEXT_ENDINGS", "read_text", "spacing_of"]
 
-TEXT = (".csv", ".tsv", ".txt", ".dat", ".xyz")
-"""Endings of plain text files."""
+TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".xyz")  # Endings of plain text files
 
-NO_HEIGHT = MISSING | {"inf", "-inf", "+inf", "infinity", "-infinity", "void", "invalid", "nodata", "overflow", "ovr", "ovf"}
-"""Cells that instruments write for a missing point, in lower case."""
+# Cells that instruments write for a missing point, in lower case.
+MISSING_HEIGHTS = MISSING_CELLS | {
+    "inf",
+    "-inf",
+    "+inf",
+    "infinity",
+    "-infinity",
+    "void",
+    "invalid",
+    "nodata",
+    "overflow",
+    "ovr",
+    "ovf",
+}
 
-CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
-"""Sizes of numbers that instruments write for a missing point."""
+# Sizes of numbers that instruments write for a missing point
+MISSING_CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
 
-HEIGHT_LIMIT = 1e30
-"""Size of a number that is no height in any unit: 1e37, or the largest number of a float."""
+MAX_NUMBER = 1e30  # Size of a number that is no height in any unit: 1e37, or the largest number of a float
 
-UNEVEN = 0.02
-"""Largest deviation of a position from the even grid, over the spacing, that passes for even."""
+MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid, over the spacing
 
-SPACING_TOLERANCE = 0.005
-"""Relative difference of spacings, one given and one in the file, up to which they agree: files round."""
+SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
-LARGEST_FILE = 1_000_000_000  # [byte]
+MAX_FILE_BYTES = 1_000_000_000  # [byte]
 
 _NO_DATA = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
@@ -74,7 +82,7 @@ def read_text(
     """Read heights from a text file."""
     table = _table(path)
     columns = table.values.shape[1]
-    if 3 < columns < FEWEST[2] and any(table.names):
+    if 3 < columns < MIN_POINTS[2] and any(table.names):
         raise InputError(
             f"{path} has {columns} columns ({', '.join(map(show, table.names))}); keep two for a line, position and height, "
             "or three for a map, x, y and height."
@@ -129,11 +137,7 @@ def _without_positions(
                 f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
                 "(in Python spacing='0.5 um')."
             )
-        if (
-            declared is not None
-            and given is not None
-            and not math.isclose(given[axis], declared[0], rel_tol=SPACING_TOLERANCE)
-        ):
+        if declared is not None and given is not None and not math.isclose(given[axis], declared[0], rel_tol=SPACING_RTOL):
             raise InputError(
                 f"{path} declares {declared[0] * 1e6:.4g} um between points along {'xy'[axis]} ({show(declared[1])}), but "
                 f"spacing = {show(spacing)}; leave out the wrong one."
@@ -229,7 +233,7 @@ def _line(path: Path, x: Array, z: Array, table: _Table, rounding: float) -> Top
         where = lines[int(order[int(np.argmin(steps)) + 1])] if x.size > 1 else lines[0]
         raise InputError(f"{path}: line {where} has the same position as another one; a profile has one height at each.")
     step, off = _even_grid(x, rounding)
-    if off <= UNEVEN * step:
+    if off <= MAX_GRID_DEVIATION * step:
         return Topography(z, (step,), source=path.name, notes=tuple(notes))
     widest, good = float(steps.max()), np.isfinite(z)
     if good.sum() < 2:
@@ -256,7 +260,7 @@ def _map(path: Path, places: Array, z: Array, table: _Table, rounding: list[floa
         if span <= 0 or gaps.size == 0:
             raise InputError(f"{path}: all points have the same {name}; a profile has two columns, position and height.")
         step, off = _even_grid(values, rounding[axis])
-        if off <= UNEVEN * step:  # each value is a line of the grid, rounded or not
+        if off <= MAX_GRID_DEVIATION * step:  # each value is a line of the grid, rounded or not
             nearest = np.rint((places[:, axis] - values[0]) / step)
         else:
             step = float(np.median(gaps))
@@ -306,7 +310,7 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 
 
 def _table(path: Path) -> _Table:
-    text = text_of(path, LARGEST_FILE, "crop the scan", "a text file of heights")
+    text = text_of(path, MAX_FILE_BYTES, "crop the scan", "a text file of heights")
     rows = [(i, _NO_DATA.sub("nodata", line).strip(" \r\n\f\ufeff")) for i, line in enumerate(text.splitlines(), 1)]
     rows = [(i, line) for i, line in rows if line.strip()]
     data = [_is_data(line) for _, line in rows]
@@ -338,7 +342,7 @@ def _table(path: Path) -> _Table:
     cells = [row[:width] for row in cells]  # separators at the end of lines make no columns
     above = [line.lstrip("#%;!*/ ") for _, line in rows[:start]]
     names, notes = _names(above, separator or None, width), list[str]()
-    kept = [j for j in range(width) if width >= FEWEST[2] or any(row[j] for row in cells)]
+    kept = [j for j in range(width) if width >= MIN_POINTS[2] or any(row[j] for row in cells)]
     if any(row[0] for row in cells) is False and 0 in kept:
         kept = kept[1:]
     if names and len(kept) > 1 and _is_counter(names, [row[kept[0]] for row in cells], kept):
@@ -375,7 +379,7 @@ def _filled(row: list[str]) -> int:
 
 def _is_missing(cell: str) -> bool:
     return (
-        cell.strip('"').lower() in NO_HEIGHT
+        cell.strip('"').lower() in MISSING_HEIGHTS
         or re.fullmatch(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+", cell.lower()) is not None
     )
 
@@ -387,7 +391,7 @@ def _values(
     values = values_of(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
     # Positions are left as they are: only heights may be missing.
     z = values if values.shape[1] > 3 else values[:, -1]
-    beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= HEIGHT_LIMIT)
+    beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= MAX_NUMBER)
     words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and _is_missing(cell))
     notes = [
         f"{_points(count, 'reads', 'read')} {show(word)} and {_counts(count)} as missing." for word, count in words.items()
@@ -396,7 +400,7 @@ def _values(
         notes.append(_said(float(code), z == code))
     z[beyond] = np.nan
     declared = {float(code.replace(",", ".")) for code in codes}
-    for code in sorted(declared | {sign * size for size in CODES for sign in (-1, 1)}):
+    for code in sorted(declared | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
         here = z == code
         rest = z[~here & ~np.isnan(z)]
         far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())

@@ -19,17 +19,14 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["Topography", "synthetic_topography"]
 
-FEWEST = {1: 64, 2: 32}
-"""Smallest points along a line and along each side of a map, for a spectrum of a decade."""
+MIN_POINTS = {1: 64, 2: 32}  # Fewest points along a line and along each side of a map, for a spectrum of a decade
 
-MOST_MISSING = 0.1
-"""Largest share of missing points that is filled."""
+MAX_MISSING_SHARE = 0.1  # Largest share of missing points that is filled
 
-SPIKE = 12.0
-"""Deviation from the neighbours, over its robust standard deviation in the whole scan, above which a point may be a spike."""
+# Deviation from the neighbours, over its robust standard deviation in the whole scan, above which a point may be a spike
+SPIKE_DEVIATION = 12.0
 
-ISOLATED = 4.0
-"""Deviation from the neighbours, over the range of their own heights, above which a point is a spike."""
+SPIKE_ISOLATION = 4.0  # Deviation from the neighbours, over the range of their own heights, above which a point is a spike
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,17 +72,17 @@ class Topography:
             raise InputError(
                 f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
             )
-        if min(z.shape) < FEWEST[z.ndim]:
+        if min(z.shape) < MIN_POINTS[z.ndim]:
             kind = "a line" if z.ndim == 1 else "a map"
             raise InputError(
                 f"{where}{' x '.join(map(str, z.shape))} points are too few for a spectrum; "
-                f"{kind} needs {FEWEST[z.ndim]} or more along each side."
+                f"{kind} needs {MIN_POINTS[z.ndim]} or more along each side."
             )
         z[~np.isfinite(z)] = np.nan
         share = float(np.isnan(z).mean())
-        if share > MOST_MISSING:
+        if share > MAX_MISSING_SHARE:
             raise InputError(
-                f"{where}{100 * share:.0f} % of the points are missing, more than {100 * MOST_MISSING:.0f} %; "
+                f"{where}{100 * share:.0f} % of the points are missing, more than {100 * MAX_MISSING_SHARE:.0f} %; "
                 "crop the scan to the measured area."
             )
         if not np.nanmax(z) > np.nanmin(z):
@@ -145,7 +142,7 @@ class Topography:
             what = "1 point is a spike" if number == 1 else f"{number} points are spikes"
             notes.append(f"{what}, far above or below all neighbours, and replaced by their heights.")
         holes = dead | spikes
-        if holes.mean() > MOST_MISSING:
+        if holes.mean() > MAX_MISSING_SHARE:
             raise InputError(f"{self.source}: {100 * holes.mean():.0f} % of the points are treated as missing; measure again.")
         return replace(self, heights=_filled(self.heights, holes), notes=tuple(notes))
 
@@ -228,7 +225,7 @@ def _spikes(heights: Array) -> Flags:
     # Heights in a few steps may have no scatter at all; then nothing can be told.
     if usual == 0:
         return np.zeros(z.shape, dtype=bool)
-    return np.asarray(~dead & (deviation > SPIKE * usual) & (deviation > ISOLATED * scatter))
+    return np.asarray(~dead & (deviation > SPIKE_DEVIATION * usual) & (deviation > SPIKE_ISOLATION * scatter))
 
 
 def _filled(heights: Array, holes: Flags) -> Array:

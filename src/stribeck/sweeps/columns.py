@@ -19,11 +19,9 @@ from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
 
-ERROR = "ERROR"
-"""Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`."""
+ERROR = "ERROR"  # Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`
 
-OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
-"""The outcomes; a row holds the place of its own in here."""
+OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)  # A row holds the place of its outcome in here
 
 
 def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:

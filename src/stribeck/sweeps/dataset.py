@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Sweep", "open_sweep"]
 
-PENDING = "NOT_COMPUTED"
-"""Outcome, in a dataset, of a state that is not finished."""
+PENDING = "NOT_COMPUTED"  # Outcome, in a dataset, of a state that is not finished
 
 
 @dataclass(frozen=True, eq=False, repr=False)

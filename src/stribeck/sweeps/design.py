@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.law import FROM_TABLES, TABLES_OF, Law
+from stribeck.cases.law import FIRST_TABLE_BY_LAW, INPUTS_OF_SURFACES, Law
 from stribeck.cases.model_parts import take_parts
 from stribeck.cases.reading import contact_inputs, geometry_of, group_inputs
 from stribeck.cases.tables import error_sentence
@@ -190,7 +190,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         if not raw_vary:
             problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
         base = table.get("contact" if si else "groups", {})
-        given = FROM_TABLES if si and ("surface" in table or "asperities" in table) else ()
+        given = INPUTS_OF_SURFACES if si and ("surface" in table or "asperities" in table) else ()
         problems += missing(base if isinstance(base, dict) else {}, raw_vary, si, given, known)
     if checked is None or problems:
         return None
@@ -200,8 +200,8 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     law = checked["contact" if si else "groups"]["law"]
     try:
         for axis in axes:  # what varies is not also said by a table of the surface
-            source = TABLES_OF.get(law)
-            if si and axis.name in FROM_TABLES and source not in (None, "table") and checked[source] is not None:
+            source = FIRST_TABLE_BY_LAW.get(law)
+            if si and axis.name in INPUTS_OF_SURFACES and source not in (None, "table") and checked[source] is not None:
                 raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
         fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
         shape: AsperityLaw | None = fixed.pop("law")

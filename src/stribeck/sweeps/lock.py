@@ -16,12 +16,11 @@ from pathlib import Path
 from stribeck.files.writing import MissingExtraError, reason_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["LOCK", "locked"]
+__all__ = ["LOCK_FILE", "locked"]
 
-LOCK = "sweep.lock"
-"""Name of the file in the store."""
+LOCK_FILE = "sweep.lock"
 
-LARGEST_RECORD = 1024  # [byte]
+MAX_RECORD_BYTES = 1024  # [byte]
 
 
 @contextmanager
@@ -31,7 +30,7 @@ def locked(folder: Path) -> Iterator[str]:
         from filelock import SoftFileLock, Timeout
     except ImportError:
         raise MissingExtraError("a sweep", "data", "filelock") from None
-    file = folder / LOCK
+    file = folder / LOCK_FILE
     lock = SoftFileLock(str(file))
     try:
         before = _holder(file)
@@ -76,7 +75,7 @@ def _holder(file: Path) -> tuple[int, str] | None:
     try:
         odd = not stat.S_ISREG(file.lstat().st_mode)  # a pipe would be waited for
         with open(os.devnull if odd else file, encoding="utf-8") as stream:
-            pid, host, *_ = stream.read(LARGEST_RECORD).splitlines()
+            pid, host, *_ = stream.read(MAX_RECORD_BYTES).splitlines()
         return int(pid), host
     except FileNotFoundError:
         return None

@@ -14,13 +14,12 @@ import numpy as np
 
 from stribeck._types import Array
 
-__all__ = ["KINDS", "RANDOM", "Axis", "Kind", "points_of"]
+__all__ = ["KINDS", "RANDOM_KINDS", "Axis", "Kind", "points_of"]
 
 Kind = Literal["grid", "list", "random", "latin-hypercube", "sobol"]
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
-RANDOM: tuple[Kind, ...] = KINDS[2:]
-"""The kinds of design whose number of points is asked for."""
+RANDOM_KINDS: tuple[Kind, ...] = KINDS[2:]  # Kinds of design whose number of points is given
 
 
 @dataclass(frozen=True)

@@ -22,13 +22,13 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.files.reading import read_bounded
-from stribeck.files.writing import FULL, reason_of
+from stribeck.files.writing import FULL_DISK_ERRORS, reason_of
 from stribeck.quantities.units import InputError
-from stribeck.sweeps.store import TEXT, SweepError, describe_store
+from stribeck.sweeps.store import TEXT_BYTES, SweepError, describe_store
 
 __all__ = ["Rows", "Writer", "clean", "read_rows"]
 
-LARGEST_CHUNK = 100_000  # [byte]
+MAX_CHUNK_BYTES = 100_000  # [byte]
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Writer:
             self._put("values", f"c.{row}.0", numbers)
             self._put("done", f"c.{row}", struct.pack("<I", _checksum(row, numbers, said)))
         except OSError as problem:
-            remedy = "Make room" if problem.errno in FULL else "Mend that"
+            remedy = "Make room" if problem.errno in FULL_DISK_ERRORS else "Mend that"
             raise SweepError(
                 f"{self.path} could not be written ({reason_of(problem)}); the states finished until then are kept. "
                 f"{remedy} and run the same sweep again to resume it."
@@ -93,10 +93,10 @@ def read_rows(path: Path) -> Rows:
 def _finished(path: Path, row: int, columns: int) -> tuple[Array, str] | None:
     """Return numbers and text of a state, or None if they are not whole."""
     try:
-        numbers = read_bounded(path / "values" / f"c.{row}.0", LARGEST_CHUNK)
-        flag = read_bounded(path / "done" / f"c.{row}", LARGEST_CHUNK)
+        numbers = read_bounded(path / "values" / f"c.{row}.0", MAX_CHUNK_BYTES)
+        flag = read_bounded(path / "done" / f"c.{row}", MAX_CHUNK_BYTES)
         try:
-            said = read_bounded(path / "text" / f"c.{row}.0", LARGEST_CHUNK)
+            said = read_bounded(path / "text" / f"c.{row}.0", MAX_CHUNK_BYTES)
         except FileNotFoundError:
             said = b""
     except FileNotFoundError:
@@ -146,9 +146,9 @@ def _told(path: Path, what: str) -> Iterator[None]:
 def _text(text: str) -> bytes:
     """Return text as the chunk that holds it; empty for none."""
     content = text.encode("utf-8")
-    if len(content) > TEXT:
-        content = content[: TEXT - 3].decode("utf-8", errors="ignore").encode("utf-8") + b"..."
-    return content.ljust(TEXT, b"\0") if content else b""
+    if len(content) > TEXT_BYTES:
+        content = content[: TEXT_BYTES - 3].decode("utf-8", errors="ignore").encode("utf-8") + b"..."
+    return content.ljust(TEXT_BYTES, b"\0") if content else b""
 
 
 def _checksum(row: int, numbers: bytes, said: bytes) -> int:

@@ -11,18 +11,17 @@ from typing import Any
 
 from stribeck.files.reading import read_bounded
 
-__all__ = ["RUNS", "log_run"]
+__all__ = ["RUNS_FILE", "log_run"]
 
-RUNS = "runs.jsonl"
-"""Name of the file in the store."""
+RUNS_FILE = "runs.jsonl"
 
-LARGEST_LOG = 10_000_000  # [byte]
+MAX_LOG_BYTES = 10_000_000  # [byte]
 
 
 @contextmanager
 def log_run(path: Path, **facts: Any) -> Iterator[dict[str, Any]]:
     """Note in the store when a run begins and ends; what is put into the dictionary is noted at the end."""
-    number = 1 + sum("began" in line for line in _lines(path / RUNS))
+    number = 1 + sum("began" in line for line in _lines(path / RUNS_FILE))
     _note(path, {"run": number, "began": _now(), **facts})
     ending: dict[str, Any] = {}
     try:
@@ -33,7 +32,7 @@ def log_run(path: Path, **facts: Any) -> Iterator[dict[str, Any]]:
 
 def _lines(path: Path) -> Iterator[dict[str, Any]]:
     try:
-        text = read_bounded(path, LARGEST_LOG).decode("utf-8", errors="replace")
+        text = read_bounded(path, MAX_LOG_BYTES).decode("utf-8", errors="replace")
     except OSError:
         return
     for line in text.splitlines():
@@ -46,7 +45,7 @@ def _lines(path: Path) -> Iterator[dict[str, Any]]:
 
 
 def _note(path: Path, facts: dict[str, Any]) -> None:
-    file = path / RUNS
+    file = path / RUNS_FILE
     if file.exists() and not file.is_file():  # a pipe would be waited for
         return
     try:

@@ -13,34 +13,32 @@ from stribeck.files.reading import read_bounded
 from stribeck.files.writing import reason_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["SEALED", "SUMS", "read_sealed", "seal"]
+__all__ = ["SEALED_FILES", "SUMS_FILE", "read_sealed", "seal"]
 
-SUMS = "SHA256SUMS"
-"""Name of the file in the store."""
+SUMS_FILE = "SHA256SUMS"
 
-SEALED = ("zarr.json", "inputs/zarr.json", "inputs/c/0/0", "values/zarr.json", "text/zarr.json", "done/zarr.json")
-"""What has a checksum there."""
+# What has a checksum
+SEALED_FILES = ("zarr.json", "inputs/zarr.json", "inputs/c/0/0", "values/zarr.json", "text/zarr.json", "done/zarr.json")
 
-LARGEST_SUMS = 10_000
-LARGEST = 2**40
-"""Sizes that are certainly wrong [byte]."""
+MAX_SUMS_BYTES = 10_000
+MAX_BYTES = 2**40  # Size of a file of the store that is certainly wrong
 
-ADVICE = "restore it from a copy, or run the sweep again into a new store"
+REPAIR_ADVICE = "restore it from a copy, or run the sweep again into a new store"
 
 
 def seal(store: Path) -> None:
     """Write the checksums of a store that has been made."""
-    lines = [f"{_sum((store / name).read_bytes())}  {name}\n" for name in SEALED]
-    (store / SUMS).write_bytes("".join(lines).encode())
+    lines = [f"{_sum((store / name).read_bytes())}  {name}\n" for name in SEALED_FILES]
+    (store / SUMS_FILE).write_bytes("".join(lines).encode())
 
 
 def read_sealed(store: Path, name: str) -> bytes:
     """Return the content of a file of a store, verified."""
-    sums = _read(store, SUMS, LARGEST_SUMS)
+    sums = _read(store, SUMS_FILE, MAX_SUMS_BYTES)
     found = re.search(rf"^([0-9a-f]{{64}})  {re.escape(name)}$", sums.decode("ascii", errors="replace"), re.MULTILINE)
-    content = _read(store, name, LARGEST)
+    content = _read(store, name, MAX_BYTES)
     if found is None or found[1] != _sum(content):
-        raise InputError(f"{store} is damaged: {name} in it has changed since it was written; {ADVICE}.")
+        raise InputError(f"{store} is damaged: {name} in it has changed since it was written; {REPAIR_ADVICE}.")
     return content
 
 
@@ -48,9 +46,9 @@ def _read(store: Path, name: str, largest: int) -> bytes:
     try:
         return read_bounded(store / name, largest)
     except (FileNotFoundError, NotADirectoryError):
-        raise InputError(f"{store} is damaged: {name} in it is missing; {ADVICE}.") from None
+        raise InputError(f"{store} is damaged: {name} in it is missing; {REPAIR_ADVICE}.") from None
     except OSError as problem:
-        raise InputError(f"{store} cannot be read: {name} in it: {reason_of(problem)}; {ADVICE}.") from None
+        raise InputError(f"{store} cannot be read: {name} in it: {reason_of(problem)}; {REPAIR_ADVICE}.") from None
 
 
 def _sum(content: bytes) -> str:

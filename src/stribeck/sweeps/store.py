@@ -27,17 +27,16 @@ from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
 from stribeck.sweeps.design import SweepDesign
-from stribeck.sweeps.seal import ADVICE, SEALED, SUMS, read_sealed, seal
+from stribeck.sweeps.seal import REPAIR_ADVICE, SEALED_FILES, SUMS_FILE, read_sealed, seal
 
 __all__ = ["SweepError", "create_or_open", "describe_store", "read_inputs"]
 
 FORMAT = 2
-TEXT = 2000
-"""Bytes of the text of a state."""
+TEXT_BYTES = 2000  # Length of the text of a state
 
-LARGEST_DESCRIPTION = 10_000_000  # [byte]
+MAX_DESCRIPTION_BYTES = 10_000_000  # [byte]
 
-DESIGN = "sweep.toml"
+DESIGN_FILE = "sweep.toml"
 
 
 class SweepError(RuntimeError):
@@ -115,9 +114,11 @@ def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     group.create_array(
         "values", **shape, dtype="<f8", fill_value=np.nan, chunk_key_encoding=flat, attributes=_about(columns), **plain
     )
-    group.create_array("text", shape=(n, TEXT), chunks=(1, TEXT), dtype="u1", fill_value=0, chunk_key_encoding=flat, **plain)
+    group.create_array(
+        "text", shape=(n, TEXT_BYTES), chunks=(1, TEXT_BYTES), dtype="u1", fill_value=0, chunk_key_encoding=flat, **plain
+    )
     group.create_array("done", shape=(n,), chunks=(1,), dtype="<u4", fill_value=0, chunk_key_encoding=flat, **plain)
-    (path / DESIGN).write_text(design.text, encoding="utf-8")
+    (path / DESIGN_FILE).write_text(design.text, encoding="utf-8")
     seal(path)
 
 
@@ -131,17 +132,19 @@ def describe_store(path: PathLike) -> dict[str, Any]:
     store = path_of(path)
     try:
         # Whether this is a store at all, before what is in it is compared with its checksums.
-        known = json.loads(read_bounded(store / "zarr.json", LARGEST_DESCRIPTION))["attributes"]["stribeck_sweep"]
+        known = json.loads(read_bounded(store / "zarr.json", MAX_DESCRIPTION_BYTES))["attributes"]["stribeck_sweep"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        if (store / SUMS).exists():
-            raise InputError(f"{store} is damaged: zarr.json in it has changed since it was written; {ADVICE}.") from None
+        if (store / SUMS_FILE).exists():
+            raise InputError(
+                f"{store} is damaged: zarr.json in it has changed since it was written; {REPAIR_ADVICE}."
+            ) from None
         kind = "is a file" if store.is_file() else "does not contain a sweep" if store.exists() else "does not exist"
         raise InputError(f"{store} {kind}; give the folder of a store, or the name of a new one.") from None
     if known != FORMAT:
         raise InputError(
             f"{store} has the format {known!r}, of another version of stribeck; this version reads format {FORMAT}."
         )
-    found = {name: json.loads(read_sealed(store, name)) for name in SEALED if name.endswith(".json")}
+    found = {name: json.loads(read_sealed(store, name)) for name in SEALED_FILES if name.endswith(".json")}
     read_inputs(store, found["inputs/zarr.json"]["shape"])
     about: dict[str, Any] = found["zarr.json"]["attributes"]
     columns = {name: found[f"{name}/zarr.json"]["attributes"] for name in ("inputs", "values")}
@@ -160,7 +163,7 @@ def _check_same(store: Path, design: SweepDesign) -> None:
         raise InputError(
             f"{store} contains a different sweep from {design.path}: the states or the tolerance differ. "
             f"Choose another store; "
-            f"{store / DESIGN} is the file it was made from."
+            f"{store / DESIGN_FILE} is the file it was made from."
         )
     if about["version"] != running:
         raise InputError(

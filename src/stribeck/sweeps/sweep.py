@@ -26,13 +26,11 @@ from stribeck.sweeps.store import SweepError, create_or_open, describe_store
 
 __all__ = ["SweepProgress", "sweep"]
 
-MOST_WORKERS = 1024
+MAX_WORKERS = 1024
 
-MOST_DEATHS = 3
-"""Times that a killed worker process is replaced in one run."""
+MAX_REPLACEMENTS = 3  # Times that a killed worker process is replaced in one run
 
-WINDOW = 60.0
-"""Time over which the rate is measured [s]."""
+RATE_WINDOW = 60.0  # Time over which the rate is measured [s]
 
 
 @dataclass(frozen=True)
@@ -104,8 +102,8 @@ def sweep(
     The numbers do not depend on the number of workers.  With ``workers`` above 1 a script needs the usual
     ``if __name__ == "__main__":``, because its processes import it.
     """
-    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
-        raise InputError(f"workers = {show(workers)}; it must be a whole number from 1 to {MOST_WORKERS}.")
+    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MAX_WORKERS:
+        raise InputError(f"workers = {show(workers)}; it must be a whole number from 1 to {MAX_WORKERS}.")
     if scheduler is not None and workers != 1:
         raise InputError(
             f"workers = {workers} and scheduler = {show(scheduler)} are both given; a cluster has its own workers."
@@ -165,7 +163,7 @@ class _Run:
 
         from stribeck.sweeps.workers import in_this_process, on_cluster, on_processes
 
-        for deaths in range(1, MOST_DEATHS + 2):
+        for deaths in range(1, MAX_REPLACEMENTS + 2):
             chains = self._chains()
             try:
                 if not chains:
@@ -177,7 +175,7 @@ class _Run:
                 else:
                     in_this_process(self.store, chains, self._finished, self._tell)
             except BrokenProcessPool:
-                if deaths > MOST_DEATHS:
+                if deaths > MAX_REPLACEMENTS:
                     raise SweepError(
                         f"Worker processes died {deaths} times; is the memory of this machine large enough, and does a "
                         'script that sweeps with workers do so under `if __name__ == "__main__":`? '
@@ -205,7 +203,7 @@ class _Run:
         self.failed += failed
         now = time.monotonic()
         self.marks.append((now, self.computed))
-        while len(self.marks) > 2 and now - self.marks[1][0] > WINDOW:
+        while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
             self.marks.popleft()
 
     def _tell(self) -> None:

@@ -5,22 +5,21 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Annotated, Any, get_args
 
-from stribeck.cases.law import ASPERITIES, SURFACE
+from stribeck.cases.law import ASPERITY_KEYS, SURFACE_KEYS
 from stribeck.cases.tables import example_of, optional_table, shared_types
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
 from stribeck.quantities.units import InputError, show
-from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind
+from stribeck.sweeps.points import KINDS, RANDOM_KINDS, Axis, Kind
 
 __all__ = ["COEFFICIENTS", "GROUPS", "axis_of", "design_problems", "file_model", "kind_of", "missing"]
 
-MOST_STATES = 1_000_000
+MAX_STATES = 1_000_000
 
 GROUPS = ("speed", "load", "roughness")
-COEFFICIENTS = ("boundary_friction", "beta")
-"""What friction needs beside groups."""
+COEFFICIENTS = ("boundary_friction", "beta")  # What friction needs beside groups
 
 
 @functools.cache
@@ -55,12 +54,12 @@ def file_model(geometry: str) -> Any:
         design=table(
             "design",
             kind=(Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")], "grid"),
-            points=optional(int, f"a whole number from 1 to {MOST_STATES}", ge=1, le=MOST_STATES),
+            points=optional(int, f"a whole number from 1 to {MAX_STATES}", ge=1, le=MAX_STATES),
             seed=optional(int, "a whole number, zero or positive", ge=0, le=2**63 - 1),
         ),
         solver=table("solver", rtol=shared.rtol),
-        surface=optional_table("surface", SURFACE),
-        asperities=optional_table("asperities", ASPERITIES),
+        surface=optional_table("surface", SURFACE_KEYS),
+        asperities=optional_table("asperities", ASPERITY_KEYS),
         **shared.ends,
     )
 
@@ -99,12 +98,12 @@ def axis_of(name: str, entry: Any, kind: Kind, si: bool, inputs: InputTable) -> 
         raise InputError(f"{name}: spacing = {show(spacing)} must be 'log' or 'linear'.")
     if spacing == "log" and low == 0:
         raise InputError(f"{name}: range = {show(ends)} begins at zero; add spacing = 'linear', or list the values.")
-    if kind in RANDOM:
+    if kind in RANDOM_KINDS:
         if points is not None:
             raise InputError(f"{name}: points = {show(points)} is for grids; with kind = '{kind}' it belongs in [design].")
         return Axis(name, low=low, high=high, spacing=spacing)
-    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MOST_STATES:
-        raise InputError(f"{name}: points = {show(points)} must be a whole number from 2 to {MOST_STATES}.")
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MAX_STATES:
+        raise InputError(f"{name}: points = {show(points)} must be a whole number from 2 to {MAX_STATES}.")
     return Axis(name, low=low, high=high, points=points, spacing=spacing)
 
 
@@ -112,7 +111,7 @@ def design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     """Return what in ``[design]`` does not go with its kind or with the axes."""
     kind, points = design["kind"], design["points"]
     problems = []
-    if kind in RANDOM:
+    if kind in RANDOM_KINDS:
         if points is None:
             problems.append(f"[design] points is missing; set how many states kind = '{kind}' draws, as in points = 256.")
         elif kind == "sobol" and points & (points - 1):
@@ -121,14 +120,16 @@ def design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
         return problems
     for key in ("points", "seed"):
         if design[key] is not None:
-            problems.append(f"[design] {key} = {design[key]} is for {', '.join(RANDOM)}; kind = '{kind}' does not use it.")
+            problems.append(
+                f"[design] {key} = {design[key]} is for {', '.join(RANDOM_KINDS)}; kind = '{kind}' does not use it."
+            )
     sizes = {axis.name: len(axis) for axis in axes}
     if kind == "list" and len(set(sizes.values())) > 1:
         counts = ", ".join(f"{name} has {size}" for name, size in sizes.items())
         problems.append(f"[vary] the lists must have the same length with kind = 'list': {counts}.")
     states = math.prod(sizes.values()) if kind == "grid" else max(sizes.values())
-    if states > MOST_STATES:
-        problems.append(f"[vary] makes {states} states; at most {MOST_STATES} are possible in one sweep.")
+    if states > MAX_STATES:
+        problems.append(f"[vary] makes {states} states; at most {MAX_STATES} are possible in one sweep.")
     return problems
 
 

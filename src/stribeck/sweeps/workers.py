@@ -35,14 +35,11 @@ from stribeck.sweeps.store import SweepError
 
 __all__ = ["in_this_process", "on_cluster", "on_processes"]
 
-PAUSE = 0.25
-"""Time between two looks at whether the user wants to stop [s]."""
+POLL_INTERVAL = 0.25  # Time between two looks at whether the user wants to stop [s]
 
-AHEAD = 4
-"""Chains that wait for each process, so that none is idle and not all of a large sweep are sent at once."""
+QUEUED_CHAINS_PER_WORKER = 4  # Enough that no process is idle, and not all of a large sweep at once
 
-CONNECTION_TIME = 10.0
-"""Time that a scheduler has to answer [s]."""
+CONNECTION_TIMEOUT = 10.0  # Time that a scheduler has to answer [s]
 
 Finished = Callable[[int, int], object]
 Pause = Callable[[], object]
@@ -89,9 +86,9 @@ def on_processes(path: Path, chains: Chains, workers: int, finished: Finished, p
     with ProcessPoolExecutor(workers, context, _begin, (path, stop)) as pool:
         try:
             with _no_interrupts():
-                running = {pool.submit(_solve_here, chain) for chain in islice(ahead, AHEAD * workers)}
+                running = {pool.submit(_solve_here, chain) for chain in islice(ahead, QUEUED_CHAINS_PER_WORKER * workers)}
             while running:
-                ended, running = wait(running, PAUSE, FIRST_COMPLETED)
+                ended, running = wait(running, POLL_INTERVAL, FIRST_COMPLETED)
                 for future in ended:
                     finished(*future.result())
                 running |= {pool.submit(_solve_here, chain) for chain in islice(ahead, len(ended))}
@@ -157,7 +154,7 @@ def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, p
         raise MissingExtraError("a sweep on a cluster", "cluster", "distributed") from None
     connect: Any = Client
     try:
-        client = connect(scheduler, timeout=CONNECTION_TIME, set_as_default=False)
+        client = connect(scheduler, timeout=CONNECTION_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as problem:
         reason = " ".join(str(problem).split()) or type(problem).__name__
         raise InputError(f"no scheduler answers at {scheduler} ({reason}); start one with: dask scheduler.") from None
@@ -188,7 +185,7 @@ def _gather(client: Any, write: Writer, chains: Chains, finished: Finished, paus
         while waiting:
             pause()
             try:
-                news = arrived.get(timeout=PAUSE)
+                news = arrived.get(timeout=POLL_INTERVAL)
             except queue.Empty:
                 continue
             if isinstance(news, list):

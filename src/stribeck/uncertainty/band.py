@@ -18,8 +18,8 @@ from stribeck.uncertainty.propagate import propagate
 
 __all__ = ["Band", "friction_band"]
 
-POINTS = {"line": 13, "point": 7}
-"""At how many points errors are propagated, by geometry: between them the ends of intervals are smooth in the logarithm."""
+# Points at which errors are propagated, by geometry: between them the ends of intervals are smooth in the logarithm
+BAND_POINTS = {"line": 13, "point": 7}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ def friction_band(
     on_point: Callable[[int, int], object] | None = None,
 ) -> Band | None:
     """Return the 95 % interval of friction between two speeds, loads or roughnesses, as ``propagate`` has it."""
-    count = POINTS[contact.groups.geometry]
+    count = BAND_POINTS[contact.groups.geometry]
     found = []
     for i, value in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):
         try:

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_uncertainty"]
 
-LEAST = 1e-3
-"""Smallest end of an interval that is drawn, over the value as given; and its inverse the largest."""
+MIN_DRAWN_RATIO = 1e-3  # Smallest end of an interval that is drawn, over the value as given, and with its inverse the largest
 
 
 @picture("no value is positive")
@@ -45,7 +44,7 @@ def plot_uncertainty(
     footer = [[f"Regime: {found.probabilities}."], *([line] for line in found.sources)]
     figure, (ax,) = new_figure(size, footer, title=title or "Uncertainty of a state", ax=ax, left=3.4)
     ends = np.clip([[*each.interval_95, *each.interval_68, each.median] for each in shown], 0.0, None)
-    ends = np.clip(ends / np.array([[each.value] for each in shown]), LEAST, 1 / LEAST)
+    ends = np.clip(ends / np.array([[each.value] for each in shown]), MIN_DRAWN_RATIO, 1 / MIN_DRAWN_RATIO)
     rows = np.arange(len(shown))
     ax.hlines(rows, ends[:, 0], ends[:, 1], color=INK, lw=1.2, label="95 %")
     ax.hlines(rows, ends[:, 2], ends[:, 3], color=INK, lw=4.5, label="68 %")

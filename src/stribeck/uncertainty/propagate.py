@@ -26,25 +26,22 @@ from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
-from stribeck.uncertainty.states import NODE, films_of, states_by_inputs, states_of
+from stribeck.uncertainty.states import NODE_DEVIATION, films_of, states_by_inputs, states_of
 
-__all__ = ["RTOLS", "kept_errors", "moving_with", "propagate"]
+__all__ = ["STATE_RTOL", "kept_errors", "moving_with", "propagate"]
 
-SAMPLES, SEED = 20_000, 20261122
-"""Random samples of the inputs; the seed is fixed, so that results repeat."""
+SAMPLES = 20_000  # Random samples of the inputs
+SEED = 20261122  # Fixed, so that results repeat
 
-RTOLS = {"line": 1e-5, "point": 1e-4}
-"""Of the states, by geometry: a ball takes a tenth of a second or more each."""
+STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth of a second or more for each state
 
-POINTS = 21
-"""Of the curves."""
+CURVE_POINTS = 21
 
 
-STEP = 1e-3
-"""Of the logarithms of inputs in the differences that find the powers of scales, which are power laws."""
+LOG_STEP = 1e-3  # Of inputs in the differences that find the powers of scales, which are power laws
 
-THROUGH = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
-"""Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2."""
+# Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2.
+SUBSTITUTES = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
 
 LABELS = {"central_gap": "central film", "minimum_gap": "minimum film", "flux_gap": "flux film h*"}
 
@@ -114,7 +111,7 @@ def propagate(
 
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
-    rtol = RTOLS[groups.geometry]
+    rtol = STATE_RTOL[groups.geometry]
     solution, sensitivities, _ = sensitivities_if_known(contact, rtol=rtol, definition=definition)
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
@@ -174,7 +171,7 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
     rows = fitted_rows(contact.INPUTS)
     found: dict[str, float] = {}
     for name, error in errors.items():
-        kept, exponent = THROUGH.get(name, (PART_LETTERS.get(name, name), 1.0))
+        kept, exponent = SUBSTITUTES.get(name, (PART_LETTERS.get(name, name), 1.0))
         value = getattr(contact, kept, None) if kept in rows else None
         if value is None and kept in PART_INPUTS:
             raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[kept].of}.")
@@ -201,11 +198,12 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
 def _check_range(row: PartInput, value: float, sigma: float) -> None:
     """Refuse an error with which the states that are solved beside the middle would leave the range of a number."""
     low, high = row.range
-    for end, bound in ((value * math.exp(-NODE * sigma), low), (value * math.exp(NODE * sigma), high)):
+    for end, bound in ((value * math.exp(-NODE_DEVIATION * sigma), low), (value * math.exp(NODE_DEVIATION * sigma), high)):
         if not low <= end <= high:
             raise InputError(
                 f"the error of {row.name} = {format_si(value, row.dimension, 3)} is too large: states are solved at "
-                f"{NODE:.3g} standard errors beside it, which reaches {end:.3g}, past its bound {bound:g}; give a smaller one."
+                f"{NODE_DEVIATION:.3g} standard errors beside it, which reaches {end:.3g}, "
+                f"past its bound {bound:g}; give a smaller one."
             )
 
 
@@ -229,9 +227,9 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
 
 def _power(contact: Contact, function: Any, inputs: tuple[str, ...]) -> list[float]:
     """Return d ln(function)/d ln(inputs) of functions that are power laws, zero where they are zero."""
-    moved = contact.replace(**{name: getattr(contact, name) * math.exp(STEP) for name in inputs})
+    moved = contact.replace(**{name: getattr(contact, name) * math.exp(LOG_STEP) for name in inputs})
     pairs = zip(function(contact), function(moved), strict=True)
-    return [math.log(after / before) / STEP if before > 0 else 0.0 for before, after in pairs]
+    return [math.log(after / before) / LOG_STEP if before > 0 else 0.0 for before, after in pairs]
 
 
 def _spread(name: str, label: str, value: float, samples: Array, dimension: str = "number") -> Spread:
@@ -249,7 +247,7 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
     """Return the speeds of minimum and transitions, which move with each input to first order."""
 
     def marks(each: Contact) -> tuple[dict[str, float], Array]:
-        curve = stribeck_curve(each, points=POINTS, rtol=1e-3, definition=definition)
+        curve = stribeck_curve(each, points=CURVE_POINTS, rtol=1e-3, definition=definition)
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         return {mark.name: mark.value for mark in curve.transitions}, curve.values[[0, -1]]

@@ -22,14 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["Spread", "Uncertainty"]
 
 
-NEGLIGIBLE = 1e-6
-"""Load shares and friction coefficients below this are smaller than the error of the solver at its default tolerance."""
+# Load shares and friction coefficients below this are smaller than the error of the solver at its default tolerance
+MIN_OBSERVABLE = 1e-6
 
-SAMPLING = 1e-3
-"""Probabilities below this are those of a few of the 20 000 samples."""
+MIN_PROBABILITY = 1e-3  # Probability below which only a few of the 20 000 samples are left
 
-LEAST_SOURCE = 1e-3
-"""Smallest share of the variance that is named."""
+MIN_NAMED_SHARE = 1e-3  # Smallest share of the variance that is named
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,9 @@ class Spread:
     def texts(self) -> tuple[str, str]:
         """Value and 95 % interval, with units; numbers that no solver knows as a bound."""
         value, low, high = (
-            f"< {NEGLIGIBLE:g}" if self.dimension == "number" and 0 < end < NEGLIGIBLE else format_si(end, self.dimension)
+            f"< {MIN_OBSERVABLE:g}"
+            if self.dimension == "number" and 0 < end < MIN_OBSERVABLE
+            else format_si(end, self.dimension)
             for end in (self.value, *self.interval_95)
         )
         return value, high if low == high else f"{low} to {high}"
@@ -117,7 +117,7 @@ class Uncertainty(Exported):
     @property
     def probabilities(self) -> str:
         """The probability of each regime in words."""
-        return ", ".join(f"{name} {format_share(value, SAMPLING)}" for name, value in self.regimes.items())
+        return ", ".join(f"{name} {format_share(value, MIN_PROBABILITY)}" for name, value in self.regimes.items())
 
     def to_dict(self) -> dict[str, Any]:
         """Return spreads, probabilities and contributions, ready for JSON.
@@ -195,7 +195,7 @@ class Uncertainty(Exported):
         """What intervals count, the share of each input in the variance of friction, and the notes, a sentence each."""
         labels = fitted_rows(self.contact.INPUTS)
         exact = (exact_inputs(self.contact, self.errors),) if self.errors else ()
-        named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
+        named = {name: part for name, part in self.contributions.items() if part >= MIN_NAMED_SHARE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
         return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()), *self.notes)
 

@@ -31,39 +31,31 @@ from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError, solve
 
-__all__ = ["NAMES", "films_of", "states_by_inputs", "states_of"]
+__all__ = ["FILM_NAMES", "films_of", "states_by_inputs", "states_of"]
 
-NAMES = ("central_gap", "minimum_gap", "flux_gap")
-"""The films of a state."""
+FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
-NODE = 3**0.5
-"""Where the quadratic is solved, in standard deviations: the outer nodes of Gauss and Hermite."""
+NODE_DEVIATION = 3**0.5  # Where the quadratic is solved, in standard deviations: the outer nodes of Gauss and Hermite
 
-FARTHEST = 3.5
-"""Standard deviations beyond which a quadratic is held."""
+MAX_DEVIATION = 3.5  # Standard deviations beyond which a quadratic is held constant
 
-NARROW = 1e-9
-"""Standard deviation of a logarithm below which a direction counts as known."""
+MIN_LOG_DEVIATION = 1e-9  # Standard deviation of a logarithm below which a direction counts as known
 
-VISCOUS = 1
-"""Place of the viscous friction in the values of a state."""
+VISCOUS_INDEX = 1  # Place of the viscous friction in the values of a state
 
-END_ERROR = 0.05
-"""Part of its width within which the ends of the 95 % interval of friction are right: what the pages promise."""
+# Part of its width within which the ends of the 95 % interval of friction are right: what the pages promise
+INTERVAL_END_RTOL = 0.05
 
-MOST_SOLVED = 120
-"""Samples that are solved at most to hold to it."""
+MAX_SOLVED_SAMPLES = 120  # Most samples that are solved to hold INTERVAL_END_RTOL
 
-SEED = 20_261_126
-"""Seed of the choice of samples that are solved."""
+SEED = 20_261_126  # Of the choice of samples that are solved
 
-TINY = 1e-290
-"""Value in place of a share that underflows."""
+MIN_SHARE = 1e-290  # Value in place of a share that underflows
 
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:
-    """Return the films that states of a geometry have, of :data:`NAMES`."""
-    return tuple(name for name in NAMES if name in OUTPUT_TABLES[geometry].names)
+    """Return the films that states of a geometry have, of :data:`FILM_NAMES`."""
+    return tuple(name for name in FILM_NAMES if name in OUTPUT_TABLES[geometry].names)
 
 
 def states_of(
@@ -80,7 +72,7 @@ def states_of(
         samples = _moved(groups, offsets)
         if bool(np.all(atlas.covers(samples))):
             inputs = RULES[groups.geometry].of_contact(contact)
-            films = [name for name in NAMES if name != "flux_gap" or name in table.functions]
+            films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
             found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
             share, viscous = atlas.friction_terms(samples, inputs, definition)
             found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
@@ -117,7 +109,7 @@ def states_by_inputs(
 
     start = values()
     axes = [
-        (draws[:, i], values(inputs, NODE * sigma), values(inputs, -NODE * sigma))
+        (draws[:, i], values(inputs, NODE_DEVIATION * sigma), values(inputs, -NODE_DEVIATION * sigma))
         for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
     ]
     return _followed(_quadratic(start, axes, contact.groups.geometry, len(draws)), draws, sample, friction)
@@ -140,8 +132,8 @@ def _by_quadratics(
     axes = []
     for variance, direction in zip(variances, directions.T, strict=True):
         width = float(np.sqrt(max(variance, 0.0)))
-        if width >= NARROW:
-            node = NODE * width * direction
+        if width >= MIN_LOG_DEVIATION:
+            node = NODE_DEVIATION * width * direction
             axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
     found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
     if friction is None or not axes:
@@ -162,7 +154,7 @@ class _Samples(NamedTuple):
         """Return the row of a solved state."""
         row = values.copy()
         if self.is_power:
-            row[VISCOUS] = np.log(max(self.sign * row[VISCOUS], TINY))
+            row[VISCOUS_INDEX] = np.log(max(self.sign * row[VISCOUS_INDEX], MIN_SHARE))
         return row
 
     def values(self) -> dict[str, Array]:
@@ -193,7 +185,7 @@ def _followed(
         predicted = friction(found.values())
         low, high = np.quantile(predicted, [0.025, 0.975])
         width, wrong = high - low, 0.0
-        near = [np.abs(predicted - end) <= END_ERROR * width for end in (low, high)]
+        near = [np.abs(predicted - end) <= INTERVAL_END_RTOL * width for end in (low, high)]
         for pool in (*near, np.ones_like(tried)):
             left = np.flatnonzero(pool & ~tried)
             chosen = random.choice(left, min(some, len(left)), False).tolist()
@@ -207,7 +199,7 @@ def _followed(
             differences = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)]
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known |= new
-        if wrong <= END_ERROR * width or tried.sum() + 3 * some > MOST_SOLVED:
+        if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
             return found.values(), _unsettled(wrong / width if width else 0.0, int(tried.sum()), len(known))
         rows = list(known)
         rest = np.array([known[i] - base.y[i] for i in rows]).reshape(-1, base.y.shape[1])
@@ -220,12 +212,12 @@ def _followed(
 def _unsettled(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
     """Return what to know of an interval: that its ends are not settled, and how many of its samples cannot be solved."""
     notes = []
-    if wrong > END_ERROR:
+    if wrong > INTERVAL_END_RTOL:
         apart = f"lie up to {format_percent(wrong)} of its width" if math.isfinite(wrong) else "cannot be solved or lie far"
         notes.append(
             f"The interval of friction is not settled: after {solved} solved samples, states {apart} from where they are "
-            f"predicted, not within {format_percent(END_ERROR)}. Its ends are as uncertain; smaller errors of the inputs, or "
-            "states solved one by one at their ends, say more."
+            f"predicted, not within {format_percent(INTERVAL_END_RTOL)}. Its ends are as uncertain; smaller errors of the "
+            "inputs, or states solved one by one at their ends, say more."
         )
     if solved < tried:
         notes.append(
@@ -238,27 +230,27 @@ def _unsettled(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
 def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> _Samples:
     """Return the quadratics through the middle and two states on each axis, at the places of samples along the axes."""
     every = [start, *(each for _, *pair in axes for each in pair)]
-    sign = np.sign(start[VISCOUS])
-    is_power = all(sign * each[VISCOUS] > 0 for each in every)  # a drag that changes its sign is none
+    sign = np.sign(start[VISCOUS_INDEX])
+    is_power = all(sign * each[VISCOUS_INDEX] > 0 for each in every)  # a drag that changes its sign is none
     for each in every if is_power else []:
-        each[VISCOUS] = np.log(sign * each[VISCOUS])
+        each[VISCOUS_INDEX] = np.log(sign * each[VISCOUS_INDEX])
     y = np.tile(start, (number, 1))
     for places, ahead, behind in axes:
-        t = np.clip(places, -FARTHEST, FARTHEST)[:, None]
-        y += (ahead - behind) / (2 * NODE) * t + (ahead + behind - 2 * start) / (2 * NODE**2) * t**2
+        t = np.clip(places, -MAX_DEVIATION, MAX_DEVIATION)[:, None]
+        y += (ahead - behind) / (2 * NODE_DEVIATION) * t + (ahead + behind - 2 * start) / (2 * NODE_DEVIATION**2) * t**2
     return _Samples(y, float(sign), is_power, geometry)
 
 
 def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
     """Return the log odds of the load share, the viscous friction and the logarithms of films of a solved state."""
-    contact, fluid = max(state.contact_load_share, TINY), max(state.fluid_load_share, TINY)
+    contact, fluid = max(state.contact_load_share, MIN_SHARE), max(state.fluid_load_share, MIN_SHARE)
     rule = RULES[state.groups.geometry]
     inputs = rule.of_contact(of)
     parts = {name: float(getattr(state, name)) for name in rule.parts(definition)}
     given = {**inputs, "far": far_film(state.groups.model)}
     viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, given, definition)) / inputs["beta"]
     films = [float(getattr(state, name)) for name in films_of(state.groups.geometry)]
-    return np.array([np.log(contact / fluid), viscous, *np.log([max(value, TINY) for value in films])])
+    return np.array([np.log(contact / fluid), viscous, *np.log([max(value, MIN_SHARE) for value in films])])
 
 
 def _moved(groups: Groups, offsets: Array) -> Groups:

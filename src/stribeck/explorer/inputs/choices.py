@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.cases.case import USUAL
+from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contact_laws.law import AsperityLaw
@@ -37,7 +37,7 @@ Keys = tuple[tuple[str, ...], tuple[str, ...]]
 
 NONE: Keys = ((), ())
 
-RTOL = {geometry: rtol for geometry, (_, rtol) in USUAL.items()}
+RTOL = {geometry: rtol for geometry, (_, rtol) in DEFAULT_POINTS_AND_RTOL.items()}
 """Tolerance of the states where the geometry is chosen on the page."""
 
 CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}

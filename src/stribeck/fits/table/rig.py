@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, header_words, is_called, is_named, number_of, split_header
+from stribeck.files.cells import MISSING_CELLS, header_words, is_called, is_named, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.repeats import FEWEST
 from stribeck.fits.table.units import BARE, has_dimension, si_factor
@@ -496,14 +496,14 @@ def _cells(table: TextTable, name: str) -> list[float | None]:
     """Return the numbers of a column as written, None where there is none; refuse text."""
     found = _cells_or_none(table, name)
     for number, cell, value in zip(table.numbers, table.column(name), found, strict=True):
-        if value is None and cell.lower() not in MISSING:
+        if value is None and cell.lower() not in MISSING_CELLS:
             raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(cell)} is not a number.")
     return found
 
 
 def _cells_or_none(table: TextTable, name: str) -> list[float | None]:
     decimal = "," if table.decimal_comma([name]) else "."
-    read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
+    read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in table.column(name)]
     return [None if each is None else each[0] for each in read]
 
 

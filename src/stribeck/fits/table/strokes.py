@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, number_of, rows_listed
+from stribeck.files.cells import MISSING_CELLS, number_of, rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show
 
@@ -134,5 +134,5 @@ def _listed(table: TextTable, rows: Flags) -> str:
 def _numbers(table: TextTable, name: str) -> Array:
     """Return the numbers of a column as written, NaN where there is none."""
     decimal = "," if table.decimal_comma([name]) else "."
-    read = [None if cell.lower() in MISSING else number_of(cell, decimal) for cell in table.column(name)]
+    read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in table.column(name)]
     return np.array([np.nan if each is None else each[0] for each in read])

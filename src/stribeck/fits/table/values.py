@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING, number_of, split_header
+from stribeck.files.cells import MISSING_CELLS, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.columns import ABSCISSAS
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension, si_factor
@@ -33,7 +33,7 @@ class Values:
         at = self.table.header.index(column)
         cell = self.table.rows[i][at]
         where = f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
-        if cell.lower() in MISSING:
+        if cell.lower() in MISSING_CELLS:
             return None
         if column not in self.decimals:
             self.decimals[column] = "," if self.table.decimal_comma([column]) else "."
