@@ -21,7 +21,7 @@ from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
-from stribeck.solver.cavities.cavity_length import _in_gap
+from stribeck.solver.cavities.cavity_length import _cavity_in_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.homotopy import Work, _along, _coarse, _seen_from_exit, settled
 from stribeck.solver.path.corrector import Corrector
@@ -251,13 +251,13 @@ def test_a_cavity_in_a_contact_of_asperities_lies_where_it_does_in_the_gap_of_th
     groups = sb.Groups(9.516133145241108e-11, 4.052e-06, 7.752547346308160e-12)
     full = solved_point(groups, 1e-6).state
     assert full.lowest_pressure < -2.7e-4
-    guess, slope = _in_gap(with_parts(groups, cavitation="reform", cavity_pressure=-2.5e-4), full)
+    guess, slope = _cavity_in_gap(with_parts(groups, cavitation="reform", cavity_pressure=-2.5e-4), full)
     assert slope < 0
     state = sb.solve(groups, cavitation="reform", cavity_pressure=-2.5e-4)
     assert guess.exit == pytest.approx(state.exit_position, abs=0.01)
     assert guess.exit + guess.restart == pytest.approx(state.reformation_position, abs=0.01)
     assert guess.flux_gap == pytest.approx(state.flux_gap, rel=1e-3)
-    assert _in_gap(with_parts(groups, cavitation="reform", cavity_pressure=-2.0), full) is None
+    assert _cavity_in_gap(with_parts(groups, cavitation="reform", cavity_pressure=-2.0), full) is None
 
 
 @pytest.mark.parametrize("fluid", [None, sb.fluids.Barus(1.0)], ids=("plain", "stiffens"))

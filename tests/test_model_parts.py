@@ -31,7 +31,7 @@ from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.solids import HalfPlane, Layer
 from stribeck.solids.layer import transfer
 from stribeck.solver.cold_start import cold_start
-from stribeck.solver.solve import spiked
+from stribeck.solver.solve import spike_note
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 BARUS = [row for row in REFERENCE["b_d_e"] if row["case"] == "barus"]
@@ -237,7 +237,7 @@ def test_the_spike_of_a_thick_film_rises_as_in_finite_differences(coefficient, c
 
 @pytest.mark.parametrize(("fluid", "said"), [(sb.fluids.Roelands(4.5, 9.6, 2.7e-4), "spike"), (Barus(1.0), "")])
 def test_a_failure_of_a_stiff_fluid_names_the_spike(fluid, said):
-    told = spiked(with_parts(sb.Groups(0.27, 1.5e-4, 2e-7), fluid=fluid))
+    told = spike_note(with_parts(sb.Groups(0.27, 1.5e-4, 2e-7), fluid=fluid))
     assert said in told if said else told == ""
 
 

@@ -225,7 +225,7 @@ def test_a_film_that_is_lost_in_rounding_on_the_way_to_it_is_refused_with_the_re
 
 def test_a_reforming_film_whose_full_film_is_not_reached_says_so(monkeypatch):
     solver = sys.modules["stribeck.solver.solve"]
-    monkeypatch.setattr(solver, "_refined", lambda base, *_: RefinedState(base, None, None, None, Outcome.STEP_LIMIT))
+    monkeypatch.setattr(solver, "_solve_by_paths", lambda base, *_: RefinedState(base, None, None, None, Outcome.STEP_LIMIT))
     with pytest.raises(sb.SolveError) as caught:
         sb.solve(sb.Groups(1e-3, 0.1, 1e-4), cavitation="reform", cavity_pressure=-0.01)
     assert caught.value.outcome is Outcome.STEP_LIMIT

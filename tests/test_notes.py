@@ -11,7 +11,7 @@ from fit_data import TRUE, exact
 import stribeck as sb
 from stribeck.regimes.margin_limits import physical_bounds
 from stribeck.regimes.margins import RegimeMargins, regime_margins
-from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE, pressure_notes
+from stribeck.solver.notes import HARD_PREFIX, LAW_RANGE, MAX_HERTZ_PRESSURE, pressure_notes
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none")
 """A contact in a full film under Persson's law at load group 5.5."""
@@ -128,15 +128,15 @@ def test_a_heavy_load_is_not_noted_where_the_fluid_carries_it():
 
 @pytest.mark.parametrize(("part", "noted"), [(0.99, False), (1.01, True)])
 def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(part, noted):
-    factor = part * HIGHEST_PRESSURE / TRUE.hertz.pressure
+    factor = part * MAX_HERTZ_PRESSURE / TRUE.hertz.pressure
     contact = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
     solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
-    assert any(note.startswith(HARD) for note in solution.notes) == noted
-    assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD) == noted
+    assert any(note.startswith(HARD_PREFIX) for note in solution.notes) == noted
+    assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD_PREFIX) == noted
 
 
 def test_a_fluid_that_stiffens_with_pressure_is_not_said_to_be_missing():
-    contact = TRUE.replace(modulus=4 * HIGHEST_PRESSURE**2 / TRUE.hertz.pressure**2 * TRUE.modulus)
+    contact = TRUE.replace(modulus=4 * MAX_HERTZ_PRESSURE**2 / TRUE.hertz.pressure**2 * TRUE.modulus)
     assert pressure_notes(contact)
     assert not pressure_notes(contact.replace(fluid=sb.fluids.Barus("10 1/GPa")))
 
@@ -153,16 +153,16 @@ def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, caps
         assert answer.out.startswith(
             "Outside the range of the model: Hard elastohydrodynamics: the Hertz pressure is 102 MPa"
         ), tokens[0]
-        assert answer.out.count(HARD) == 1
-    assert json.loads(call(capsys, "solve", path, "--json").out)["notes"][0].startswith(HARD)
+        assert answer.out.count(HARD_PREFIX) == 1
+    assert json.loads(call(capsys, "solve", path, "--json").out)["notes"][0].startswith(HARD_PREFIX)
 
 
 def test_over_the_load_the_first_note_is_that_of_the_pressure_too():
     """At light loads, where a curve begins, other notes come first."""
     stiff = TRUE.replace(modulus="5.4 GPa", viscosity="100 Pa*s", speed="20 mm/s")
     curve = sb.stribeck_curve(stiff, load=("4 kN/m", "60 kN/m"), points=5, rtol=1e-4)
-    assert not any(note.startswith(HARD) for note in curve.solutions[0].notes) and curve.solutions[0].notes
-    assert curve.notes[0].startswith(HARD)
+    assert not any(note.startswith(HARD_PREFIX) for note in curve.solutions[0].notes) and curve.solutions[0].notes
+    assert curve.notes[0].startswith(HARD_PREFIX)
 
 
 # --- what can be reached ---

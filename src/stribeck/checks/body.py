@@ -9,7 +9,7 @@ from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, judged, ver
 from stribeck.checks.subject import Subject
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import POINT, InputTable
-from stribeck.solver.notes import HARD, OIL, WIDEST_CONTACT, pressure_notes, width_notes
+from stribeck.solver.notes import HARD_PREFIX, MAX_CONTACT_SLOPE, OIL_COEFFICIENT, pressure_notes, width_notes
 
 STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
 STIFFENING_OUTSIDE = 1.0  # Same product at which the film is 12 % thicker and its friction 88 % larger (when_not_to_use.md)
@@ -131,7 +131,7 @@ def pressure(subject: Subject) -> Check:
     """Return the check of the Hertz pressure against the growth of viscosity with pressure."""
     p = subject.contact.hertz.pressure
     given = subject.fact("pressure_viscosity")
-    coefficient = OIL if given is None else given
+    coefficient = OIL_COEFFICIENT if given is None else given
     growth = coefficient * p
     limit = STIFFENING_FINE / coefficient if coefficient > 0 else math.inf
     modelled = subject.models("fluid")
@@ -144,8 +144,9 @@ def pressure(subject: Subject) -> Check:
     if given is None and verdict == "outside":
         [sentence] = pressure_notes(subject.contact)
     else:
-        about = f"of an oil, {OIL * 1e9:g} 1/GPa (give pressure_viscosity)" if given is None else f"{given * 1e9:.3g} 1/GPa"
-        begin = f"{HARD} at" if verdict == "outside" else "At"
+        of_oil = f"of an oil, {OIL_COEFFICIENT * 1e9:g} 1/GPa (give pressure_viscosity)"
+        about = of_oil if given is None else f"{given * 1e9:.3g} 1/GPa"
+        begin = f"{HARD_PREFIX} at" if verdict == "outside" else "At"
         sentence = (
             f"{begin} the Hertz pressure of {p / 1e6:.3g} MPa viscosity is exp({growth:.2g}) times that at ambient pressure "
             f"by the pressure-viscosity coefficient {about}; the model has one viscosity."
@@ -179,7 +180,7 @@ def width(subject: Subject) -> Check:
     """
     contact = subject.contact
     slope = contact.hertz.half_width / contact.radius
-    verdict = verdict_of(slope, WIDEST_CONTACT, WIDTH_RATIO_OUTSIDE)
+    verdict = verdict_of(slope, MAX_CONTACT_SLOPE, WIDTH_RATIO_OUTSIDE)
     error = EXCESS_LOAD_OF_CIRCLE[contact.groups.geometry] * slope**2
     notes = width_notes(contact)
     about = (
@@ -188,7 +189,7 @@ def width(subject: Subject) -> Check:
     )
     sentence = notes[0] if notes else about
     return Check(
-        "contact width a/R", slope, WIDEST_CONTACT, verdict, sentence, error=error, notable=error >= MIN_STATED_CHANGE
+        "contact width a/R", slope, MAX_CONTACT_SLOPE, verdict, sentence, error=error, notable=error >= MIN_STATED_CHANGE
     )
 
 

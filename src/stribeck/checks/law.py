@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.curves.regime import Transition
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
-from stribeck.solver.notes import ADVICE, LAW_RANGE, USUAL_ALPHA, law_notes, matters, minimum_note
+from stribeck.solver.notes import LAW_RANGE, TAIL_ADVICE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
 MINIMUM_CHECK = "contact law at the minimum"  # Name of the check that states the error of the minimum by itself
@@ -119,7 +119,7 @@ def range_at_minimum(subject: Subject) -> Check | None:
     where = f"speed {format_si(subject.minimum.value, 'speed')}"
     note = minimum_note(state.groups, state.contact, state.observables, share, where)
     sentence = (
-        note.replace(ADVICE, MINIMUM_ERROR_TEXT)
+        note.replace(TAIL_ADVICE, MINIMUM_ERROR_TEXT)
         or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
     )
     if not note and not has_endless_tail(contact.law):

@@ -28,7 +28,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import si_films
-from stribeck.solver.notes import HARD, law_notes, minimum_note
+from stribeck.solver.notes import HARD_PREFIX, law_notes, minimum_note
 from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate
@@ -352,7 +352,7 @@ class StribeckCurve(Exported, Shown, ByValue):
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
                 found.setdefault(kind, []).append((value, note))
         told = [self._note(points) for points in found.values()]
-        return (*sorted(told, key=lambda note: not note.startswith(HARD)), *self.minimum_notes)
+        return (*sorted(told, key=lambda note: not note.startswith(HARD_PREFIX)), *self.minimum_notes)
 
     @property
     def minimum_notes(self) -> tuple[str, ...]:

@@ -14,14 +14,11 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.numerics.series import along, product
 
-STATIC_LOAD = 0.01
-"""Load at which heavier contacts at rest are solved: all gaps are positive there."""
-
-SAFE_SEPARATION = 2.3
-"""Separation at the largest pressure with which all gaps at rest are positive; that of the exponential law at load 0.01."""
+STATIC_LOAD = 0.01  # Load at which heavier contacts at rest are solved: all gaps are positive there
+SAFE_SEPARATION = 2.3  # Separation at the largest pressure at rest for which all gaps are positive
 
 
-def separation_at(shape: AsperityLaw, log_pressure: float) -> float:
+def separation_at_pressure(shape: AsperityLaw, log_pressure: float) -> float:
     """Return the separation at which ln(Phi) has a given value, by bisection from -1e6 to 1e6, or the nearer end."""
     low, high = max(-1e6, shape.lowest), 1e6
     for _ in range(100):
@@ -59,7 +56,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
         return lighter, -float(groups.relative_roughness) * heavier
     if shape.lowest > -np.inf or isinstance(shape, ShiftedLaw):
         return groups, 0.0
-    shift = max(0.0, SAFE_SEPARATION - separation_at(shape, float(np.log(groups.pressure_scale))))
+    shift = max(0.0, SAFE_SEPARATION - separation_at_pressure(shape, float(np.log(groups.pressure_scale))))
     if shift == 0.0:
         return groups, 0.0
     return replace(groups, law=ShiftedLaw(shape, shift)), -shift * float(groups.relative_roughness)
@@ -68,10 +65,8 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
 def shift_along(
     groups: Groups, base: Groups, direction: tuple[float, float, float], order: int
 ) -> tuple[tuple[float, float, float], Array]:
-    """Return the direction in which the groups to solve for move, and the series of the shift of their gap.
-
-    ``base`` are those of ``groups`` by :func:`with_positive_gap`; load and shift of the law are held along the path.
-    """
+    """Return the direction of the groups to solve for along a path, and the series of the shift of their gap."""
+    # ``base`` are those of ``groups`` by with_positive_gap; load and shift of the law stay fixed along the path.
     _, by_load, by_roughness = direction
     exponents = groups.scaling
     rate = by_roughness - exponents.roughness_exponent * by_load

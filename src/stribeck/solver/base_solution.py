@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "hysteresis_coefficient", "si_films"]
 
-UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}
-"""Units of positions, gaps and pressures."""
+UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions, gaps and pressures
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -330,7 +329,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
 
 def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) -> float | None:
-    """Return the friction coefficient of the losses in a body that remembers; None for others."""
+    """Return the friction coefficient of the losses in a viscoelastic body, None for others."""
     groups = solution.groups
     if not getattr(groups.model.solid, "uses_speed", False):
         return None

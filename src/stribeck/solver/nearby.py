@@ -18,12 +18,11 @@ from stribeck.solver.solve import SolveError, as_groups, check_rtol, finish, her
 
 __all__ = ["WarmStartSolver"]
 
-LARGEST_CHANGE = 30.0
-"""Factor by which a group may have changed for the last state to be a guess of the next."""
+MAX_GROUP_RATIO = 30.0  # Change of a group beyond which the last state is no guess of the next
 
 
 class WarmStartSolver:
-    """Solves one state after another, each from the last one if that is near, else from cold."""
+    """Solves one state after another, each from the last one if that is close, else from cold."""
 
     def __init__(self, rtol: float = 1e-6) -> None:
         rtol = check_rtol(rtol)
@@ -48,7 +47,7 @@ class WarmStartSolver:
 
     @property
     def state(self) -> State:
-        """The last state, as the equations know it."""
+        """The last state in the unknowns of the equations."""
         if self._last is None or self._last.state is None:
             raise ValueError("no state has been solved yet")
         return self._last.state
@@ -61,7 +60,7 @@ class WarmStartSolver:
 
     def _from_last(self, groups: Groups) -> RefinedState | None:
         """Return the state that Newton's iteration finds from the last one, or None."""
-        if self._last is None or not _near(self._last.groups, groups):
+        if self._last is None or not _are_close(self._last.groups, groups):
             return None
         self._target = groups
         try:
@@ -73,10 +72,10 @@ class WarmStartSolver:
         return point
 
 
-def _near(last: Groups, new: Groups) -> bool:
-    """Return whether the groups are near those of the last state: none changed too much, or from or to zero."""
+def _are_close(last: Groups, new: Groups) -> bool:
+    """Return whether no group changed by more than a factor, or from or to zero."""
     for name in ("speed", "load", "roughness"):
         before, after = float(getattr(last, name)), float(getattr(new, name))
-        if (before == 0) != (after == 0) or (before and abs(math.log(after / before)) > math.log(LARGEST_CHANGE)):
+        if (before == 0) != (after == 0) or (before and abs(math.log(after / before)) > math.log(MAX_GROUP_RATIO)):
             return False
     return True

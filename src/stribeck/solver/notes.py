@@ -13,8 +13,8 @@ from stribeck.fluids.fluid import Film
 from stribeck.quantities.formats import format_percent, format_si
 
 __all__ = [
-    "ADVICE",
-    "HARD",
+    "TAIL_ADVICE",
+    "HARD_PREFIX",
     "cavitation_notes",
     "fluid_notes",
     "law_notes",
@@ -25,33 +25,16 @@ __all__ = [
     "width_notes",
 ]
 
-HARD = "Hard elastohydrodynamics:"
-"""How the sentence of :func:`pressure_notes` begins; outputs show it before all else."""
-
-HIGHEST_PRESSURE = 5e7
-"""Largest Hertz pressure that the model is meant for [Pa]: there an oil of :data:`OIL` is e times as viscous as at ambient
-pressure."""
-
-OIL = 2e-8
-"""Pressure-viscosity coefficient of mineral oil [1/Pa], in the middle of the usual 15 to 25 1/GPa."""
-
-WIDEST_CONTACT = 0.3
-"""Hertz half-width over the radius from which a note says that the model is coarse."""
-
-LAW_RANGE = (0.4, 2.0)
-"""Gaps over h_rms between which the exponential law follows a rough surface; theory.md, section 8, and contact_laws.md."""
-
-USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
-"""Coefficients of self-affine surfaces, by which groups alone are verified."""
-
-NEGLIGIBLE_SHARE = 0.01
-"""Share of load and of friction of the asperities up to which their contact law does not matter."""
-
-ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."
-"""End of the note on a minimum that the tail of the law decides."""
-
-ATMOSPHERE = 1.01325e5
-"""Ambient pressure of a contact in the open [Pa], the largest suction that it allows."""
+HARD_PREFIX = "Hard elastohydrodynamics:"  # Begins the sentence of pressure_notes, which outputs show before all others
+MAX_HERTZ_PRESSURE = 5e7  # Hertz pressure [Pa] at which an oil is e times as viscous as at ambient pressure
+OIL_COEFFICIENT = 2e-8  # Pressure-viscosity coefficient of mineral oil [1/Pa], amid the usual 15 to 25 1/GPa
+MAX_CONTACT_SLOPE = 0.3  # Hertz half-width over the radius above which the model is coarse
+LAW_RANGE = (0.4, 2.0)  # Gaps over h_rms in which the exponential law follows a rough surface (contact_laws.md)
+USUAL_ALPHA = 2.0  # Decay coefficient of self-affine surfaces, by which groups alone are judged
+USUAL_BETA = 0.05  # Slope coefficient of self-affine surfaces, by which groups alone are judged
+NEGLIGIBLE_SHARE = 0.01  # Share of load and of friction of the asperities up to which their contact law does not matter
+TAIL_ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."  # Ends the note on a minimum that the law's tail decides
+ATMOSPHERE = 1.01325e5  # Ambient pressure [Pa], the largest suction of a contact in the open
 
 
 class Values(Protocol):
@@ -74,18 +57,15 @@ class Values(Protocol):
 
 
 def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
-    r"""Return the sentence that says that a contact is one of hard elastohydrodynamics.
-
-    .. math:: \eta(p_\mathrm{Hz})/\eta = \exp(\alpha_p \, p_\mathrm{Hz})
-    """
-    if contact is None or contact.groups.model.film.uses_pressure or not contact.hertz.pressure > HIGHEST_PRESSURE:
+    """Return the sentence on hard elastohydrodynamics, if the Hertz pressure is outside the model."""
+    if contact is None or contact.groups.model.film.uses_pressure or not contact.hertz.pressure > MAX_HERTZ_PRESSURE:
         return ()
     pressure = contact.hertz.pressure
     return (
-        f"{HARD} the Hertz pressure is {format_si(pressure, 'pressure')}, but this model applies up to "
-        f"{format_si(HIGHEST_PRESSURE, 'pressure')}. "
-        f"At that pressure an oil with {OIL * 1e9:g} 1/GPa is exp({OIL * pressure:.2g}) times as viscous "
-        f"as at ambient pressure, which is "
+        f"{HARD_PREFIX} the Hertz pressure is {format_si(pressure, 'pressure')}, but this model applies up to "
+        f"{format_si(MAX_HERTZ_PRESSURE, 'pressure')}. "
+        f"At that pressure an oil with {OIL_COEFFICIENT * 1e9:g} 1/GPa is exp({OIL_COEFFICIENT * pressure:.2g}) times as "
+        f"viscous as at ambient pressure, which is "
         "not modelled: with such a fluid film, friction and regimes are not those given here.",
     )
 
@@ -104,15 +84,15 @@ def shape_notes(contact: Contact | None) -> tuple[str, ...]:
 
 
 def width_notes(contact: Contact) -> tuple[str, ...]:
-    """Return the sentence about a contact that is wide for a parabola on a half-space; none up to 0.3 of the radius."""
+    """Return the sentence on a contact that is too wide for a parabola on a half-space, if it is."""
     slope = contact.slope
-    if not slope > WIDEST_CONTACT:
+    if not slope > MAX_CONTACT_SLOPE:
         return ()
     layered = getattr(getattr(contact, "solid", None), "thickness", None) is not None
     advice = "" if layered else " If the soft body is a thin layer on a stiff base, give its layer_thickness in [solid]."
     return (
         f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a half-space is accurate up "
-        f"to about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.{advice}",
+        f"to about 0.1 and coarse at {MAX_CONTACT_SLOPE}; check modulus, load and radius.{advice}",
     )
 
 
@@ -155,7 +135,7 @@ def matters(contact: Contact | None, values: Values) -> bool:
 
 
 def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
-    """Return the note on a friction minimum whose gap is outside the range of the contact law; empty if it is inside."""
+    """Return the note on a friction minimum whose gap is outside the range of the contact law, or an empty string."""
     if not (groups.roughness > 0 and friction > NEGLIGIBLE_SHARE and has_endless_tail(groups.law)):
         return ""
     ratio, measured = _gap_ratio(groups, contact, values)
@@ -164,7 +144,7 @@ def minimum_note(groups: Groups, contact: Contact | None, values: Values, fricti
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
         f"{_range(groups)}, while asperities cause {format_percent(friction)} of the friction: on a surface with "
-        f"fewer high asperities the minimum is lower and at a lower speed{ADVICE}"
+        f"fewer high asperities the minimum is lower and at a lower speed{TAIL_ADVICE}"
     )
 
 
@@ -192,7 +172,8 @@ def _range(groups: Groups) -> str:
 
 
 def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, float], known: bool) -> tuple[str, ...]:
-    """Return the note on a gap above the range; groups alone do not fix the friction, so it states what it assumes."""
+    """Return the note on a gap above the range of the contact law."""
+    # Groups alone do not fix the friction: the note states what it assumes.
     if ratio <= LAW_RANGE[1] or not has_endless_tail(groups.law):
         return ()
     load, friction = shares
@@ -204,15 +185,17 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     )
 
 
-LINE_BREAKS = (
+# What cavitation at ambient pressure changes in a line contact.
+LINE_CAVITATION_NOTE = (
     "Where it breaks at ambient pressure the minimum of friction is 9 to 20 % lower, and in boundary lubrication the fluid "
     "carries more (when_not_to_use.md)."
 )
-"""What a film that breaks at ambient pressure changes in a line contact."""
 
 
-def cavitation_notes(contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_BREAKS) -> tuple[str, ...]:
-    """Return the note on a suction behind the contact of more than an atmosphere."""
+def cavitation_notes(
+    contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_CAVITATION_NOTE
+) -> tuple[str, ...]:
+    """Return the note on a suction of more than an atmosphere behind the contact."""
     if contact is None:
         return ()
     suction = -float(fluid_pressure.min()) * contact.hertz.pressure

@@ -122,7 +122,8 @@ def plot_fields(
 
 
 def _name(figure: Figure, above: list[Axes], below: Axes, position: str) -> None:
-    """Name the positions and the curves, in a legend within the axes of the pressures if these are alone."""
+    """Label positions and curves."""
+    # The legend lies within the axes of the pressures if these are alone.
     below.set_xlabel(f"{position}; fluid enters from the left")
     if not above:
         below.legend(frameon=False, fontsize=8.5)
@@ -159,7 +160,7 @@ def draw_pressures(axes: Axes, fields: Profile, x: Array, to_pressure: tuple[flo
 
 
 def mark_failure(solution: BaseSolution, *drawn: Axes) -> None:
-    """Write across the drawing of a state that failed that it is not a result."""
+    """Write across the picture of a failed state that the state is no result."""
     if solution.outcome.ok:
         return
     for axes in drawn:
@@ -184,7 +185,7 @@ def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to
 
 
 def caption_of(solution: BaseSolution, notes: bool) -> tuple[list[list[str]], list[str]]:
-    """Return what stands below the picture of a state: inputs, groups, law and error, and the notes where they are wanted."""
+    """Return the caption of a state's picture: inputs, groups, law and error, and its notes if wanted."""
     groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
         law_text(solution),

@@ -21,24 +21,12 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 
 MAX_REFINEMENTS = 12
-
-NODAL_ROUNDING = 16 * 2.0**-52
-"""Rounding of a nodal gap, a difference of terms of order one, as magnified by the polynomials between the nodes."""
-
-MIN_GAP_TAIL = 0.02
-"""Error of the read-off gap over the tolerance below which refining there alone does not help."""
-
-PROGRESS = 0.5
-"""Part to which a finer mesh must reduce the error where the noise of nodal gaps may be what is left."""
-
-NOISES = 4.0
-"""Error over that noise up to which it may be."""
-
-COARSER = 10.0
-"""Factor of the Legendre tails, twice at most, where Newton's iteration does not reach a first state on a fine mesh."""
-
-CLEARLY_FINER = 1.1
-"""Ratio of mesh sizes above which the difference of two solutions measures the error of the coarser one."""
+NODAL_ROUNDING = 16 * 2.0**-52  # Rounding of a nodal gap, a difference of terms of order one, between the nodes
+MIN_GAP_TAIL_RTOL_FRACTION = 0.02  # Tail of the gap over rtol below which refining where it is read does not help
+ROUNDING_ERROR_RATIO = 0.5  # Error over that on the last mesh above which what is left may be noise of the nodal gaps
+MAX_NOISE_RATIO = 4.0  # Error over that noise up to which it may be
+TAIL_RELAXATION = 10.0  # Growth of mesh tolerances, twice at most, where Newton's iteration fails on a fine first mesh
+FINER_SIZE_RATIO = 1.1  # Ratio of mesh sizes above which the difference of two solutions measures the coarser one's error
 
 
 def order_for(rtol: float) -> int:
@@ -53,11 +41,9 @@ def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class RefinedState:
-    """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
+    """A refined state of ``groups`` with observables, errors and outcome."""
 
-    ``state`` is that of the groups solved for, see :func:`stribeck.solver.at_rest.with_positive_gap`; ``estimate`` is None if
-    not even a coarse state was found.
-    """
+    # ``state`` is that of the groups of with_positive_gap; ``estimate`` is None without even a coarse state.
 
     groups: Groups
     state: State | None
@@ -82,13 +68,9 @@ def converge(
     spread: float = 0.0,
     own_inverse: bool = False,
 ) -> RefinedState:
-    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
-
-    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
-    ``profile_tolerance`` is the tail of the gap between the nodes, on which no observable depends; ``spread`` is the
-    distance from its minimum up to which the gap is resolved as well as there.  With ``own_inverse`` the state holds the
-    inverse of its own Jacobian: its step, by which the iteration ends, squares what error the one before leaves.
-    """
+    """Return a guess refined until its error is at most ``rtol``, rounding stops it, or the mesh grows too large."""
+    # ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs.  With ``own_inverse`` the
+    # state holds the inverse of its own Jacobian, whose step squares the error that the one before leaves.
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
@@ -108,9 +90,9 @@ def converge(
         state = solve_state(base, Operators(mesh, base.model), guess, newton)
         if not state.outcome.ok:
             outcome = state.outcome
-            if best.state is not None or tail > COARSER * first:
+            if best.state is not None or tail > TAIL_RELAXATION * first:
                 break
-            tail, gap_tail = COARSER * tail, COARSER * gap_tail
+            tail, gap_tail = TAIL_RELAXATION * tail, TAIL_RELAXATION * gap_tail
             continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
@@ -122,22 +104,24 @@ def converge(
         film = state.equations.film
         shared = state.equations.operators.has_exit or fall_of(film, 1.0).broken
         shared |= is_rough(film)
-        if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not shared:
+        if last is not None and mesh.size >= FINER_SIZE_RATIO * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
         last = mesh.size, values.array(in_article)
         before = math.inf if best.estimate is None else best.estimate.total
         if estimate.total < before:
-            best = RefinedState(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
+            best = RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        if estimate.total <= 3 * estimate.floor or PROGRESS * before < estimate.total <= NOISES * _noise(best):
+        if estimate.total <= 3 * estimate.floor or ROUNDING_ERROR_RATIO * before < estimate.total <= MAX_NOISE_RATIO * _noise(
+            best
+        ):
             outcome = Outcome.ROUNDING
             break
         halvings += halvings_for(estimate.of_ends / rtol)
-        tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
-        between = shrink(rtol / (estimate.between_nodes + 1e-300))
+        tail *= tolerance_factor(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
+        between = tolerance_factor(rtol / (estimate.between_nodes + 1e-300))
         seen = abs(values.minimum_gap) / float(state.gap.min())  # at rest it may be a small difference of two gaps
-        if gap_tail * between >= MIN_GAP_TAIL * rtol * min(1.0, seen):
+        if gap_tail * between >= MIN_GAP_TAIL_RTOL_FRACTION * rtol * min(1.0, seen):
             gap_tail *= between
         else:
             tail *= between
@@ -148,37 +132,35 @@ def converge(
 
 
 def _noise(point: RefinedState) -> float:
-    """Return an estimate of the relative error that uneven nodal gaps on small panels may cause in the read-off gaps."""
+    """Return the relative error that rounding of nodal gaps on small panels may cause in the read gap."""
     return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
 
 
-def shrink(excess: float) -> float:
-    """Return the factor by which to reduce a mesh tolerance whose error exceeds the allowed one by 1/``excess``."""
+def tolerance_factor(excess: float) -> float:
+    """Return the factor that reduces a mesh tolerance whose error is 1/``excess`` of the allowed one."""
     return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
 
 
 def halvings_for(excess: float) -> int:
-    """Return how often the panels beside the ends of a film must be halved for their error to fall by a factor."""
+    """Return how many halvings of the panels at the film's ends reduce their error by a factor."""
     return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_GAIN))
 
 
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:
-    """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
+    """Return the state with observables and errors, converged if these are at most ``rtol``."""
     values = values_of(state, groups)
     [estimate] = error_estimates(state.stacked, [values], fine)
-    return RefinedState(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
+    return RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), fine=fine)
 
 
-def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
+def outcome_for(estimate: ErrorEstimate, rtol: float) -> Outcome:
     """Return whether an estimate is within the tolerance."""
     return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
 
 
 def newton_tolerance(rtol: float, own_inverse: bool = False) -> float:
-    """Return the size of the last Newton step, after which the error of the iteration is far below ``rtol``.
-
-    With ``own_inverse`` it is that before one more step, with the inverse of the Jacobian there, which squares the error.
-    """
+    """Return the size of the last Newton step that leaves an error far below ``rtol``."""
+    # With ``own_inverse`` another step follows with the inverse at the state, which squares the error.
     last = max(1e-11, 1e-2 * rtol)
     return math.sqrt(last) if own_inverse else last
 

@@ -32,7 +32,7 @@ from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
-from stribeck.solver.cavities.cavity_length import ruptured
+from stribeck.solver.cavities.cavity_length import cavitated_start
 from stribeck.solver.cold_start import first_paths
 from stribeck.solver.homotopy import is_lost_to_rounding
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
@@ -44,41 +44,26 @@ if TYPE_CHECKING:
     from stribeck.contacts.point import PointContact
     from stribeck.solver.point.solution import PointSolution
 
-RTOL_RANGE = (1e-11, 1e-2)
-"""Smallest and largest tolerance; double precision reaches none below."""
-
-PROFILE_TAIL = 10.0
-"""Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
-
-COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
-"""Tolerances on the way to one that cannot be reached at once."""
-
-CLOSING = (0.25, 0.1, 0.03, 0.01)
-"""Parts of what longer cavities take from the largest suction that the asked one takes, from which its change is told."""
-
-NEWTON_FAILED = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
-"""How Newton's iteration may end but by a solution."""
-
-MIN_ESTIMATE = 0.03
-"""Smallest stated error over the tolerance, as smaller estimates are not reliable."""
-
-MIN_ESTIMATE_OF_OTHERS = 0.2
-"""The same for films that end, other fluids, flow factors and solids, whose kinks finer nodes see only in part."""
+RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
+PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
+COARSE_RTOLS = (1e-2, 1e-3, 1e-4, 1e-5)  # Tolerances on the way to one that cannot be reached at once
+# A cavity too short for a mesh changes observables in proportion to what it takes from the largest suction: that fraction over
+# those of longer cavities, from which the change is extrapolated.
+CAVITY_SUCTION_RATIOS = (0.25, 0.1, 0.03, 0.01)
+NEWTON_FAILURES = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
+MIN_ESTIMATE_RTOL_FRACTION = 0.03  # Least stated error over rtol for the base model: smaller estimates are unreliable
+# Other models have kinks that finer nodes see only in part: their least stated error over rtol.
+MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS = 0.2
 
 TOO_THIN = (
     "Double precision does not hold this state: on the way to it the film falls below {:.1e} of the Hertz indentation, and "
     "gaps are known to about 4e-15 of that. No value was reached; ask for a larger speed or roughness."
 )
 
-SPIKED = 2.5
-"""Pressure coefficient times Hertz pressure above which films were seen whose pressure rises to a spike."""
-
-SURE_ESTIMATE = 1e-10
-"""Error above which estimates are reliable at smaller tolerances too."""
-
-
-TESTED = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
-"""Range in which every state is solved (``tests/test_solve_random.py``), speed and roughness zero too; beyond, many are."""
+SPIKE_PRESSURE_EXPONENT = 2.5  # Pressure coefficient times Hertz pressure above which films with a pressure spike were seen
+RELIABLE_ESTIMATE = 1e-10  # Error above which estimates are reliable whatever rtol is
+# Ranges in which every state is solved (test_solve_random.py), speed and roughness zero too; many are outside.
+TESTED_RANGES = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 
 
 class SolveError(RuntimeError):
@@ -192,7 +177,7 @@ def solve(
     return SOLVERS[groups.geometry](groups, contact, rtol, on_failure)
 
 
-def _line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> Solution:
+def _solve_line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> Solution:
     """Return the state of a line contact."""
     if groups.is_hertzian:
         if not isinstance(groups.model.solid, HalfPlane):
@@ -204,7 +189,7 @@ def _line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
 
 
-def _point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
+def _solve_point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
     """Return the state of a point contact."""
     from stribeck.solver.point.solution import finish_point
     from stribeck.solver.point.solve import solve_cold
@@ -212,13 +197,13 @@ def _point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str
     return finish_point(solve_cold(groups, rtol), contact, on_failure)
 
 
-SOLVERS: dict[str, Callable[[Groups, Contact | None, float, str], Any]] = {"line": _line, "point": _point}
-"""How one state is solved from cold, by geometry."""
+# How one state is solved from cold, by geometry.
+SOLVERS: dict[str, Callable[[Groups, Contact | None, float, str], Any]] = {"line": _solve_line, "point": _solve_point}
 
 
 def solved_point(groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from cold; raise if no path leads there."""
-    far = untested(groups)
+    far = untested_note(groups)
     # Near the limits of double precision a guess may overflow: Newton's iteration refuses it, which gives the outcome.
     with np.errstate(all="ignore") if far else nullcontext():
         try:
@@ -226,11 +211,11 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
         except InputError:  # its roughness leaves the range of groups
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}{far}") from None
         if base.model.cavitation is Cavitation.REFORM:
-            return _reforming(base, rtol)
-        return _refined(base, groups, rtol, far)
+            return _solve_reforming(base, rtol)
+        return _solve_by_paths(base, groups, rtol, far)
 
 
-def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
+def _solve_by_paths(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
     """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
     point, outcome, thinnest = None, Outcome.PATH_LOST, math.inf
     for path in first_paths(base):
@@ -239,91 +224,85 @@ def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedStat
             if is_lost_to_rounding(path):
                 thinnest = min(thinnest, float(path.states[-1].gap.min()))
             continue
-        point = _converged(path.states[-1], groups, rtol)
-        if not _not_reached(point):
+        point = _refine_in_stages(path.states[-1], groups, rtol)
+        if not _newton_failed(point):
             return point
     if point is None and thinnest < math.inf:
         raise SolveError(Outcome.ROUNDING, None, f"{describe(groups)}: {TOO_THIN.format(thinnest)}{far}")
     if point is None:
-        raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spiked(groups)}{far}")
+        raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spike_note(groups)}{far}")
     return point
 
 
-def _not_reached(point: RefinedState) -> bool:
-    """Return whether Newton's iteration failed on a mesh that the state asked for; a coarser one may have a solution."""
-    return point.state is None or point.outcome in NEWTON_FAILED
+def _newton_failed(point: RefinedState) -> bool:
+    """Return whether Newton's iteration failed on the required mesh, where a coarser one may have a solution."""
+    return point.state is None or point.outcome in NEWTON_FAILURES
 
 
-def _converged(start: State, groups: Groups, rtol: float) -> RefinedState:
-    """Return the refined state of ``groups`` from a coarse one, by larger tolerances if need be."""
+def _refine_in_stages(start: State, groups: Groups, rtol: float) -> RefinedState:
+    """Return the refined state of ``groups`` from a coarse one, through larger tolerances if need be."""
     guess = start
-    point = best = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-    for coarse in COARSER:
-        wanted = _not_reached(point) or (point.outcome is Outcome.ROUNDING and coarse < _error(best))
+    point = best = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
+    for coarse in COARSE_RTOLS:
+        wanted = _newton_failed(point) or (point.outcome is Outcome.ROUNDING and coarse < _stated_error(best))
         if coarse > rtol and wanted and (found := converge(guess, groups, coarse)).state is not None:
-            guess = found.state if _not_reached(point) else guess
-            best = found if _error(found) < _error(best) else best
+            guess = found.state if _newton_failed(point) else guess
+            best = found if _stated_error(found) < _stated_error(best) else best
     if guess is not start:
-        point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+        point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
     is_rounding = point.outcome is Outcome.ROUNDING or (best.state is not None and float(best.state.gap.min()) < THINNEST)
     # Rounding grows with the nodes: where it is what is left, a coarse mesh may know more.
-    return replace(best, outcome=Outcome.ROUNDING) if is_rounding and _error(best) < _error(point) else point
+    return replace(best, outcome=Outcome.ROUNDING) if is_rounding and _stated_error(best) < _stated_error(point) else point
 
 
-def _error(point: RefinedState) -> float:
+def _stated_error(point: RefinedState) -> float:
     """Return the stated error of a state; infinite without one."""
     return math.inf if point.estimate is None else point.estimate.total
 
 
-def _reforming(groups: Groups, rtol: float) -> RefinedState:
-    """Return the state of a film that may form anew: the full film if its pressure stays above that of the cavity.
-
-    A cavity at ambient pressure reaches to infinity.
-    """
-    model, far = groups.model, untested(groups)
+def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
+    """Return the full film if its pressure stays above the cavity pressure, else the film with a cavity."""
+    # A cavity at ambient pressure reaches to infinity.
+    model, far = groups.model, untested_note(groups)
     if model.cavity_pressure == 0.0:
         ending = replace(groups, model=replace(model, cavitation=Cavitation.EXIT))
-        return replace(_refined(ending, ending, rtol, far), groups=groups)
+        return replace(_solve_by_paths(ending, ending, rtol, far), groups=groups)
     full = replace(groups, model=replace(model, cavitation=Cavitation.NONE, cavity_pressure=0.0))
-    point = _refined(full, full, rtol, far)
+    point = _solve_by_paths(full, full, rtol, far)
     if point.state is None:
         return replace(point, groups=groups)
     if point.state.lowest_pressure >= model.cavity_pressure:
         return replace(point, groups=groups)
-    found = _ruptured(groups, point.state, rtol)
+    found = _solve_with_cavity(groups, point.state, rtol)
     if found is None or not found.outcome.ok:
-        found = _closing(groups, point, rtol)
-    return _refined(groups, groups, rtol, far) if found is None else found
+        found = _extrapolate_short_cavity(groups, point, rtol)
+    return _solve_by_paths(groups, groups, rtol, far) if found is None else found
 
 
-def _ruptured(groups: Groups, full: State, rtol: float) -> RefinedState | None:
-    """Return the state of a film with a cavity, from that of its full film; None if there is no first one."""
-    guess = ruptured(groups, full)
-    return None if guess is None else _converged(guess, groups, rtol)
+def _solve_with_cavity(groups: Groups, full: State, rtol: float) -> RefinedState | None:
+    """Return the state of a film with a cavity, from its full film; None without a coarse one."""
+    guess = cavitated_start(groups, full)
+    return None if guess is None else _refine_in_stages(guess, groups, rtol)
 
 
-def _closing(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
-    """Return the full film with the observables of one whose cavity is too short for a mesh; None if these are not known.
-
-    What a short cavity changes is in proportion to what it takes from the largest suction: two longer ones tell it, and how
-    well.
-    """
+def _extrapolate_short_cavity(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
+    """Return the full film with observables extrapolated to a cavity too short for a mesh, or None."""
     if full.state is None or full.values is None or full.estimate is None:
         return None
     deepest = full.state.lowest_pressure
     taken = 1.0 - groups.model.cavity_pressure / deepest
-    here, told, errors = full.values.array(), list[Array](), full.estimate.discretisation
-    for part in CLOSING:
+    here, changes, errors = full.values.array(), list[Array](), full.estimate.discretisation
+    for part in CAVITY_SUCTION_RATIOS:
         if taken >= part:
             break
         longer = replace(groups, model=replace(groups.model, cavity_pressure=deepest * (1.0 - taken / part)))
-        known = _ruptured(longer, full.state, rtol)
+        known = _solve_with_cavity(longer, full.state, rtol)
         if known is None or known.values is None or known.estimate is None or not known.outcome.ok:
             continue
-        told.append(part * (known.values.array() - here))
-        if len(told) == 2:
-            changed = here + told[0]
-            missed = SAFETY * np.abs(told[1] - told[0])
+        changes.append(part * (known.values.array() - here))
+        if len(changes) == 2:
+            changed = here + changes[0]
+            missed = SAFETY * np.abs(changes[1] - changes[0])
             estimate = replace(full.estimate, discretisation=errors + missed)
             if not estimate.total <= rtol:
                 return None
@@ -353,7 +332,7 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
 
 
 def check_rtol(rtol: Any) -> float:
-    """Return a tolerance, a number of any type, as a float; refuse what is no number or out of range."""
+    """Return a tolerance as a float, or refuse one that is no number or out of range."""
     low, high = RTOL_RANGE
     is_real = isinstance(rtol, Real) and not isinstance(rtol, bool)
     if not is_real or not low <= rtol <= high:
@@ -366,20 +345,20 @@ def describe(groups: Groups) -> str:
     return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
 
 
-def untested(groups: Groups) -> str:
-    """Return a sentence on groups outside the tested range, to end a message of failure; empty for others."""
+def untested_note(groups: Groups) -> str:
+    """Return the end of a failure message for groups outside the tested range, else an empty string."""
     outside = []
-    for name, (low, high) in TESTED.items():
+    for name, (low, high) in TESTED_RANGES.items():
         value = float(getattr(groups, name))
         if value != 0 and not low <= value <= high:
             outside.append(f"{name.replace('_', ' ')} {value:.4g} (tested: {low:g} to {high:g})")
     return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
 
 
-def spiked(groups: Groups) -> str:
-    """Return a sentence on the pressure spike of a fluid that stiffens much, to end a message of failure; empty for others."""
+def spike_note(groups: Groups) -> str:
+    """Return the end of a failure message for a fluid with a pressure spike, else an empty string."""
     a = groups.model.film.parameters.get("pressure_coefficient", 0.0)
-    if not isinstance(a, float) or a <= SPIKED:
+    if not isinstance(a, float) or a <= SPIKE_PRESSURE_EXPONENT:
         return ""
     return (
         f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
@@ -395,14 +374,16 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
         return solution
     reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {rtol:.1e}."
     raise SolveError(
-        point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{spiked(groups)}{untested(groups)}"
+        point.outcome,
+        solution,
+        f"{describe(groups)}: {point.outcome.value}{reached}{spike_note(groups)}{untested_note(groups)}",
     )
 
 
 def minimum_estimate(rtol: float, model: Model) -> float:
-    """Return the smallest stated error for a tolerance, with the model of the article or another."""
-    least = MIN_ESTIMATE if model == BASE_MODEL else MIN_ESTIMATE_OF_OTHERS
-    return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
+    """Return the smallest stated error for a tolerance and a model."""
+    least = MIN_ESTIMATE_RTOL_FRACTION if model == BASE_MODEL else MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS
+    return max(least * rtol, min(RELIABLE_ESTIMATE, 0.3 * rtol))
 
 
 def stated_errors(point: RefinedState, rtol: float) -> Array:
@@ -445,7 +426,7 @@ def state_notes(
     floor: float,
     rtol: float,
 ) -> tuple[str, ...]:
-    """Return the notes on a state; ``state()`` is called for its pressures only, ``floor`` is the error by rounding."""
+    """Return the notes on a state, whose pressures ``state()`` gives and whose rounding is ``floor``."""
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
     if groups.speed > 0 and (contact is not None or groups.model != BASE_MODEL):
         solved = state()

@@ -32,7 +32,7 @@ from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
+from stribeck.solver.point.level import PROBLEMS, Level, extrapolate_levels, solve_level, transfer
 from stribeck.solver.point.refinement import (
     CENTRE_SAFETY,
     KINK_LOAD_SAFETY,
@@ -182,7 +182,7 @@ def _first_panels(speed: float, law: ContactLaw, guess: Level, model: Model) -> 
     base = resolution(speed, law, degree, few, model)
     if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
         mesh = base.mesh
-        gap = moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap
+        gap = transfer(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap
         contact = law.pressure(gap)
         return with_closing(split_where_poor(base, mesh, np.zeros_like(contact), contact), mesh, gap)
     found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
@@ -257,7 +257,7 @@ def follow_cavitated(
     now, weights = neighbour.fine.resolution, [weight for weight, _ in line]
 
     def predicted(name: str, mesh: PolarMesh) -> Unknowns:
-        return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
+        return extrapolate_levels(weights, [getattr(pair, name) for _, pair in line], mesh)
 
     serves, mesh_level = fits(now, speed, law, MIN_PANEL_LOG2), _mesh_level(neighbour)
     lowest, fewer = 1 if serves else _first_mesh_level(rtol, speed, law, now.model), MESH_LEVELS[mesh_level - 1][1]
@@ -287,8 +287,8 @@ def follow_cavitated(
 def _guess_from_coarse(coarse: Level, neighbour: Pair) -> Unknowns:
     """Return the guess on the finer mesh from the coarse state plus the neighbour's coarse-fine difference."""
     old, mesh, least = neighbour.fine.unknowns, neighbour.fine.mesh, coarse.equations.least
-    carried = moved(coarse.unknowns, coarse.mesh, mesh, least)
-    known = moved(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh, least)
+    carried = transfer(coarse.unknowns, coarse.mesh, mesh, least)
+    known = transfer(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh, least)
     fluid = np.maximum(carried.fluid + old.fluid - known.fluid, just_above(least))
     return Unknowns(
         carried.gap * (old.gap / known.gap),

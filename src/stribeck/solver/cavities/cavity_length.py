@@ -34,61 +34,43 @@ from stribeck.solver.homotopy import (
     settled,
 )
 
-__all__ = ["paths_to_cavity", "ruptured"]
+__all__ = ["paths_to_cavity", "cavitated_start"]
 
-LOOKED_AT = 4001
-"""Lengths of cavities behind an exit that are looked at."""
-
-PLACES, HALVINGS = (8, 64), 50
-"""Places for each node, the second for short ones, and halvings of the range of the flux, with which a cavity in the gap of
-the full film is sought."""
-
-FIRST_SUCTION = 0.3
-"""Largest first suction of the cavity behind an exit, over the largest with which a film could begin anew."""
-
-LONGEST, SHORTEST = 0.7, 1e-4
-"""Longest and shortest step in the logarithm of the length."""
-
-FIRST_SLOPE, LEAST_SLOPE = -1.0, -0.01
-"""First slope behind an exit, and smallest, of the logarithm of the suction by that of the length."""
-
-FEW_STEPS = 8
-"""Newton steps after which a state lies on a mesh that was made for another: it is solved once more."""
-
-NEAR = 0.02
-"""Difference of the logarithms of two pressures between which Newton's iteration may find the length."""
-
-MOST_STEPS = 100
-"""Newton steps with a given length, whose steps are short."""
-
-MOST_LENGTHS = 20
-"""Lengths after which a cavity is given up."""
+SCAN_POINTS = 4001  # Lengths of cavities behind an exit that are compared
+POINTS_PER_NODE = (8, 64)  # Resolutions at which a cavity is sought in the gap of the full film, the second for short ones
+MAX_BISECTIONS = 50  # Bisections of the flux with which a cavity is sought in the gap of the full film
+FIRST_SUCTION_RATIO = 0.3  # First suction of the cavity behind an exit over the largest with which the film could reform
+MAX_LOG_LENGTH_STEP = 0.7  # Longest step in the logarithm of a cavity's length
+MIN_LOG_LENGTH_STEP = 1e-4  # Step in the logarithm of a cavity's length below which it is given up
+FIRST_LOG_SLOPE = -1.0  # First slope of ln suction by ln length behind an exit
+MAX_LOG_SLOPE = -0.01  # Slope of ln suction by ln length that is at least assumed: suction falls with the length
+REMESH_AFTER_STEPS = 8  # Newton steps after which a state is solved once more on a mesh adapted to it
+FREE_LENGTH_LOG_PRESSURE = 0.02  # Log pressure difference below which the length becomes an unknown of Newton's iteration
+MAX_STEPS_FIXED_LENGTH = 100  # Newton steps with a fixed length, which are short
+MAX_LENGTHS = 20  # Lengths tried before a cavity is given up
 
 
 def paths_to_cavity(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
-    """Yield paths to a film that begins anew, as :func:`paths_to_model` does: each to its film that ends, then behind that."""
+    """Yield paths to a film that reforms, each through its film with an exit."""
     ending = replace(groups.model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)
     for path in paths_to_model(replace(groups, model=ending), article):
-        found = _behind_exit(groups, path.states[-1]) if path.outcome.ok else None
+        found = _start_behind_exit(groups, path.states[-1]) if path.outcome.ok else None
         if found is not None:
             yield extended(path, found)
         else:
             yield replace(path, outcome=Outcome.PATH_LOST) if path.outcome.ok else path
 
 
-def ruptured(groups: Groups, full: State) -> State | None:
-    """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None."""
-    found = next(filter(None, (_in_gap(groups, full, places) for places in PLACES)), None)
-    return None if found is None else _of_pressure(groups, *found, full.lowest_pressure)
+def cavitated_start(groups: Groups, full: State) -> State | None:
+    """Return a coarse state with a cavity from the full film of the same groups, or None."""
+    found = next(filter(None, (_cavity_in_gap(groups, full, places) for places in POINTS_PER_NODE)), None)
+    return None if found is None else _find_length(groups, *found, full.lowest_pressure)
 
 
-def _in_gap(groups: Groups, full: State, places: int = PLACES[0]) -> tuple[SeenFrom, float] | None:
-    """Return the cavity in the gap of the full film, or None if the pressure does not fall to that of the cavity there.
-
-    The film ruptures where the pressure no longer falls, at the flux with which it is that of the cavity there; it begins anew
-    where the pressure, integrated from behind with the same flux, has fallen so far.  The second value is the slope of the
-    logarithm of the suction by that of the length.
-    """
+def _cavity_in_gap(groups: Groups, full: State, places: int = POINTS_PER_NODE[0]) -> tuple[SeenFrom, float] | None:
+    """Return the cavity in the gap of the full film and its slope of ln suction by ln length, or None."""
+    # The film ruptures where the pressure no longer falls, at the flux that gives it the cavity pressure there; it reforms
+    # where the pressure, integrated from behind at that flux, has fallen as far.
     nodes, film, wanted = full.mesh.nodes[: -full.mesh.order], full.equations.film, groups.model.cavity_pressure
     x = np.interp(np.arange(0, nodes.size - 1, 1 / places), np.arange(nodes.size), nodes)
     log_gap, pressure = full.fields(x)
@@ -105,7 +87,7 @@ def _in_gap(groups: Groups, full: State, places: int = PLACES[0]) -> tuple[SeenF
         return at, float(pressure[0] + change[:at].sum())
 
     low, high = float(gap.min()), full.flux_gap
-    for _ in range(HALVINGS):
+    for _ in range(MAX_BISECTIONS):
         flux_gap = 0.5 * (low + high)
         low, high = (flux_gap, high) if rupture(flux_gap)[1] > wanted else (low, flux_gap)
     at = rupture(flux_gap)[0]
@@ -118,28 +100,24 @@ def _in_gap(groups: Groups, full: State, places: int = PLACES[0]) -> tuple[SeenF
     return SeenFrom(full, float(x[at]), length, wanted, flux=flux_gap), change / float(x[end + 1] - x[end]) * length / wanted
 
 
-def _behind_exit(groups: Groups, state: State) -> State | None:
-    """Return a coarse state of groups from that of their film that ends at ambient pressure, or None.
-
-    That shows where it would begin anew: where the suction of the film behind equals that of the cavity.
-    """
-    distance = np.geomspace(1e-4, 1e4, LOOKED_AT) * math.sqrt(1.0 + float(state.gap.min()))
+def _start_behind_exit(groups: Groups, state: State) -> State | None:
+    """Return a coarse state with a cavity from the film with an exit at ambient pressure, or None."""
+    # The film reforms about where the suction of the film behind the exit equals that of the cavity.
+    distance = np.geomspace(1e-4, 1e4, SCAN_POINTS) * math.sqrt(1.0 + float(state.gap.min()))
     gap = np.exp(state.fields(distance)[0])
     film, flux = state.equations.film, state.flux_gap
     slopes = film.gradient(gap, np.zeros_like(gap) if film.uses_pressure else None, flux) * float(groups.speed)
     cells = 0.5 * (slopes[1:] + slopes[:-1]) * np.diff(distance)
     suction = np.append(np.cumsum(cells[::-1])[::-1], 0.0)
-    first = min(-groups.model.cavity_pressure, FIRST_SUCTION * float(suction.max()))
+    first = min(-groups.model.cavity_pressure, FIRST_SUCTION_RATIO * float(suction.max()))
     length = float(distance[np.flatnonzero(suction >= first)[-1]])
-    return _of_pressure(groups, SeenFrom(state, state.exit, length, -first), FIRST_SLOPE)
+    return _find_length(groups, SeenFrom(state, state.exit, length, -first), FIRST_LOG_SLOPE)
 
 
-def _of_pressure(groups: Groups, guess: SeenFrom, slope: float, deepest: float = -math.inf) -> State | None:
-    """Return a coarse state whose cavity has the pressure of the groups, from a guess with a cavity of some length.
-
-    ``slope`` is about that of the logarithm of the suction by that of the length; ``deepest`` is the lowest pressure of the
-    full film, from which that of a short cavity differs as the square of its length.
-    """
+def _find_length(groups: Groups, guess: SeenFrom, slope: float, deepest: float = -math.inf) -> State | None:
+    """Return a coarse state whose cavity has the required pressure, from a guess with some length, or None."""
+    # ``slope`` is about that of ln suction by ln length; ``deepest`` is the lowest pressure of the full film, from which that
+    # of a short cavity differs as the square of its length.
 
     def place(pressure: float) -> float:
         return math.log(-pressure) - math.log1p(-pressure / deepest)
@@ -148,43 +126,43 @@ def _of_pressure(groups: Groups, guess: SeenFrom, slope: float, deepest: float =
     slope /= 1.0 - groups.model.cavity_pressure / deepest
     lengths, pressures, exits = [], [], []
     last, step, drift = None, 0.0, 0.0
-    for _ in range(MOST_LENGTHS):
-        state = _of_length(groups, guess)
-        if state is not None and state.root.steps > FEW_STEPS:
-            state = _of_length(groups, SeenFrom(state, state.exit, guess.restart, state.groups.model.cavity_pressure))
+    for _ in range(MAX_LENGTHS):
+        state = _solve_at_length(groups, guess)
+        if state is not None and state.root.steps > REMESH_AFTER_STEPS:
+            state = _solve_at_length(groups, SeenFrom(state, state.exit, guess.restart, state.groups.model.cavity_pressure))
         if state is not None and deepest < state.groups.model.cavity_pressure < 0:
             last = state
             lengths.append(math.log(guess.restart))
             pressures.append(place(state.groups.model.cavity_pressure))
             exits.append(state.exit)
             missing = wanted - pressures[-1]
-            found = settled(groups, state) if abs(missing) < NEAR else None
+            found = settled(groups, state) if abs(missing) < FREE_LENGTH_LOG_PRESSURE else None
             if found is not None and found.prediction_error <= SETTLED:
                 return found
             if len(lengths) > 1:
                 apart = lengths[-1] - lengths[-2]
                 slope, drift = (pressures[-1] - pressures[-2]) / apart, (exits[-1] - exits[-2]) / apart
-            step = missing / min(slope, LEAST_SLOPE)
-            step = math.copysign(min(LONGEST, abs(step)), step)
+            step = missing / min(slope, MAX_LOG_SLOPE)
+            step = math.copysign(min(MAX_LOG_LENGTH_STEP, abs(step)), step)
             short = max((a for a, p in zip(lengths, pressures, strict=True) if p > wanted), default=-math.inf)
             long = min((a for a, p in zip(lengths, pressures, strict=True) if p <= wanted), default=math.inf)
             if not short < lengths[-1] + step < long:
                 step = 0.5 * (short + long) - lengths[-1]
         else:
             step *= 0.5
-        if last is None or abs(step) < SHORTEST:
+        if last is None or abs(step) < MIN_LOG_LENGTH_STEP:
             return None
         length = math.exp(lengths[-1] + step)
         guess = SeenFrom(last, last.exit + drift * step, length, last.groups.model.cavity_pressure)
     return None
 
 
-def _of_length(groups: Groups, guess: SeenFrom) -> State | None:
-    """Return a coarse state with a cavity of the length of the guess, or None."""
+def _solve_at_length(groups: Groups, guess: SeenFrom) -> State | None:
+    """Return a coarse state whose cavity has the length of the guess, or None."""
     here = replace(groups, model=replace(groups.model, cavity_pressure=guess.cavity_pressure))
     try:
         mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE, anew=False)
     except MeshTooLargeError:
         return None
-    state = solve_of_length(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
+    state = solve_of_length(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE, MAX_STEPS_FIXED_LENGTH)
     return state if state.outcome.ok else None

@@ -16,8 +16,7 @@ from stribeck.solver.point.refinement import Pair, follow, holds_along_path, ref
 
 __all__ = ["follow_reforming", "full_model", "holds_reforming", "refine_reforming"]
 
-NEARLY = 1.1
-"""Suction of a coarse full film over that of the cavity below which the full film is tried first."""
+FULL_FILM_SUCTION_RATIO = 1.1  # Suction of a coarse full film over the cavity's below which the full film is tried first
 
 
 def full_model(model: Model) -> Model:
@@ -28,60 +27,57 @@ def full_model(model: Model) -> Model:
 def refine_reforming(
     speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
 ) -> Pair | Outcome:
-    """Return a state whose estimated error holds a tolerance from a coarse one, or the best that was found.
-
-    ``known`` is the state with a larger error.
-    """
-    full = guess.named(full_model(model))
+    """Return a state that holds a tolerance, from a coarse one or a ``known`` one with a larger error, or the best found."""
+    full = guess.relabelled(full_model(model))
     if known is not None and not isinstance(known.fine.equations, TornEquations):
-        return _full(speed, law, full, rtol, model, known) or refine_cavitated(speed, law, guess, rtol, model)
-    if known is None and guess.unknowns.fluid.min() >= NEARLY * model.cavity_pressure:
-        found = _full(speed, law, full, rtol, model)
+        return _refine_full_film(speed, law, full, rtol, model, known) or refine_cavitated(speed, law, guess, rtol, model)
+    if known is None and guess.unknowns.fluid.min() >= FULL_FILM_SUCTION_RATIO * model.cavity_pressure:
+        found = _refine_full_film(speed, law, full, rtol, model)
         if found is not None:
             return found
-    torn = refine_cavitated(speed, law, guess, rtol, model, known)
-    if not isinstance(torn, Pair):
-        return torn
-    if torn.outcome.ok and not is_cavitated(torn):
-        return _full(speed, law, torn.fine.named(full.resolution.model), rtol, model) or torn
-    reaches_rim = bool((torn.fine.unknowns.fluid[:, -1] <= model.cavity_pressure).any())
-    return replace(torn, outcome=Outcome.MESH_LIMIT) if reaches_rim else torn
+    cavitated = refine_cavitated(speed, law, guess, rtol, model, known)
+    if not isinstance(cavitated, Pair):
+        return cavitated
+    if cavitated.outcome.ok and not is_cavitated(cavitated):
+        return _refine_full_film(speed, law, cavitated.fine.relabelled(full.resolution.model), rtol, model) or cavitated
+    reaches_rim = bool((cavitated.fine.unknowns.fluid[:, -1] <= model.cavity_pressure).any())
+    return replace(cavitated, outcome=Outcome.MESH_LIMIT) if reaches_rim else cavitated
 
 
 def follow_reforming(
     speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
 ) -> Pair | None:
-    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
-
-    ``line`` holds neighbours, and the weights with which they predict the state; only those that break like the first count.
-    """
-    model, breaks = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, TornEquations)
-    if any(isinstance(each.fine.equations, TornEquations) is not breaks for _, each in line):
+    """Return the state of other groups from a neighbour, on its meshes if they serve; None if the iteration fails."""
+    # Of the states in ``line`` that predict this one, only those that cavitate like the neighbour count.
+    model, is_cavitated_film = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, TornEquations)
+    if any(isinstance(each.fine.equations, TornEquations) is not is_cavitated_film for _, each in line):
         line = ()
-    if breaks:
+    if is_cavitated_film:
         found = follow_cavitated(speed, law, neighbour, rtol, line)
         if found is None or is_cavitated(found):
             return found
-        return _full(speed, law, found.fine.named(full_model(model)), rtol, model)
+        return _refine_full_film(speed, law, found.fine.relabelled(full_model(model)), rtol, model)
     full = full_model(model)
-    found = follow(speed, law, neighbour.named(full), rtol, [(weight, each.named(full)) for weight, each in line])
+    found = follow(speed, law, neighbour.relabelled(full), rtol, [(weight, each.relabelled(full)) for weight, each in line])
     if found is None or not found.outcome.ok:
         return None
     if found.fine.unknowns.fluid.min() >= model.cavity_pressure:
-        return found.named(model)
-    torn = refine_cavitated(speed, law, found.fine, rtol, model)
-    return torn if isinstance(torn, Pair) and torn.outcome.ok else None
+        return found.relabelled(model)
+    cavitated = refine_cavitated(speed, law, found.fine, rtol, model)
+    return cavitated if isinstance(cavitated, Pair) and cavitated.outcome.ok else None
 
 
 def holds_reforming(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state along a path hold a tolerance."""
-    breaks = isinstance(pair.fine.equations, TornEquations)
-    return holds_cavitated(pair, rtol) if breaks else holds_along_path(pair, rtol)
+    is_cavitated_film = isinstance(pair.fine.equations, TornEquations)
+    return holds_cavitated(pair, rtol) if is_cavitated_film else holds_along_path(pair, rtol)
 
 
-def _full(speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None) -> Pair | None:
-    """Return the full film, named as the model; None where its suction exceeds that of the cavity, or it is not found."""
-    found = refine(speed, law, guess, rtol, None if known is None else known.named(guess.resolution.model))
+def _refine_full_film(
+    speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
+) -> Pair | None:
+    """Return the full film relabelled with the model, or None if its suction exceeds the cavity's or none is found."""
+    found = refine(speed, law, guess, rtol, None if known is None else known.relabelled(guess.resolution.model))
     if not isinstance(found, Pair) or not found.fine.unknowns.fluid.min() >= model.cavity_pressure:
         return None
-    return found.named(model)
+    return found.relabelled(model)

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
     from stribeck.solver.point.solution import PointSolution
 
-MOST_POINTS = 2001
+MAX_POINTS = 2001  # Points along a side: a file of more would take gigabytes
 
 
 def field_dataset(solution: PointSolution, points: int, reach: float) -> xarray.Dataset:
     """Return the fields on a square of ``points`` by ``points`` that reaches ``reach`` Hertz radii from the centre."""
-    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MOST_POINTS:
-        raise InputError(f"points = {show(points)}; it must be a whole number from 2 to {MOST_POINTS}.")
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MAX_POINTS:
+        raise InputError(f"points = {show(points)}; it must be a whole number from 2 to {MAX_POINTS}.")
     if isinstance(reach, bool) or not isinstance(reach, int | float) or not (reach > 0 and math.isfinite(reach)):
         raise InputError(f"reach = {show(reach)}; it must be a positive number of Hertz radii.")
     along = np.linspace(-reach, reach, points)

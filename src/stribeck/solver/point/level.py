@@ -23,6 +23,11 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 
+THINNING_BAND = 8  # Angular modes that the preconditioner couples where a fluid thins
+NEWTONIAN_SPEED_RATIO = 0.8  # Speed of an equally thick Newtonian film over the actual one above which a film hardly thins
+CAVITATION_BAND_CUT = 3  # Modes fewer in a cavitated film's band: cavitated nodes take most of the GMRES steps anyhow
+COUPLED_BELOW_SPEED = 1e-2  # The band is not cut below this speed in smooth contacts: GMRES would take 3 to 10 times the steps
+
 
 @dataclass(frozen=True, eq=False)
 class Level:
@@ -47,12 +52,12 @@ class Level:
         """How the iteration ended."""
         return self.iterated.outcome
 
-    def named(self, model: Model) -> Level:
-        """Return the level as one from which states of a model start."""
+    def relabelled(self, model: Model) -> Level:
+        """Return the level relabelled with a model whose states start from it."""
         return replace(self, resolution=replace(self.resolution, model=model))
 
-    def light(self) -> Level:
-        """Return the level without the factors of its matrices and the operators of its mesh, which fill the memory."""
+    def without_operators(self) -> Level:
+        """Return the level without the operators and factors that fill the memory."""
         op = self.equations.operators
         equations = replace(self.equations, operators=Operators(op.mesh, op.solid))
         return replace(self, equations=equations, iterated=replace(self.iterated, preconditioner=None))
@@ -72,31 +77,21 @@ class Level:
         return self.equations.law.pressure(self.unknowns.gap)
 
 
-THINNED, LITTLE = 8, 0.8
-"""Band where a fluid thins, and the speed of a Newtonian film as thick over that of the film from which it does so little."""
-
-
-TORN, COUPLED = 3, 1e-2
-"""By how much the band of a film that breaks is narrower: steps of GMRES are as many, as the torn nodes take most of them; and
-the speed below which films thicker than roughness couple so many modes that they are three to ten times as many."""
-
-
 def band_for(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> int:
-    """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
+    """Return the band of angular modes that the preconditioner keeps."""
+    # Thin films of smooth contacts couple more modes.
     like = film_speed(speed, model)
-    band = 5 if like > LITTLE * speed else THINNED
+    band = 5 if like > NEWTONIAN_SPEED_RATIO * speed else THINNING_BAND
     is_smooth = float(np.max(law.decay_length)) <= like**0.6
     if is_smooth and like < 1e-3:
         band = max(band, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
-    narrows = model.cavitation is not Cavitation.NONE and not (is_smooth and like < COUPLED)
-    return band - TORN if narrows else band
+    narrows = model.cavitation is not Cavitation.NONE and not (is_smooth and like < COUPLED_BELOW_SPEED)
+    return band - CAVITATION_BAND_CUT if narrows else band
 
 
-def moved(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
-    """Return unknowns on another mesh; beyond the rim of the old one the gap grows as r**2 and the pressure falls as r**-3.
-
-    Nodes are torn where the nearest one of the old mesh has the pressure ``least``.
-    """
+def transfer(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
+    """Return unknowns on another mesh, with nodes cavitated where the nearest old one has the pressure ``least``."""
+    # Beyond the rim of the old mesh the gap grows as r**2 and the pressure falls as r**-3.
     if old is new:
         return y
     beyond = np.maximum(1.0, new.radii / old.rim)
@@ -123,10 +118,7 @@ def solve_level(
     largest: float = MOST_BYTES,
     predicted: Unknowns | None = None,
 ) -> Level:
-    """Return the state of one speed and law on a mesh, from unknowns on that or another mesh.
-
-    Where there is a preconditioner, the start is the better one of these unknowns and those ``predicted`` on the mesh.
-    """
+    """Return the state on a mesh, from unknowns on any mesh or those ``predicted`` on this one, whichever is closer."""
     band = band_for(speed, law, resolution.model)
     if bytes_of(resolution, band) > largest:
         raise MeshTooLargeError
@@ -135,7 +127,7 @@ def solve_level(
     equations = kind(operators, speed, law, plane_of(resolution.model.film.at(speed)))
     if resolution.model.cavity_pressure:
         equations = replace(equations, least=resolution.model.cavity_pressure)
-    guess = moved(start, start_mesh, operators.mesh, equations.least)
+    guess = transfer(start, start_mesh, operators.mesh, equations.least)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
     if predicted is not None and kept is not None:
@@ -143,17 +135,17 @@ def solve_level(
     return Level(resolution, equations, iteration(equations, guess, tolerance, band, kept, max_steps))
 
 
+# The equations and the iteration that solves them, by cavitation.
 PROBLEMS: dict[Cavitation, tuple[type[Equations], Callable[..., Iterated]]] = {
     Cavitation.NONE: (Equations, iterate),
     Cavitation.EXIT: (CavitatedEquations, iterate_cavitated),
     Cavitation.REFORM: (ReformingEquations, iterate_cavitated),
 }
-"""The equations and what solves them, by how the film ends."""
 
 
-def extrapolated(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:
-    """Return the weighted sum of states on a mesh: of the logarithms of their gaps, the pressures and the offsets."""
-    parts = [moved(level.unknowns, level.mesh, mesh, level.equations.least) for level in levels]
+def extrapolate_levels(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:
+    """Return the weighted sum of states on a mesh, in the logarithms of their gaps, the pressures and the offsets."""
+    parts = [transfer(level.unknowns, level.mesh, mesh, level.equations.least) for level in levels]
     log_gap = sum(w * np.log(part.gap) for w, part in zip(weights, parts, strict=True))
     fluid = sum(w * part.fluid for w, part in zip(weights, parts, strict=True))
     offset = sum(w * part.offset for w, part in zip(weights, parts, strict=True))

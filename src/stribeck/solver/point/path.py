@@ -14,22 +14,17 @@ from stribeck.solver.point.state import PointState
 
 __all__ = ["NeighbourSolver", "next_state", "without_factors"]
 
-ORDER = 2
-"""Degree of the polynomial that predicts a state from those around it."""
-
-LARGEST_WEIGHTS = 8.0
-"""Sum of the absolute weights of a prediction above which it is not used."""
-
-REACH = 3.5
-"""Distance in logarithms within which a neighbour is a useful start."""
+PREDICTION_ORDER = 2  # Degree of the polynomial that predicts a state from its neighbours
+MAX_WEIGHT_SUM = 8.0  # A prediction with larger weights amplifies the neighbours' errors and is not used
+MAX_LOG_DISTANCE = 3.5  # A neighbour farther than this in the logarithms of its groups is no useful start
 
 
 def without_factors(state: PointState) -> PointState:
-    """Return a state that neighbours may still start from, without what fills the memory."""
+    """Return a state without the factors that fill the memory, from which neighbours may still start."""
     pair = state.work
     if not isinstance(pair, Pair):
         return state
-    return replace(state, work=replace(pair, coarse=pair.coarse.light(), fine=pair.fine.light()))
+    return replace(state, work=replace(pair, coarse=pair.coarse.without_operators(), fine=pair.fine.without_operators()))
 
 
 def next_state(
@@ -39,11 +34,8 @@ def next_state(
     line: Sequence[tuple[float, PointState]] = (),
     predicted: Unknowns | None = None,
 ) -> PointState:
-    """Return the state of ``groups`` from a neighbour, or from cold if there is none or it fails.
-
-    ``line`` has states, and the weights with which they predict this one; ``predicted`` is a prediction on the finer mesh of
-    the neighbour.
-    """
+    """Return the state of ``groups`` from a neighbour, or from cold without one or if it fails."""
+    # ``line`` holds weights and states whose sum predicts this one; ``predicted`` lies on the neighbour's finer mesh.
     if start is None:
         return solve_cold(groups, rtol)
     state = solve_from(start, groups, rtol, line, predicted)
@@ -54,7 +46,7 @@ def next_state(
 
 
 class NeighbourSolver:
-    """Solves the states of a coordinate in any order, and keeps them."""
+    """Solves states along a coordinate in any order, each from the nearest one, and keeps them."""
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
         self.groups_at, self.rtol = groups_at, rtol
@@ -72,8 +64,8 @@ class NeighbourSolver:
         return state
 
     def _start(self, s: float) -> PointState | None:
-        """Return the nearest state that is solved, the last one with its factors; None where none is near."""
-        near = [(abs(c - s), state) for c, state in self.states.items() if abs(c - s) <= REACH]
+        """Return the nearest solved state, preferably the last one with its factors, or None."""
+        near = [(abs(c - s), state) for c, state in self.states.items() if abs(c - s) <= MAX_LOG_DISTANCE]
         if not near:
             return None
         distance, state = min(near, key=lambda pair: pair[0])
@@ -82,13 +74,13 @@ class NeighbourSolver:
         return state
 
     def _line(self, s: float) -> list[tuple[float, PointState]]:
-        """Return the nearest states that move, and the weights with which they predict another."""
+        """Return the nearest sliding states with the weights that extrapolate them."""
         moving = [c for c, state in self.states.items() if isinstance(state.work, Pair)]
-        near = sorted((abs(c - s), c) for c in moving if abs(c - s) <= REACH)
-        places = [c for _, c in near[: ORDER + 1]]
+        near = sorted((abs(c - s), c) for c in moving if abs(c - s) <= MAX_LOG_DISTANCE)
+        places = [c for _, c in near[: PREDICTION_ORDER + 1]]
         if len(places) < 2:
             return []
         weights = extrapolation_weights(places, s).tolist()
-        if sum(abs(weight) for weight in weights) > LARGEST_WEIGHTS:
+        if sum(abs(weight) for weight in weights) > MAX_WEIGHT_SUM:
             return []
         return [(weight, self.states[c]) for weight, c in zip(weights, places, strict=True)]

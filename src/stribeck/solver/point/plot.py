@@ -39,25 +39,16 @@ __all__ = ["interference", "plot_field", "plot_point_solution"]
 
 Colours = Literal["film", "interference"]
 
-BANDS = (610e-9, 540e-9, 465e-9)
-"""Wavelengths of red, green and blue light in air [m]."""
-
-BANDWIDTH = 40e-9
-"""Width of each band [m]: fringes fade after about seven."""
-
-INDEX = 1.40
-"""Refractive index of the fluid: water has 1.33, glycerol 1.47, oils 1.45 to 1.5."""
-
-REACH = 1.6
-"""Half the side of the maps [a]."""
-
-POINTS = 241
-"""Points along a side of the maps."""
+BANDS = (610e-9, 540e-9, 465e-9)  # Wavelengths of red, green and blue light in air [m]
+BANDWIDTH = 40e-9  # Width of each band [m]: fringes fade after about seven
+REFRACTIVE_INDEX = 1.40  # Of the fluid: water has 1.33, glycerol 1.47, oils 1.45 to 1.5
+HALF_SIDE = 1.6  # Half the side of the maps [a]
+SIDE_POINTS = 241  # Points along a side of the maps
 
 SIZE = (10.0, 8.6)
 
 
-def interference(gap: Any, index: float = INDEX) -> Array:
+def interference(gap: Any, index: float = REFRACTIVE_INDEX) -> Array:
     """Return the colours that a film shows between a coated glass and a reflecting ball."""
     path = index * np.maximum(np.asarray(gap, dtype=float), 0.0)[..., None]
     waves = np.array(BANDS)
@@ -96,16 +87,16 @@ def plot_point_solution(
     )
     if others:
         film.get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
-    along = np.linspace(-REACH, REACH, POINTS)
+    along = np.linspace(-HALF_SIDE, HALF_SIDE, SIDE_POINTS)
     field = solution.field(along, along[:, None])
     to_x, to_gap, to_pressure = _scales(solution, 3 * abs(solution.central_gap))
-    edge = REACH * to_x[0]
+    edge = HALF_SIDE * to_x[0]
     extent = (-edge, edge, -edge, edge)
     if colours == "interference":
         assert solution.contact is not None
         shown = interference(field.gap * solution.contact.hertz.indentation)
         film.imshow(shown, origin="lower", extent=extent, interpolation="bilinear")
-        film.set_title(f"interference colours, refractive index {INDEX:g}", size=9.5, color=INK)
+        film.set_title(f"interference colours, refractive index {REFRACTIVE_INDEX:g}", size=9.5, color=INK)
     else:
         _film_map(figure, film, field.gap * to_gap[0], extent, to_gap[1])
     if others:
@@ -207,7 +198,7 @@ def _cut(
     to_pressure: tuple[float, str],
 ) -> None:
     """Draw gap and pressures along the middle line."""
-    x = np.linspace(-REACH, REACH, 801)
+    x = np.linspace(-HALF_SIDE, HALF_SIDE, 801)
     cut = solution.profile(x)
     draw_gap(gap, solution, x * to_x[0], cut.gap, to_gap)
     gap.tick_params(labelbottom=True)

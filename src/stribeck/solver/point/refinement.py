@@ -36,7 +36,7 @@ from stribeck.equations.state import closed_gap
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
+from stribeck.solver.point.level import Level, band_for, extrapolate_levels, solve_level, transfer
 from stribeck.solver.refinement import newton_tolerance
 
 COARSEN_BELOW = 0.03  # Stated error over rtol below which a coarser mesh than the neighbour's is looked for
@@ -95,9 +95,9 @@ class Pair:
     steps: int
     krylov_steps: int
 
-    def named(self, model: Model) -> Pair:
+    def relabelled(self, model: Model) -> Pair:
         """Return the pair relabelled with a model whose states start from it."""
-        return replace(self, coarse=self.coarse.named(model), fine=self.fine.named(model))
+        return replace(self, coarse=self.coarse.relabelled(model), fine=self.fine.relabelled(model))
 
     @property
     def total(self) -> float:
@@ -450,15 +450,15 @@ def follow(
     if predicted is not None:
         start, start_mesh = predicted, neighbour.fine.mesh
     elif line and keeps:
-        summed = extrapolated([w for w, _ in line], [pair.coarse for _, pair in line], known.mesh)
+        summed = extrapolate_levels([w for w, _ in line], [pair.coarse for _, pair in line], known.mesh)
     coarse = solve_level(rough, speed, law, start, start_mesh, tolerance, kept_coarse, 12, predicted=summed)
     if not coarse.outcome.ok:
         return None
     guess, mesh = coarse.unknowns, coarse.mesh
     if keeps:  # the difference of the finer mesh from the coarser one is that of the neighbour
         mesh = neighbour.fine.mesh
-        carried, at_fine = moved(guess, coarse.mesh, mesh), neighbour.fine.unknowns
-        before = moved(known.unknowns, known.mesh, mesh)
+        carried, at_fine = transfer(guess, coarse.mesh, mesh), neighbour.fine.unknowns
+        before = transfer(known.unknowns, known.mesh, mesh)
         guess = Unknowns(
             carried.gap * (at_fine.gap / before.gap),
             carried.fluid + (at_fine.fluid - before.fluid),

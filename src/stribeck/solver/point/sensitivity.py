@@ -19,13 +19,12 @@ from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import Direction, Measure, log_derivatives
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.krylov import Apply
+from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.level import band_for
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
 
 __all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
-
-GROUPS = ("speed", "load", "roughness")
 
 
 def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables) -> dict[str, Array]:

@@ -31,21 +31,16 @@ if TYPE_CHECKING:
 
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
-THICK_FILM = 0.1
-"""Film over the radius of the ball above which a note says that lubrication theory does not hold."""
-
-WAKE = (
+MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
+WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
     "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "
     "ends; without wetted_radius that is the X of a ball whose film does not break."
 )
-"""Note on the friction of a film that breaks."""
-
-CAVITY = (
+CAVITY_NOTE = (
     "The film ruptures at the pressure of the cavity and forms anew behind it; there friction counts the liquid, as streaks "
     "that touch both walls, and no drag of the gas."
 )
-"""Note on the friction of a film that forms anew."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -411,9 +406,9 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     model = groups.model
     if model.cavitation is not Cavitation.NONE and groups.speed > 0:
         if model.cavity_pressure == 0.0:
-            notes.append(WAKE)
+            notes.append(WAKE_NOTE)
         elif state.lowest_pressure <= model.cavity_pressure:
-            notes.append(CAVITY)
+            notes.append(CAVITY_NOTE)
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,
@@ -424,7 +419,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
         film = model.film.at(groups.speed)
         notes += fluid_notes(film, np.array([values.minimum_gap]), np.array([state.lowest_pressure]), math.nan)
     thickness = 0.0 if contact is None else values.central_gap * contact.slope**2
-    if thickness > THICK_FILM:
+    if thickness > MAX_FILM_SLOPE:
         notes.append(
             f"The film is {thickness:.2g} radii thick: lubrication theory is the limit of thin films, and the friction of "
             "a ball is known to the first order in that ratio only."

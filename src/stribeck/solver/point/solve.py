@@ -37,21 +37,11 @@ from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import PointFields, PointState
 from stribeck.solver.refinement import newton_tolerance
 
-RTOL_RANGE = (1e-8, 1e-2)
-"""Tolerances that a solve takes."""
-
-AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)
-"""Degrees of the panels for contacts at rest, whose problem is one-dimensional."""
-
-THINNEST = 0.2
-"""Thickness of layers over the Hertz radius from which balls are solved on them."""
-
-FAR = 1.5
-"""Ratio of the widths of the edge, that of a state and that of its neighbour, from which other panels make a cold start
-cheaper than one from the neighbour; it takes up to 5 times as long then."""
-
-SMALLEST_ESTIMATE = 0.01
-"""Smallest error that is stated, over the tolerance."""
+RTOL_RANGE = (1e-8, 1e-2)  # Smallest and largest tolerance for a ball
+AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)  # Degrees of the panels tried for contacts at rest, a problem in the radius alone
+MIN_LAYER_THICKNESS = 0.2  # Thinnest layer under a ball, in Hertz radii of a half-space: thinner ones are not tested
+COLD_START_WIDTH_RATIO = 1.5  # Ratio of edge widths to a neighbour's above which a start from it costs up to 5 cold starts
+MIN_ESTIMATE_RTOL_FRACTION = 0.01  # Least stated error over rtol
 
 
 def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
@@ -62,14 +52,14 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     if groups.speed == 0:
         return _at_rest(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
-    model = as_solved(groups.model)
+    model = effective_model(groups.model)
     full = full_model(model)
     if model.cavitation is Cavitation.EXIT:  # the suction of a full film may be far from any state of one that breaks
         full = replace(full, film=_of_constant_viscosity(model.film))
     first = first_state(speed, law, full)
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
-    return _state(groups, rtol, ENDINGS[model.cavitation].refine(speed, law, first, rtol, model))
+    return _state(groups, rtol, CAVITATION_METHODS[model.cavitation].refine(speed, law, first, rtol, model))
 
 
 def _of_constant_viscosity(film: Film) -> Film:
@@ -91,38 +81,38 @@ def solve_from(
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
-    speed, law, model = float(groups.speed), contact_law(groups), as_solved(groups.model)
-    if pair.fine.resolution.model != model and is_alike(pair.fine.resolution.model, model):
-        pair = pair.named(model)
+    speed, law, model = float(groups.speed), contact_law(groups), effective_model(groups.model)
+    if pair.fine.resolution.model != model and same_kinds(pair.fine.resolution.model, model):
+        pair = pair.relabelled(model)
     cold = None
     if predicted is None and _is_far(pair, speed, law):
         cold = solve_cold(groups, rtol)
         if cold.outcome.ok:
             return cold
     if pair.fine.resolution.model == model:
-        ending = ENDINGS[model.cavitation]
-        pairs = [(weight, state.work.named(model)) for weight, state in line if isinstance(state.work, Pair)]
+        method = CAVITATION_METHODS[model.cavitation]
+        pairs = [(weight, state.work.relabelled(model)) for weight, state in line if isinstance(state.work, Pair)]
         by_series = {} if predicted is None else {"predicted": predicted}
         try:
-            found = ending.follow(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
+            found = method.follow(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
         except MeshTooLargeError:
             found = None
-        if found is not None and ending.holds(found, rtol):
+        if found is not None and method.holds(found, rtol):
             return _state(groups, rtol, found)
         if found is not None:
-            return _state(groups, rtol, ending.refine(speed, law, found.fine, rtol, model, found))
+            return _state(groups, rtol, method.refine(speed, law, found.fine, rtol, model, found))
     return solve_cold(groups, rtol) if cold is None else cold
 
 
 def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
-    """Return whether a neighbour is so far that its panels do not serve, and a cold start is cheaper."""
+    """Return whether a neighbour is so far that its panels do not serve and a cold start is cheaper."""
     fine, model = neighbour.fine, neighbour.fine.resolution.model
     here, there = layout(speed, law, model)[0], layout(fine.equations.speed, fine.equations.law, model)[0]
-    return max(here, there) > FAR * min(here, there) and not fits(fine.resolution, speed, law)
+    return max(here, there) > COLD_START_WIDTH_RATIO * min(here, there) and not fits(fine.resolution, speed, law)
 
 
-class Ending(NamedTuple):
-    """How states of a film that ends in one way are refined."""
+class CavitationMethod(NamedTuple):
+    """How states of a cavitating film are refined, followed and judged."""
 
     refine: Callable[..., Pair | Outcome]  # From a first state, and from a neighbour's meshes, to a state on two meshes
     follow: Callable[..., Pair | None]  # From a first state, and from a neighbour's meshes, to a state on two meshes
@@ -136,22 +126,22 @@ def _refine_full(
     return refine(speed, law, guess, rtol, known)
 
 
-ENDINGS = {
-    Cavitation.NONE: Ending(_refine_full, follow, holds_along_path),
-    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, holds_cavitated),
-    Cavitation.REFORM: Ending(refine_reforming, follow_reforming, holds_reforming),
+# How states are refined, by cavitation.
+CAVITATION_METHODS = {
+    Cavitation.NONE: CavitationMethod(_refine_full, follow, holds_along_path),
+    Cavitation.EXIT: CavitationMethod(refine_cavitated, follow_cavitated, holds_cavitated),
+    Cavitation.REFORM: CavitationMethod(refine_reforming, follow_reforming, holds_reforming),
 }
-"""How states are refined, by how the film ends."""
 
 
-def is_alike(model: Model, other: Model) -> bool:
-    """Return whether models differ in numbers alone."""
+def same_kinds(model: Model, other: Model) -> bool:
+    """Return whether models have the same film, solid and cavitation but for their numbers."""
     kinds = ((each.cavitation, type(each.film), each.film.name, type(each.solid)) for each in (model, other))
     return len(set(kinds)) == 1
 
 
-def as_solved(model: Model) -> Model:
-    """Return the model to solve: a cavity at ambient pressure has no end, so that its film does not form anew."""
+def effective_model(model: Model) -> Model:
+    """Return the model with exit in place of reformation at ambient pressure, where a cavity has no end."""
     if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
         return replace(model, cavitation=Cavitation.EXIT)
     return model
@@ -168,10 +158,10 @@ def check(groups: Groups, rtol: float) -> None:
 
 
 def check_model(model: Model) -> None:
-    """Refuse by name what the equations of a ball do not have."""
+    """Refuse films, solids and flow factors that the equations of a ball do not have."""
     if type(model.film) not in PLANES:
         raise InputError(f"fluid = {model.film.name}: its flow in the plane under a ball is not implemented.")
-    if not has_far_film(as_solved(model)):
+    if not has_far_film(effective_model(model)):
         raise InputError(
             f"fluid = {model.film.name} with cavitation = exit: the film far from a ball that breaks in a power law is not "
             "implemented; give Carreau or Cross, whose viscosity at low rates is that of the contact, or a cavity pressure "
@@ -188,10 +178,10 @@ def check_model(model: Model) -> None:
             "Other bodies are solved under a cylinder only."
         )
     thickness = getattr(model.solid, "thickness", math.inf)
-    if thickness < THINNEST:
+    if thickness < MIN_LAYER_THICKNESS:
         raise InputError(
             f"solid = {model.solid.name}: its thickness is {thickness:.3g} of the Hertz radius on a half-space; under a ball "
-            f"it must be {THINNEST:g} or more. Thinner layers are solved under a cylinder only."
+            f"it must be {MIN_LAYER_THICKNESS:g} or more. Thinner layers are solved under a cylinder only."
         )
 
 
@@ -205,7 +195,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
         values[name] += shift
     y = fine.unknowns
     contact = fine.equations.law.pressure(y.gap)
-    smallest = SMALLEST_ESTIMATE * rtol
+    smallest = MIN_ESTIMATE_RTOL_FRACTION * rtol
     errors = {name: max(error, smallest * pair.scales[name]) for name, error in pair.errors.items()}
     return PointState(
         groups=groups,
@@ -220,7 +210,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
         nodal_gap=y.gap + shift,
         nodal_contact_pressure=contact,
         nodal_fluid_pressure=y.fluid,
-        fields=partial(fields_at, fine.light(), shift),
+        fields=partial(fields_at, fine.without_operators(), shift),
         newton_steps=pair.steps,
         krylov_steps=pair.krylov_steps,
         work=pair,
@@ -228,7 +218,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
 
 
 def fields_at(level: Level, shift: float, x: Array, y: Array) -> PointFields:
-    """Return the fields at points of the plane: interpolated on the mesh, those of the far field beyond its rim."""
+    """Return the fields at points of the plane, interpolated on the mesh and by the far field beyond its rim."""
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     mesh, unknowns = level.mesh, level.unknowns
     r = np.hypot(x, y)
@@ -256,7 +246,7 @@ def _nowhere(x: Array, y: Array) -> PointFields:
 
 
 def _at_rest(groups: Groups, rtol: float) -> PointState:
-    """Return the dry contact: a problem of one dimension, refined in the degree alone."""
+    """Return the dry contact, a problem in the radius that is refined in the degree alone."""
     base, shift = with_positive_gap(groups)
     law, model = contact_law(base), replace(BASE_MODEL, solid=groups.model.solid)
     coarse: Level | None = None
@@ -267,7 +257,7 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
         if not fine.outcome.ok:
             # A gap of order kappa is a difference of terms of order one.
             lost = float(np.finfo(float).eps / groups.relative_roughness)
-            return _failed(groups, rtol, Outcome.ROUNDING if lost > SMALLEST_ESTIMATE * rtol else fine.outcome)
+            return _failed(groups, rtol, Outcome.ROUNDING if lost > MIN_ESTIMATE_RTOL_FRACTION * rtol else fine.outcome)
         if coarse is not None:
             found = pair_of(coarse, fine)
             if found.total <= rtol and found.minimum <= rtol:

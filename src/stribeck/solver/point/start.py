@@ -32,7 +32,7 @@ from stribeck.equations.point.mesh_choice import (
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level, extrapolated, solve_level
+from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
 DEGREE = 8
 """Degree of the panels of a first state."""
@@ -190,7 +190,7 @@ def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
         weights = extrapolation_weights([at for at, _ in history], part)
         on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=model.film.milder(part)))
         mesh = operators_of(on).mesh
-        guess = extrapolated(weights, [level for _, level in history], mesh)
+        guess = extrapolate_levels(weights, [level for _, level in history], mesh)
         return solve_level(on, speed, law, guess, mesh, TOLERANCE, max_steps=12)
 
     found = march(correct, 0.0, 1.0, MILDER)
@@ -212,7 +212,7 @@ def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[L
         if history:
             here = replace(here, splits=history[-1][1].resolution.splits)
             weights = extrapolation_weights([at for at, _ in history], s)
-            guess = here, extrapolated(weights, [level for _, level in history], operators_of(here).mesh)
+            guess = here, extrapolate_levels(weights, [level for _, level in history], operators_of(here).mesh)
         else:
             first = first_guess(here, speed, law)
             if first is None:
