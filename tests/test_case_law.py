@@ -11,7 +11,7 @@ from sweep_files import write
 
 import stribeck as sb
 from stribeck.cases.law import LAWS, NEEDED_TABLE, TABLES_BY_LAW
-from stribeck.contact_laws.scaled import NAMED
+from stribeck.contact_laws.scaled import NAMED_LAWS
 
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
 ASPERITIES = {"density": '"1e10 1/m^2"', "radius": '"10 um"', "deviation": '"0.5 um"'}
@@ -78,7 +78,7 @@ def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_o
     assert set(TABLES_BY_LAW) == set(LAWS)
     for law in sorted(set(LAWS) - set(NEEDED_TABLE)):
         found = sb.load_case(case(law, {"alpha": "1.0"})).contact.law
-        assert found == NAMED[law]
+        assert found == NAMED_LAWS[law]
         assert (found is None) == (law == "exponential")
 
 

@@ -65,7 +65,7 @@ def test_the_smoothed_hertz_pressure_flattens_the_parabola(e):
 def test_the_hertz_pressure_leaves_no_gap_inside_and_its_closed_form_outside():
     mesh = graded_to_both_edges(1e-13, 16)
     points = np.concatenate([np.linspace(-0.999, 0.999, 51), np.linspace(1.001, 4.0, 51)])
-    gap = hertz.OFFSET + 0.5 * points**2 + deflection_operator(mesh, points) @ hertz.pressure(mesh.nodes)
+    gap = hertz.HERTZ_OFFSET + 0.5 * points**2 + deflection_operator(mesh, points) @ hertz.pressure(mesh.nodes)
     assert np.abs(gap - hertz.gap(points)).max() < 1e-14
     assert np.abs(gap[:51]).max() < 1e-14
 

@@ -23,7 +23,7 @@ from stribeck.fluids import (
     local_flow,
 )
 from stribeck.fluids.effective_medium import PERCOLATION, medium_width
-from stribeck.fluids.flow_factors import FLOOR, mean_inverse_width, mean_width, nominal_separation
+from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -351,8 +351,8 @@ def test_the_width_of_the_medium_solves_its_equation(separation):
 def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_when_wide():
     factors = EffectiveMedium(1.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
     closed, open_ = factors.pressure(np.array([0.99 * PERCOLATION, 1.5 * PERCOLATION]))[0]
-    assert closed == pytest.approx(FLOOR)
-    assert open_ > 100 * FLOOR
+    assert closed == pytest.approx(MIN_FLOW_FACTOR)
+    assert open_ > 100 * MIN_FLOW_FACTOR
     wide = np.array([10.0, 20.0, 40.0])
     np.testing.assert_allclose((1 - factors.pressure(wide)[0]) * wide**2, 1.5, rtol=0.04)
     assert (1 - factors.pressure(wide[1:2])[0][0]) * 400 == pytest.approx(1.486, abs=1e-3)

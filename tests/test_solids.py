@@ -20,7 +20,7 @@ from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.solids import HalfPlane, Layer, Prony, StandardLinearSolid, TwoBodies, hysteresis_friction
 from stribeck.solids import layer as bonded
-from stribeck.solids.layer import REACH, smooth_kernel
+from stribeck.solids.layer import KERNEL_RADIUS, smooth_kernel
 from stribeck.solids.viscoelastic import Memory, creep_of_relaxation
 from stribeck.solver.cold_start import cold_start
 
@@ -240,7 +240,7 @@ def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its
             xi = np.array([abs(x - y) / d])
             return float((smooth_kernel(xi, 0.45) - np.log(xi) / math.pi)[0]) * pressure(y)
 
-        first, last = max(-6, x - REACH * d), min(6, x + REACH * d)
+        first, last = max(-6, x - KERNEL_RADIUS * d), min(6, x + KERNEL_RADIUS * d)
         places = sorted({first, last} | {y for y in (x - 0.3 * d, x, x + 0.3 * d) if first < y < last})
         return sum(quad(pushed, *part, epsabs=1e-11, epsrel=0)[0] for part in pairwise(places))
 
@@ -252,7 +252,7 @@ def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its
 def test_what_a_wide_panel_does_far_away_is_what_it_does_at_each_place(monkeypatch, poisson_ratio):
     mesh = Mesh(np.concatenate([[-64.0, -32.0, -6.6, -2.0], np.linspace(-1.1, 1.1, 12), [2.0, 6.6, 32.0, 64.0]]), 12)
     told = Layer(1.0, poisson_ratio).deflection(mesh)
-    monkeypatch.setattr(bonded, "FROM_AFAR", 10**6)
+    monkeypatch.setattr(bonded, "FAR_TARGETS", 10**6)
     np.testing.assert_allclose(told, Layer(1.0, poisson_ratio).deflection(mesh), rtol=0, atol=1e-12)
 
 
@@ -270,8 +270,11 @@ def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_a_finer_rule(d):
     t, weights = np.polynomial.legendre.leggauss(120)
     y, weights = 3.5 + 2.5 * t, 2.5 * weights
     distance = np.abs(x[near][:, None] - y) / d
-    beyond = np.log(np.maximum(distance, REACH)) / math.pi  # where the whole kernel is zero
-    smooth = np.where(distance < REACH, smooth_kernel(np.minimum(distance, REACH), 0.4), beyond) + math.log(d) / math.pi
+    beyond = np.log(np.maximum(distance, KERNEL_RADIUS)) / math.pi  # where the whole kernel is zero
+    smooth = (
+        np.where(distance < KERNEL_RADIUS, smooth_kernel(np.minimum(distance, KERNEL_RADIUS), 0.4), beyond)
+        + math.log(d) / math.pi
+    )
     np.testing.assert_allclose(beside, smooth @ (weights * pressure(y)), rtol=0, atol=1e-9)
 
 

@@ -302,7 +302,7 @@ def test_a_load_that_asperities_cannot_carry_gives_a_negative_gap_and_says_so(lo
 def test_the_offset_at_speed_zero_ends_in_hertz_with_an_error_of_a_third_of_kappa_squared(solved):
     load, kappas = 0.01, np.array([1e-1, 1e-2, 1e-3, 1e-4])
     found = np.array([solved(0.0, load, load * kappa, rtol=1e-9).offset for kappa in kappas])
-    first_order = hertz.OFFSET + kappas * (math.log(2) - 0.5 * math.log(load))
+    first_order = hertz.HERTZ_OFFSET + kappas * (math.log(2) - 0.5 * math.log(load))
     error = found - first_order
     order = np.polyfit(np.log(kappas[1:]), np.log(error[1:]), 1)[0]
     assert abs(order - 2) < 0.01
@@ -366,7 +366,7 @@ def test_the_dry_smooth_contact_is_hertz_in_closed_form():
 def test_smooth_films_end_in_hertz_lifted_by_the_film(solved):
     speeds = np.array([1e-4, 1e-6, 1e-8])
     states = [solved(speed, 0.1, 0.0, rtol=1e-7) for speed in speeds]
-    lift = [s.offset - hertz.OFFSET for s in states]
+    lift = [s.offset - hertz.HERTZ_OFFSET for s in states]
     assert abs(np.polyfit(np.log(speeds), np.log(lift), 1)[0] - 0.6) < 0.01
     assert lift[-1] / states[-1].central_gap == pytest.approx(1, abs=0.02)
     x = np.linspace(-0.9, 0.9, 31)

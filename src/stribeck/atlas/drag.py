@@ -67,6 +67,6 @@ def _ball_parts(logs: dict[str, Part], speed: Array, load: Array, film: FarFilm)
 
 # The rules by geometry.
 DRAG: dict[Geometry, Drag] = {
-    "line": Drag(_line_names, _line_parts, hertz.OFFSET),
+    "line": Drag(_line_names, _line_parts, hertz.HERTZ_OFFSET),
     "point": Drag(_ball_names, _ball_parts, -1.0),
 }

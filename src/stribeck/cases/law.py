@@ -14,7 +14,7 @@ from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
-from stribeck.contact_laws.scaled import NAMED
+from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contact_laws.spectrum import Spectrum
 from stribeck.contact_laws.table import TableLaw
 from stribeck.files.text_table import read_two_columns
@@ -100,7 +100,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     if law == "table":
         return LawOfFile(_table(given["table"], contact, folder), {})
     if not given:
-        return LawOfFile(NAMED[law], {})
+        return LawOfFile(NAMED_LAWS[law], {})
     (name,) = given
     shape_only = given[name].pop("shape_only", False)
     if not isinstance(shape_only, bool):

@@ -16,18 +16,17 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.numerics.hermite import chebyshev_form
 
-DEGREE = 10
-"""Degree of the polynomials."""
+POLYNOMIAL_DEGREE = 10  # Degree of the polynomial around a separation.
 
-LOG_REACH = 0.25
-"""Half-width in ln(s) of the values that they go through, for laws of positive separations: on wider ones the law of Persson
-follows no polynomial of this degree (an error of 1e-8 on 0.5), on narrower ones rounding counts."""
+# Half-width in ln(s) of a polynomial for laws of positive separations: Persson's law leaves it by 1e-8 on twice this width,
+# and on a narrower one rounding counts.
+LOG_HALF_WIDTH = 0.25
 
-REACH, SMALLEST_REACH = 0.2, 0.2
-"""Half-width of other laws: part of the separation, and the smallest."""
+RELATIVE_HALF_WIDTH = 0.2  # Half-width of a polynomial over the separation, for laws of any separation.
+MIN_HALF_WIDTH = 0.2  # Least half-width of such a polynomial, as a separation.
 
-LOOKED_AT = np.concatenate([np.linspace(-3.0, 0.0, 16), np.geomspace(1e-3, 50.0, 64)])
-"""Separations around which a law is compared with them: their intervals overlap."""
+# Separations around which a law is compared with its polynomials, whose intervals overlap.
+SCANNED_SEPARATIONS = np.concatenate([np.linspace(-3.0, 0.0, 16), np.geomspace(1e-3, 50.0, 64)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +56,12 @@ def _around(shape: AsperityLaw, separation: Array) -> tuple[bool, Array, Array, 
     """Return whether polynomials are in the logarithm, their centres and their unit, and ln(Phi) at Chebyshev's points."""
     logarithmic = shape.lowest == 0.0
     centre = np.log(separation) if logarithmic else separation
-    reach = np.full_like(centre, LOG_REACH) if logarithmic else np.maximum(SMALLEST_REACH, REACH * np.abs(centre))
-    points = centre + reach * chebyshev.chebpts1(DEGREE + 1)[:, None]
+    reach = (
+        np.full_like(centre, LOG_HALF_WIDTH)
+        if logarithmic
+        else np.maximum(MIN_HALF_WIDTH, RELATIVE_HALF_WIDTH * np.abs(centre))
+    )
+    points = centre + reach * chebyshev.chebpts1(POLYNOMIAL_DEGREE + 1)[:, None]
     return logarithmic, centre, reach, shape.log_pressure(np.exp(points) if logarithmic else points)
 
 
@@ -68,11 +71,11 @@ def misfit(shape: AsperityLaw) -> float:
     It is 2e-8 at most for laws with a formula, and 1e-5 or more for a table, at its points.
     """
     with np.errstate(all="ignore"):  # what is not finite is no number here either
-        *_, values = _around(shape, LOOKED_AT[LOOKED_AT > shape.lowest])
+        *_, values = _around(shape, SCANNED_SEPARATIONS[SCANNED_SEPARATIONS > shape.lowest])
     return float(np.abs(chebyshev_form(values)[-3:]).max())
 
 
 @lru_cache(maxsize=1)
 def _to_powers() -> Array:
     """Matrix from values at Chebyshev points to the coefficients of the polynomial through them."""
-    return np.asarray(np.linalg.inv(np.vander(chebyshev.chebpts1(DEGREE + 1), increasing=True)))
+    return np.asarray(np.linalg.inv(np.vander(chebyshev.chebpts1(POLYNOMIAL_DEGREE + 1), increasing=True)))

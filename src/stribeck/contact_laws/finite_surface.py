@@ -15,13 +15,12 @@ from stribeck.contact_laws.law import AsperityLaw, WithArea, check_law, is_expon
 from stribeck.contact_laws.persson import PerssonLaw
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["TAIL", "FiniteSurface", "has_endless_tail"]
+__all__ = ["TAIL_COEFFICIENT", "FiniteSurface", "has_endless_tail"]
 
-TAIL = 0.065
-"""c: through the two mean gaps beyond 1.5 h_rms of examples/gfmd_mean_gap.csv, over Persson's law of the same spectrum."""
+# c, through the two mean gaps above 1.5 h_rms of examples/gfmd_mean_gap.csv, over Persson's law of the same spectrum.
+TAIL_COEFFICIENT = 0.065
 
-MEASURED = 2.629
-"""Largest mean gap of that calculation over h_rms; beyond it the law is an extrapolation."""
+MAX_MEASURED_GAP = 2.629  # Largest mean gap over h_rms of that calculation; above it the law is an extrapolation.
 
 
 def has_endless_tail(law: AsperityLaw | None) -> bool:
@@ -97,7 +96,7 @@ class FiniteSurface:
         """
         s = np.asarray(separation, dtype=float)
         base = -s if self.base is None else self.base.log_pressure(s)
-        return np.asarray(base - TAIL * np.maximum(s / self.alpha, 0.0) ** 3)
+        return np.asarray(base - TAIL_COEFFICIENT * np.maximum(s / self.alpha, 0.0) ** 3)
 
     def log_slope(self, separation: Array) -> Array:
         """Return d ln(Phi)/ds at the separation s.
@@ -114,7 +113,7 @@ class FiniteSurface:
         """
         s = np.asarray(separation, dtype=float)
         base = np.full_like(s, -1.0) if self.base is None else self.base.log_slope(s)
-        return np.asarray(base - 3 * TAIL / self.alpha * np.maximum(s / self.alpha, 0.0) ** 2)
+        return np.asarray(base - 3 * TAIL_COEFFICIENT / self.alpha * np.maximum(s / self.alpha, 0.0) ** 2)
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return what the law says of a state.

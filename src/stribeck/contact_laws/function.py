@@ -13,8 +13,8 @@ from stribeck.quantities.units import InputError, show
 __all__ = ["FunctionLaw"]
 
 
-TAKEN = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table", "smooth")
-"""Names of the laws of the package, and of surfaces without any, which outputs use."""
+# Names that outputs use for the laws of the package and for smooth surfaces.
+RESERVED_NAMES = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table", "smooth")
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,10 @@ class FunctionLaw:
 
     def __post_init__(self) -> None:
         """Check the functions."""
-        if not isinstance(self.name, str) or not self.name or self.name in TAKEN:
-            raise InputError(f"name = {show(self.name)} must be a word other than {', '.join(TAKEN)}, which are other laws.")
+        if not isinstance(self.name, str) or not self.name or self.name in RESERVED_NAMES:
+            raise InputError(
+                f"name = {show(self.name)} must be a word other than {', '.join(RESERVED_NAMES)}, which are other laws."
+            )
         for name, function in (("log_pressure", self.log_pressure), ("log_slope", self.log_slope)):
             if not callable(function):
                 raise InputError(f"{name} = {show(function)} must be a function of an array of separations.")

@@ -26,17 +26,14 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.quantities.units import InputError, show, to_si
 
-MIN_KNOT = -12.0
-"""Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*."""
+MIN_KNOT = -12.0  # Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*.
 
-LARGEST_KNOT = 1e4
-"""Separation from which the spline goes on straight in arsinh(s), as the moment does to within 1e-7."""
+MAX_KNOT = 1e4  # Separation above which the spline goes on straight in arsinh(s), as the moment does to 1e-7.
 
-KNOT_STEP = 0.02
-"""Distance of the knots of the spline in arsinh(s); chosen where halving it changes no value by more than rounding."""
+KNOT_STEP = 0.02  # Distance of the knots of the spline in arsinh(s); halved, no value changes by more than rounding.
 
-STEP, REACH = 0.02, 45.0
-"""Of the trapezoidal rule in the logarithm of the height."""
+QUADRATURE_STEP = 0.02  # Step of the trapezoidal rule in the logarithm of the height.
+QUADRATURE_RANGE = 45.0  # Range of that rule below its middle, times the order of the moment plus one.
 
 
 @lru_cache(maxsize=8)
@@ -44,21 +41,21 @@ def _spline(order: float) -> tuple[Any, Any]:
     """Return the spline of ``ln F_n + s**2/2`` over arsinh(s), and its derivative."""
     from scipy.interpolate import make_interp_spline  # slow to import, and most uses do not get here
 
-    knots = np.arange(math.asinh(MIN_KNOT), math.asinh(LARGEST_KNOT) + KNOT_STEP, KNOT_STEP)
+    knots = np.arange(math.asinh(MIN_KNOT), math.asinh(MAX_KNOT) + KNOT_STEP, KNOT_STEP)
     s = np.sinh(knots)
     # The integrand in y = ln(z - s), shifted to where it is largest, falls at least exponentially on both sides.
     centre = np.log(np.where(s < 1, 0.5 * (np.sqrt(s * s + 4 * order + 4) - s), (order + 1) / np.maximum(s, 1)))
-    y = centre[:, None] + np.arange(-REACH / (order + 1), 5.0, STEP)
+    y = centre[:, None] + np.arange(-QUADRATURE_RANGE / (order + 1), 5.0, QUADRATURE_STEP)
     w = np.exp(y)
     exponent = (order + 1) * y - s[:, None] * w - 0.5 * w * w
     largest = exponent.max(axis=1)
-    logs = largest + np.log(STEP * np.exp(exponent - largest[:, None]).sum(axis=1)) - 0.5 * math.log(2 * math.pi)
+    logs = largest + np.log(QUADRATURE_STEP * np.exp(exponent - largest[:, None]).sum(axis=1)) - 0.5 * math.log(2 * math.pi)
     spline = make_interp_spline(knots, logs, k=7)
     return spline, spline.derivative()
 
 
 def _ends() -> tuple[float, float]:
-    return math.asinh(MIN_KNOT), math.asinh(LARGEST_KNOT)
+    return math.asinh(MIN_KNOT), math.asinh(MAX_KNOT)
 
 
 def log_moment(order: float, separation: Array) -> Array:

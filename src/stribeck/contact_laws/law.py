@@ -109,11 +109,9 @@ def check_alpha(law: AsperityLaw | None, alpha: float) -> None:
     )
 
 
-SLOPE_TOLERANCE = 1e-5
-"""Largest relative difference between the slope of a law of somebody else's and differences of its values."""
+SLOPE_RTOL = 1e-5  # Largest relative difference between the slope of a user's law and differences of its values.
 
-CHECKED = (1e-3, 100.0)
-"""Separations between which such a law is checked."""
+CHECKED_RANGE = (1e-3, 100.0)  # Separations between which a user's law is checked.
 
 
 def check_slopes(log_pressure: Callable[[Array], Array], log_slope: Callable[[Array], Array], low: float, high: float) -> None:
@@ -123,7 +121,7 @@ def check_slopes(log_pressure: Callable[[Array], Array], log_slope: Callable[[Ar
     _refuse("log_slope", slopes, slopes >= 0, s, "it must be negative everywhere, as the pressure falls")
     step = 1e-5 * s
     ahead, behind = (_values("log_pressure", log_pressure, s + sign * step) for sign in (1, -1))
-    wrong = np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_TOLERANCE * np.abs(slopes) + 1e-10 * np.abs(values) / step
+    wrong = np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_RTOL * np.abs(slopes) + 1e-10 * np.abs(values) / step
     _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, but finite differences disagree")
 
 
@@ -146,8 +144,8 @@ def _refuse(name: str, values: Array, wrong: Any, s: Array, what: str) -> None:
         raise InputError(f"{name} is {values[i]:.6g} at separation {s[i]:.6g}; {what}.")
 
 
+# Laws that passed the check: the law of a curve is one object at all its states.
 _ACCEPTED: WeakValueDictionary[int, Any] = WeakValueDictionary()
-"""Laws that were looked at: those of a curve are the same object at all its states."""
 
 
 def check_law(law: Any) -> AsperityLaw | None:
@@ -156,7 +154,7 @@ def check_law(law: Any) -> AsperityLaw | None:
         return law
     if isinstance(law, AsperityLaw) and not isinstance(law, type):
         if not type(law).__module__.startswith("stribeck."):
-            check_slopes(law.log_pressure, law.log_slope, *CHECKED)
+            check_slopes(law.log_pressure, law.log_slope, *CHECKED_RANGE)
         with suppress(TypeError):  # what allows no weak reference is looked at again
             _ACCEPTED[id(law)] = law
         return law

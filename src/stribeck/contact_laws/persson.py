@@ -24,14 +24,11 @@ from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["GAMMA", "PerssonLaw", "check_gamma", "exponential_limit", "persson_law"]
 
-GAMMA = 0.45
-"""Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08]."""
+GAMMA = 0.45  # Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08].
 
-LOWEST_GAMMA = 0.01
-"""Smallest gamma: far below those of simulations, and beta, which grows as exp(1.2/gamma), is still a number."""
+MIN_GAMMA = 0.01  # Least gamma: far below simulations, and beta, which grows as exp(1.2/gamma), stays finite.
 
-NEARLY_FULL = 0.42
-"""Share of the surface in contact from which fluid no longer finds a way through [Dapp 2012]."""
+SEALING_CONTACT_FRACTION = 0.42  # Fraction of the surface in contact above which no path of the fluid is left [Dapp 2012].
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +112,7 @@ class PerssonLaw(ByValue):
             One sentence where nearly all of the surface is in contact there, else none.
         """
         share = float(self.area_fraction(np.array([separation]))[0]) if separation > 0 else 1.0
-        if share < NEARLY_FULL:
+        if share < SEALING_CONTACT_FRACTION:
             return ()
         return (
             f"Up to {share:.3g} of the surface is in real contact: fluid passes hardly or not at all there, and Reynolds' "
@@ -316,10 +313,10 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
 
 
 def check_gamma(gamma: object) -> float:
-    """Return a reduction of the elastic energy as a float, from :data:`LOWEST_GAMMA` to 1."""
+    """Return a reduction of the elastic energy as a float, from :data:`MIN_GAMMA` to 1."""
     value = to_si(gamma, "number", "gamma", "0.45")
-    if not LOWEST_GAMMA <= value <= 1:
-        raise InputError(f"gamma = {show(gamma)} must be from {LOWEST_GAMMA:g} to 1; 0.45 fits simulations.")
+    if not MIN_GAMMA <= value <= 1:
+        raise InputError(f"gamma = {show(gamma)} must be from {MIN_GAMMA:g} to 1; 0.45 fits simulations.")
     return value
 
 

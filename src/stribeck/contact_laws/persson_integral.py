@@ -29,19 +29,15 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["Integral", "tabulate"]
 
-TOLERANCE = 1e-11
-"""Largest error of the table between its points, of the logarithm of the pressure."""
+TABLE_TOLERANCE = 1e-11  # Largest error of ln(pressure) between the points of the table (test_persson.py).
 
-FADED = 37.0
-"""Logarithm by which the excess over the exponential, which fades as exp(-s), is below double precision."""
+EXCESS_DECAY = 37.0  # Separation above which the excess over the exponential, exp(-s), is below double precision.
 
-STIFFEST = 26.3
-"""Pressure over G(q_1) E* at the end of the table; the separation is near 1e-306 there."""
+MAX_PRESSURE = 26.3  # Pressure over G(q_1) E* at the end of the table; the separation is near 1e-306 there.
 
-MOST_POINTS = 20_000
+MAX_TABLE_POINTS = 20_000  # Points at which the table is given up as not converging.
 
-_SCALED = 36.0
-"""Square of the argument from which erf is one to double precision."""
+ERF_SATURATION = 36.0  # Square of the argument above which erf is one in double precision.
 
 
 @dataclass(frozen=True)
@@ -120,9 +116,9 @@ def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:
 def _scaled_J(t: Array, gamma: float) -> Array:  # noqa: N802
     """Return exp(t^2) J(t)."""
     square = t * t
-    large = square > _SCALED
+    large = square > ERF_SATURATION
     near = np.where(large, 1.0, t)
-    factor, nodes = np.exp(near * near), np.where(large, square, _SCALED)
+    factor, nodes = np.exp(near * near), np.where(large, square, ERF_SATURATION)
     exponential = np.where(large, _laguerre(nodes), factor * scipy.special.exp1(near * near))
     erf_part = np.where(large, 0.5 * exponential, _erf_part()[0](near))
     return np.asarray(0.5 * gamma * exponential + 3 * (1 - gamma) * erf_part)
@@ -152,18 +148,18 @@ def _erf_part() -> tuple[np.polynomial.Chebyshev, float]:
         square = np.asarray(t)[..., None] ** 2 + z
         return np.asarray(np.sum(weight * scipy.special.erf(np.sqrt(square)) ** 2 / square, axis=-1))
 
-    fit = np.polynomial.Chebyshev.interpolate(scaled, 72, domain=[0.0, math.sqrt(_SCALED)])
+    fit = np.polynomial.Chebyshev.interpolate(scaled, 72, domain=[0.0, math.sqrt(ERF_SATURATION)])
     return fit, float(scaled(np.array(0.0)))
 
 
 def tabulate(integral: Integral) -> tuple[Array, Array, float]:
     """Return the knots ln s, the coefficients of the excess ln Phi + s between them, and its largest error."""
     delay = math.log(max(1.0, integral.beta * integral.alpha))
-    y = _start(integral, -FADED - delay)
+    y = _start(integral, -EXCESS_DECAY - delay)
     jets = integral.separation(y)
     checked, error = np.zeros(y.size - 1, dtype=bool), 0.0
     while not checked.all():
-        if y.size > MOST_POINTS:
+        if y.size > MAX_TABLE_POINTS:
             raise InputError("Persson's law of this spectrum could not be tabulated; give a smoother spectrum.")
         open_intervals = np.flatnonzero(~checked)
         middle = 0.5 * (y[open_intervals] + y[open_intervals + 1])
@@ -174,7 +170,7 @@ def tabulate(integral: Integral) -> tuple[Array, Array, float]:
         t = jet[0] - knots[y.size - 2 - open_intervals]
         value = ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0]
         miss = np.abs(value - (middle + np.exp(jet[0])))
-        good = miss <= TOLERANCE
+        good = miss <= TABLE_TOLERANCE
         error = max(error, float(np.max(miss[good], initial=0.0)))
         checked[open_intervals[good]] = True
         split = open_intervals[~good]
@@ -188,7 +184,7 @@ def tabulate(integral: Integral) -> tuple[Array, Array, float]:
 def _start(integral: Integral, lowest: float) -> Array:
     """Return first points ln Phi, from ``lowest`` to the stiffest, finer in the pressure where it moves little."""
     turn = math.log(integral.stiffness / integral.beta)
-    above = np.log(np.linspace(1.0, STIFFEST, 40)) + turn
+    above = np.log(np.linspace(1.0, MAX_PRESSURE, 40)) + turn
     return np.concatenate((np.linspace(lowest, turn, 60)[:-1], above))
 
 

@@ -17,12 +17,12 @@ from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.quantities.units import InputError, show
 
-NAMED: dict[str, AsperityLaw | None] = {
+# Laws without parameters beside alpha, beta and h_rms; None is the exponential law.
+NAMED_LAWS: dict[str, AsperityLaw | None] = {
     "exponential": None,
     "greenwood-williamson": GreenwoodWilliamson(),
     "greenwood-tripp": GreenwoodTripp(),
 }
-"""Laws that need no parameters beside alpha, beta and h_rms; None is the exponential one."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def law_of(law: Any) -> AsperityLaw | None:
 
 def named_law(name: str) -> AsperityLaw | None:
     """Return the law of a name; refuse unknown names, and laws that need more than a name."""
-    if name not in NAMED:
-        known = ", ".join(map(repr, NAMED))
+    if name not in NAMED_LAWS:
+        known = ", ".join(map(repr, NAMED_LAWS))
         raise InputError(f"law = {show(name)}; names are {known}. A law of a surface or table needs a case file or an object.")
-    return NAMED[name]
+    return NAMED_LAWS[name]

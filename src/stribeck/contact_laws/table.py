@@ -23,17 +23,16 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["TableLaw"]
 
-MIN_ROWS = 4
+MIN_ROWS = 4  # Least rows of a tabulated law.
 
 PLAIN, WITH_UNITS = ("separation", "pressure"), {"gap": "length", "pressure": "pressure"}
 """Headers of a file."""
 
-STRAY = 3.0
-"""Factor by which the slope between two rows may leave those of the straight lines around it: a cubic that is monotone keeps
-to it, and a smoother interpolant is refused where it does not."""
+# Factor by which the slope between two rows may leave the straight lines around it: a monotone cubic keeps to it, and a
+# smoother interpolant is refused where it does not.
+MAX_SLOPE_RATIO = 3.0
 
-LEFT_OVER = 1e-3
-"""Pressure at the end of a table over the largest of a state above which the state says that the table was left."""
+END_PRESSURE_RATIO = 1e-3  # Pressure at the end of a table over the largest of a state above which the state draws a note.
 
 
 @dataclass(frozen=True)
@@ -215,7 +214,7 @@ class TableLaw:
             )
         largest = float(self.log_pressure(np.array([separation]))[0])
         left = math.exp(min(0.0, math.log(self.pressure[-1]) - largest))
-        if left > LEFT_OVER:
+        if left > END_PRESSURE_RATIO:
             found.append(
                 f"The last row of the contact law's table, {last:.3g}, still has {100 * left:.2g} % of the largest contact "
                 "pressure: beyond it the law is continued by its tangent."
@@ -257,7 +256,7 @@ def _interpolant(s: Array, f: Array) -> tuple[Any, Any, int]:
 
     secants = np.diff(f) / np.diff(s)
     around = np.stack([np.append(secants[:1], secants[:-1]), secants, np.append(secants[1:], secants[-1:])])
-    low, high = STRAY * around.min(axis=0), around.max(axis=0) / STRAY
+    low, high = MAX_SLOPE_RATIO * around.min(axis=0), around.max(axis=0) / MAX_SLOPE_RATIO
     parts = np.linspace(0.0, 1.0, 33)
     points = s[:-1] + parts[:, None] * np.diff(s)
     for degree in (5, 3):

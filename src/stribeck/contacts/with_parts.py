@@ -17,7 +17,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.parts import PART_KEYWORDS, Parts
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.laws import HERTZ, FilmUnits
+from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError, show
 
@@ -147,7 +147,7 @@ def _at_speed(film: Any, speeds: Array) -> Any:
     """Return a film with the numbers of its rate law as groups are given them at their speed, where they have a single one."""
     if not film.uses_speed or len(speeds) != 1 or not speeds[0] > 0:
         return film
-    return replace(film, law=film.law.scaled(HERTZ._replace(time=1 / float(speeds[0]))))
+    return replace(film, law=film.law.scaled(HERTZ_UNITS._replace(time=1 / float(speeds[0]))))
 
 
 def hertz_units(groups: Groups) -> FilmUnits:

@@ -1,5 +1,5 @@
 // One chart on a canvas: axes, areas, lines, points, or the film of a ball as an image. Python sends what is drawn, as of
-// charts/parts.py; a change holds what has changed alone.
+// charts/parts.py.
 const FONT = "Roboto, system-ui, sans-serif";
 const MARGIN = { left: 62, right: 16, top: 6, bottom: 44 };
 const CLOSE = 24; // pixels: so far from the pointer a lonely point still belongs to it
@@ -290,12 +290,9 @@ export default {
     corners(symbol) {
       return CORNERS[symbol].map(([i, j]) => `${11 + 4 * i},${5 + 4 * j}`).join(" ");
     },
-    // Takes what has changed: whole series hold their type, others their new data or nothing.
-    show(change) {
-      const before = Object.fromEntries(this.options.series.map((each) => [each.id, each]));
-      const series = (change.series ?? this.options.series).map((each) => (each.type ? each : { ...before[each.id], ...each }));
-      this.options = { ...this.options, ...change, series };
-      const legend = this.options.legend.map((name) => series.find((each) => each.name === name));
+    show(chart) {
+      this.options = chart;
+      const legend = chart.legend.map((name) => chart.series.find((each) => each.name === name));
       const look = ({ name, color, width, dash, edge, symbol }) => ({ name, color, width, dash, edge, symbol });
       if (JSON.stringify(legend.map(look)) !== JSON.stringify(this.legend)) this.legend = legend.map(look);
       this.paint();

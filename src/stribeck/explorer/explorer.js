@@ -3,7 +3,7 @@ window.explorerFrame = (frame) => {
   document.body.dataset.geometry = frame.geometry;
   document.body.classList.remove("working");
   for (const [id, html] of frame.html) document.getElementById(id).innerHTML = html;
-  for (const [id, change] of frame.charts) getElement(id)?.show(change);
+  for (const [id, chart] of frame.charts) getElement(id)?.show(chart);
   for (const [id, now] of frame.knobs) getElement(id)?.show(now);
   explorerWaits(frame.waits);
   if (frame.moved) getElement(frame.moved)?.free();

@@ -20,7 +20,7 @@ from stribeck.explorer.answer import Answer
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.charts.parts import Options, difference
+from stribeck.explorer.charts.parts import Options
 from stribeck.explorer.curves import in_atlas
 from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.inputs import choices, inputs
@@ -370,10 +370,9 @@ class Page:
                 self.shown[element.html_id] = content
                 frame["html"].append([element.html_id, content])
         for name, chart in charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette).items():
-            changed = difference(self.drawn.get(name, {}), chart)
-            self.drawn[name] = chart
-            if changed is not None:
-                frame["charts"].append([self.charts[name].id, changed])
+            if self.drawn.get(name) != chart:
+                self.drawn[name] = chart
+                frame["charts"].append([self.charts[name].id, chart])
         try:
             await self.client.run_javascript(f"explorerFrame({dumps(frame)})", timeout=PATIENCE)
         except TimeoutError:  # a tab in the background answers when it is looked at

@@ -14,23 +14,18 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["check_law"]
 
-RTOL = 1e-5
-"""Largest relative difference; the central differences below are a thousand times nearer."""
+AGREEMENT_RTOL = 1e-5  # Largest relative difference of a law from its own differences, which err a thousand times less.
 
-STEP = 1e-4
-"""Relative step of the differences."""
+DIFFERENCE_STEP = 1e-4  # Relative step of the central differences.
 
-RATES = np.geomspace(1e-3, 1e4, 36)
-"""Rates times the relaxation time."""
+CHECKED_RATES = np.geomspace(1e-3, 1e4, 36)  # Shear rates times the relaxation time at which a law is checked.
 
-UNITS = (0.1, 10.0)
-"""Units of time, pressure and length to which laws are scaled."""
+CHECKED_UNITS = (0.1, 10.0)  # Units of time, pressure and length to which a law is scaled in the check.
 
-SIZES = np.geomspace(1e-12, 1e12, 241)
-"""Pressures and gaps among which the first is sought at which a law does something, in SI or in Hertz units."""
+# Pressures or gaps [SI or Hertz units] searched for the first one that changes a law.
+SEARCHED_SIZES = np.geomspace(1e-12, 1e12, 241)
 
-DECAY_LENGTHS = (1e-12, 1.0)
-"""Those of the roughness: far below a length of the law's own, and the only length there is."""
+DECAY_LENGTHS = (1e-12, 1.0)  # Decay lengths of the roughness [m]: far below a length of the law's own, and the only length.
 
 GUIDE = "See Add a fluid in for_developers.md."
 
@@ -58,23 +53,29 @@ def _checked(law: Any) -> None:
 
 
 def _rate_law(law: RateLaw) -> None:
-    g, slope = _pair(law, "stress", RATES)
+    g, slope = _pair(law, "stress", CHECKED_RATES)
     if not (np.diff(g) > 0).all():
         raise InputError(f"{_name(law)}: the stress must rise with the rate; here it does not.")
-    _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], RATES))
-    if law.plateau >= RATES[0]:
+    _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], CHECKED_RATES))
+    if law.plateau >= CHECKED_RATES[0]:
         low = np.array([1e-3 * law.plateau])
         _agree(law, "stress", "at low rates the rate, as the viscosity there is that of the contact", law.stress(low)[0], low)
-    _agree(law, "rate", "the inverse of stress", law.rate(g), RATES)
+    _agree(law, "rate", "the inverse of stress", law.rate(g), CHECKED_RATES)
     for order, what in ((0, "the integral of x dg"), (1, "the integral of g x dg")):
-        change = _difference(lambda x, k=order: law.moments(x, law.stress(x)[0])[k], RATES)  # type: ignore[misc]
-        _agree(law, "moments", what, change, RATES * slope * g**order)
-    for unit in UNITS:
+        change = _difference(lambda x, k=order: law.moments(x, law.stress(x)[0])[k], CHECKED_RATES)  # type: ignore[misc]
+        _agree(law, "moments", what, change, CHECKED_RATES * slope * g**order)
+    for unit in CHECKED_UNITS:
         scaled = law.scaled(FilmUnits(1.0, unit, 1.0, 1.0))
         _agree(law, "scaled", "in units of time: time over the unit", np.array(scaled.time), np.array(law.time / unit))
-        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(RATES)[0], g)
+        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(CHECKED_RATES)[0], g)
     same = law.milder(1.0)
-    _agree(law, "milder", "the law itself at part 1", same.stress(RATES / law.time * same.time)[0] / same.time, g / law.time)
+    _agree(
+        law,
+        "milder",
+        "the law itself at part 1",
+        same.stress(CHECKED_RATES / law.time * same.time)[0] / same.time,
+        g / law.time,
+    )
 
 
 def _pressure_law(law: Any, member: str, rest: float) -> None:
@@ -84,11 +85,11 @@ def _pressure_law(law: Any, member: str, rest: float) -> None:
     at_rest, [first] = values(law, np.zeros(1))
     _agree(law, member, f"{rest:g} at ambient pressure", at_rest + 1.0, np.array([rest + 1.0]))
     flat = first == 0 or not np.isfinite(first)
-    scale = _first_change(lambda p: values(law, p)[0] - rest, SIZES) if flat else 1.0 / abs(float(first))
+    scale = _first_change(lambda p: values(law, p)[0] - rest, SEARCHED_SIZES) if flat else 1.0 / abs(float(first))
     pressures = scale * np.linspace(0.05, 0.8, 6)
     found, slope = values(law, pressures)
     _agree(law, member, "its slope", slope * scale, _difference(lambda p: values(law, p)[0], pressures) * scale, 1.0)
-    for unit in UNITS:
+    for unit in CHECKED_UNITS:
         other, steeper = values(law.scaled(FilmUnits(unit * scale, 1.0, 1.0, 1.0)), pressures / (unit * scale))
         _agree(law, "scaled", "in units of pressure the same values", other, found, 1.0)
         _agree(law, "scaled", "in units of pressure the same slopes", steeper / unit, slope * scale, 1.0)
@@ -97,10 +98,11 @@ def _pressure_law(law: Any, member: str, rest: float) -> None:
 
 def _flow_factors(law: FlowFactors) -> None:
     for decay_length in DECAY_LENGTHS:
-        first, *others = (law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, decay_length, 1.0)) for unit in (1.0, *UNITS))
-        gaps = np.geomspace(1.0, 30.0, 8) * _first_change(lambda h, of=first: _pair(of, "pressure", h)[0] - 1, SIZES[::-1])  # type: ignore[misc]
+        first, *others = (law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, decay_length, 1.0)) for unit in (1.0, *CHECKED_UNITS))
+        first_gap = _first_change(lambda h, of=first: _pair(of, "pressure", h)[0] - 1, SEARCHED_SIZES[::-1])  # type: ignore[misc]
+        gaps = np.geomspace(1.0, 30.0, 8) * first_gap
         of_first = {member: _pair(first, member, gaps) for member in ("pressure", "shear")}
-        for unit, scaled in zip(UNITS, others, strict=True):
+        for unit, scaled in zip(CHECKED_UNITS, others, strict=True):
             for member, (value, _) in of_first.items():
                 found, slope = _pair(scaled, member, gaps / unit)
                 change = _difference(lambda h, of=scaled, name=member: _pair(of, name, h)[0], gaps / unit)  # type: ignore[misc]
@@ -112,13 +114,13 @@ def _flow_factors(law: FlowFactors) -> None:
             _agree(law, "factor", "the first of pressure", factor, phi)
 
 
+# Check of each kind of law.
 CHECKS: dict[type, Callable[[Any], None]] = {
     RateLaw: _rate_law,
     ViscosityLaw: lambda law: _pressure_law(law, "log", 0.0),
     DensityLaw: lambda law: _pressure_law(law, "ratio", 1.0),
     FlowFactors: _flow_factors,
 }
-"""The check of each kind of law."""
 
 
 def _pair(law: Any, member: str, at: Array) -> tuple[Array, Array]:
@@ -139,14 +141,17 @@ def _first_change(change: Callable[[Array], Array], sizes: Array) -> float:
 
 def _difference(function: Callable[[Array], Array], at: Array) -> Array:
     """Return the derivative of a function by central differences of two steps, extrapolated."""
-    coarse, fine = ((function(at * (1 + step)) - function(at * (1 - step))) / (2 * step * at) for step in (STEP, 0.5 * STEP))
+    coarse, fine = (
+        (function(at * (1 + step)) - function(at * (1 - step))) / (2 * step * at)
+        for step in (DIFFERENCE_STEP, 0.5 * DIFFERENCE_STEP)
+    )
     return np.asarray((4 * fine - coarse) / 3)
 
 
 def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: float = 0.0) -> None:
     """Refuse a member whose values are not right."""
     found, right = np.broadcast_arrays(np.asarray(found, dtype=float), np.asarray(right, dtype=float))
-    wrong = ~(np.abs(found - right) <= RTOL * np.maximum(np.abs(right), floor))
+    wrong = ~(np.abs(found - right) <= AGREEMENT_RTOL * np.maximum(np.abs(right), floor))
     if wrong.any():
         i = int(np.argmax(wrong))
         raise InputError(

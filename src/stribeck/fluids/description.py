@@ -14,8 +14,7 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["Fluid", "as_fluid", "as_flow_factors"]
 
-LONGEST_TIME = 1e100
-"""Largest relaxation time, and largest one over it, in Hertz units: squares of rates stay numbers."""
+MAX_RELAXATION_TIME = 1e100  # Largest relaxation time and largest rate [Hertz units]: squares of rates stay finite.
 
 
 @dataclass(frozen=True)
@@ -122,12 +121,13 @@ class Fluid:
 
 def _check_time(given: RateLaw, time: float) -> None:
     """Refuse a law whose rate at which thinning begins has no square in double precision."""
-    if not LONGEST_TIME**-1 <= time <= LONGEST_TIME:
+    if not MAX_RELAXATION_TIME**-1 <= time <= MAX_RELAXATION_TIME:
         name = next(iter(given.parameters), "relaxation_time")
         value = given.parameters.get(name, given.time)
         raise InputError(
             f"{name} = {show(value)}: thinning would begin at {1 / max(time, 1e-300):.3g} of the shear rate that the contact "
-            f"has at speed group 1; the ratio must lie between {1 / LONGEST_TIME:g} and {LONGEST_TIME:g}. Check the unit."
+            f"has at speed group 1; the ratio must lie between {1 / MAX_RELAXATION_TIME:g} and {MAX_RELAXATION_TIME:g}. "
+            "Check the unit."
         )
 
 

@@ -23,7 +23,7 @@ from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
 from stribeck.fluids.flow_factors import (
-    FLOOR,
+    MIN_FLOW_FACTOR,
     check_alpha,
     lifted,
     milder_roughness,
@@ -37,24 +37,21 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["PERCOLATION", "EffectiveMedium"]
 
+# Mean gap over the roughness at which half of the surfaces touch and the last path of the fluid closes.
 PERCOLATION = 1 / math.sqrt(2 * math.pi)
-"""Mean gap over the roughness at which half of the surfaces touch and no path for the fluid is left."""
 
-EDGES = (0.0, 0.05, 0.15, 0.4, 1.0, 2.0, 3.5, 6.0)
-"""Separations between which the width of the medium is tabulated."""
+# Separations over the roughness between which the width of the medium is tabulated.
+TABLE_EDGES = (0.0, 0.05, 0.15, 0.4, 1.0, 2.0, 3.5, 6.0)
 
-ORDER = 16
-"""Chebyshev coefficients between two of these."""
+TABLE_COEFFICIENTS = 16  # Chebyshev coefficients of the width between two edges.
 
-WIDEST = 9.0
-"""Height over the roughness beyond which there is none."""
+MAX_HEIGHT = 9.0  # Height over the roughness above which a Gaussian surface has nothing in double precision.
 
-NEAREST, FARTHEST = 1e-5, 1e9
-"""Mean gaps beyond the threshold, over the roughness, between which the medium is tabulated: at the first the flow is far
-below its floor, at the second it is that between smooth surfaces to rounding."""
+MIN_GAP_ABOVE_PERCOLATION = 1e-5  # Least tabulated gap above the threshold over the roughness; the flow is at its floor there.
+MAX_GAP_ABOVE_PERCOLATION = 1e9  # Largest tabulated gap above the threshold over the roughness; the walls are smooth there.
 
-CELLS, TERMS = 8192, 4
-"""Cells of that table in the logarithm, and terms of the polynomial on each: within 4e-12 of the medium."""
+FACTOR_CELLS = 8192  # Cells of the table of the flow factor in the logarithm of the gap; the table errs by 4e-12.
+FACTOR_TERMS = 4  # Coefficients of the polynomial on each cell of that table.
 
 
 @dataclass(frozen=True, init=False)
@@ -113,7 +110,7 @@ class EffectiveMedium(FlowFactors):
         """Return phi_x and its slope."""
         beyond, sigma = self._beyond(gap)
         phi, slope = _lifted_factor().with_slope(np.log(beyond))
-        slope *= (beyond > NEAREST) & (beyond < FARTHEST)
+        slope *= (beyond > MIN_GAP_ABOVE_PERCOLATION) & (beyond < MAX_GAP_ABOVE_PERCOLATION)
         slope /= beyond * sigma
         return phi, slope
 
@@ -125,7 +122,7 @@ class EffectiveMedium(FlowFactors):
         """Return the gap over the roughness beyond the threshold, and the roughness."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        return np.maximum(gap / self.sigma - PERCOLATION, NEAREST), self.sigma
+        return np.maximum(gap / self.sigma - PERCOLATION, MIN_GAP_ABOVE_PERCOLATION), self.sigma
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return zero twice."""
@@ -137,8 +134,8 @@ class EffectiveMedium(FlowFactors):
         if self.sigma is None or float(gap.min()) > PERCOLATION * self.sigma:
             return ()
         return (
-            f"the mean gap falls below {PERCOLATION:.3f} of the roughness, where no path for the fluid is left: {FLOOR:g} of "
-            "the flow is kept there",
+            f"the mean gap falls below {PERCOLATION:.3f} of the roughness, where no path for the fluid is left: "
+            f"{MIN_FLOW_FACTOR:g} of the flow is kept there",
         )
 
 
@@ -146,16 +143,16 @@ def medium_width(d: Array) -> tuple[Array, Array]:
     """Return the width e of the medium at the separation d of the mean planes, over the roughness, and its slope."""
     inner, outer = _tables()
     found, slope = np.zeros_like(d), np.zeros_like(d)
-    for left, right, (value, derivative) in zip(EDGES[:-1], EDGES[1:], inner, strict=True):
+    for left, right, (value, derivative) in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], inner, strict=True):
         here = (d > left) & (d <= right)
         if here.any():
             s = (2 * d[here] - left - right) / (right - left)
             found[here], slope[here] = chebyshev.chebval(s, value), chebyshev.chebval(s, derivative)
-    far = d > EDGES[-1]
+    far = d > TABLE_EDGES[-1]
     if far.any():
         value, derivative = outer
         y = 1 / d[far] ** 2
-        s = 2 * y * EDGES[-1] ** 2 - 1
+        s = 2 * y * TABLE_EDGES[-1] ** 2 - 1
         ratio = chebyshev.chebval(s, value)
         found[far] = d[far] * ratio
         slope[far] = ratio - 2 * y * chebyshev.chebval(s, derivative)
@@ -171,24 +168,26 @@ def _lifted_factor() -> Cells:
         phi = (medium_width(nominal_separation(width))[0] / width) ** 3
         return lifted(phi, np.zeros_like(phi))[0]
 
-    return Cells.of(factor, math.log(NEAREST), math.log(FARTHEST), CELLS, TERMS)
+    return Cells.of(
+        factor, math.log(MIN_GAP_ABOVE_PERCOLATION), math.log(MAX_GAP_ABOVE_PERCOLATION), FACTOR_CELLS, FACTOR_TERMS
+    )
 
 
 @lru_cache(maxsize=1)
 def _tables() -> tuple[list[tuple[Array, Array]], tuple[Array, Array]]:
-    """Coefficients of e between :data:`EDGES`, and of e/d in 1/d**2 beyond, each with those of the derivative."""
-    points = np.cos(np.pi * (np.arange(ORDER) + 0.5) / ORDER)
+    """Coefficients of e between :data:`TABLE_EDGES`, and of e/d in 1/d**2 beyond, each with those of the derivative."""
+    points = np.cos(np.pi * (np.arange(TABLE_COEFFICIENTS) + 0.5) / TABLE_COEFFICIENTS)
     inner = []
-    for left, right in zip(EDGES[:-1], EDGES[1:], strict=True):
+    for left, right in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], strict=True):
         values = _widths(0.5 * (left + right) + 0.5 * (right - left) * points)
         inner.append(_fitted(points, values, 2 / (right - left)))
-    y = 0.5 * (1 + points) / EDGES[-1] ** 2
-    return inner, _fitted(points, _widths(y**-0.5) * y**0.5, 2 * EDGES[-1] ** 2)
+    y = 0.5 * (1 + points) / TABLE_EDGES[-1] ** 2
+    return inner, _fitted(points, _widths(y**-0.5) * y**0.5, 2 * TABLE_EDGES[-1] ** 2)
 
 
 def _fitted(points: Array, values: Array, scale: float) -> tuple[Array, Array]:
     """Return the coefficients of a polynomial and of its derivative times ``scale``."""
-    fit = chebyshev.chebfit(points, values, ORDER - 1)
+    fit = chebyshev.chebfit(points, values, TABLE_COEFFICIENTS - 1)
     return np.asarray(fit, dtype=np.float64), np.asarray(chebyshev.chebder(fit) * scale, dtype=np.float64)
 
 
@@ -208,7 +207,7 @@ def _width(d: float, start: float) -> float:
     log_e = math.log(start)
     for _ in range(100):
         e = math.exp(log_e)
-        low, high = max(d - WIDEST, 0.0), d + WIDEST
+        low, high = max(d - MAX_HEIGHT, 0.0), d + MAX_HEIGHT
         edges = np.unique(np.clip(np.append(e * 2.0 ** np.arange(-6, 7), [low, high, d, d - 3, d + 3]), low, high))
         half = 0.5 * np.diff(edges)
         u = (0.5 * (edges[1:] + edges[:-1]))[:, None] + half[:, None] * nodes

@@ -26,30 +26,29 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["FLOOR", "PatirCheng", "lifted", "milder_roughness", "nominal_separation", "scaled_roughness"]
+__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "lifted", "milder_roughness", "nominal_separation", "scaled_roughness"]
 
-FLOOR = 1e-4
-"""Pressure flow factor that is left where the formula ends at zero: without any flow there is no pressure gradient."""
+MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the pressure gradient would have no bound.
 
-OF_FIT, SMOOTHNESS = 0.5, 4
-"""Part of the way from the end of the fits to their zero on which they go over into an exponential, and how many derivatives
-go over: with the first alone, the series of a curve converge on a twentieth of their length while the film passes there."""
+# Fraction of the way from the end of the fits to their zero on which they go over into an exponential.
+BLEND_FRACTION = 0.5
+# Continuous derivatives of that blend; with one, the series of a curve converge on a twentieth of their length there.
+BLEND_DERIVATIVES = 4
 
-MILDNESS, SMOOTHEST, MOST_DECAYS = 3.0, 1e-9, 300.0
-"""Decays of the roughness at half of the way from smooth walls, the least part of that way, and the most decays."""
+HOMOTOPY_EXPONENT = 3.0  # Natural logarithm by which the roughness is smaller half-way along the homotopy from smooth walls.
+MIN_HOMOTOPY_PART = 1e-9  # Least part of the homotopy that is divided by.
+MAX_HOMOTOPY_EXPONENT = 300.0  # Largest natural logarithm by which the roughness is smaller; its exponential stays above zero.
 
 Factors = TypeVar("Factors", bound=FlowFactors)
 
-ENDS = -37.0, 9.0
-"""H below which widths underflow, and above which they are H to double precision."""
+SEPARATION_RANGE = -37.0, 9.0  # H below which mean widths underflow, and above which the mean width is H in double precision.
 
-LINKED = 5.0
-"""H from which the shear flow factor is an exponential."""
+SHEAR_FIT_END = 5.0  # H from which Patir and Cheng's shear flow factor is an exponential.
 
-VANISHED = 7.0
-"""H from which phi_fs is zero."""
+FRICTION_FIT_END = 7.0  # H from which Patir and Cheng's phi_fs is zero.
 
-FACTORS = {
+# Peklenik number -> H to which the fits go, C, r of phi_x and A1, a1, a2, a3, A2 of phi_s.
+FIT_COEFFICIENTS = {
     9: (0.5, 0.870, 1.5, 1.011, 0.54, 1.07, 0.08, 0.295),
     6: (0.5, 0.520, 1.5, 1.290, 0.62, 1.09, 0.08, 0.388),
     3: (0.5, 0.225, 1.5, 1.560, 0.85, 1.13, 0.08, 0.556),
@@ -58,7 +57,6 @@ FACTORS = {
     1 / 6: (1.0, 1.38, 0.42, 1.962, 1.08, 0.77, 0.03, 1.754),
     1 / 9: (1.0, 1.48, 0.42, 2.046, 1.12, 0.78, 0.03, 1.856),
 }
-"""Peklenik number -> H to which the fits go, C, r of phi_x and A1, a1, a2, a3, A2 of phi_s."""
 
 
 @dataclass(frozen=True, init=False)
@@ -126,7 +124,7 @@ class PatirCheng(FlowFactors):
         argument: Literal["nominal", "mean"] = "nominal",
     ) -> None:
         number = to_si(gamma, "number", "gamma", "1")
-        known = min(FACTORS, key=lambda each: abs(math.log(max(number, 1e-9) / each)))
+        known = min(FIT_COEFFICIENTS, key=lambda each: abs(math.log(max(number, 1e-9) / each)))
         if not abs(number / known - 1) < 0.01:
             raise InputError(f"gamma = {show(gamma)}; Patir and Cheng give factors for 1/9, 1/6, 1/3, 1, 3, 6 and 9 only.")
         share = to_si(substrate_share, "number", "substrate_share")
@@ -165,20 +163,20 @@ class PatirCheng(FlowFactors):
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
         H, by_gap = self._separation(gap)
-        least, C, r = FACTORS[self.gamma][:3]
+        least, C, r = FIT_COEFFICIENTS[self.gamma][:3]
         x = np.minimum(H - least, 0.0)
         zero = 0.0 if self.gamma > 1 else max(0.0, math.log(C) / r)
-        short = 1 + (x / (OF_FIT * (least - zero))) ** SMOOTHNESS
-        y = x * short ** (-1 / SMOOTHNESS)
+        short = 1 + (x / (BLEND_FRACTION * (least - zero))) ** BLEND_DERIVATIVES
+        y = x * short ** (-1 / BLEND_DERIVATIVES)
         phi, rate = self._fitted(np.maximum(H, least) + y)
-        k, of_y = self._fitted(least)[1], short ** (-1 / SMOOTHNESS - 1)  # y' below H_0, and one above
+        k, of_y = self._fitted(least)[1], short ** (-1 / BLEND_DERIVATIVES - 1)  # y' below H_0, and one above
         phi = phi * np.exp(k * (x - y))
         phi, slope = lifted(phi, (rate * of_y + k * (1 - of_y)) * phi)
         return phi, slope * by_gap
 
     def _fitted(self, H: Numbers) -> tuple[Numbers, Numbers]:
         """Return the flow over that between smooth surfaces as fitted, and the slope of its logarithm by H."""
-        _, C, r = FACTORS[self.gamma][:3]
+        _, C, r = FIT_COEFFICIENTS[self.gamma][:3]
         if self.gamma > 1:
             phi_x = 1 + C * H**-r
             steep = -r * (phi_x - 1) / H
@@ -195,23 +193,23 @@ class PatirCheng(FlowFactors):
             return np.zeros_like(gap), np.zeros_like(gap)
         assert self.sigma is not None
         H, by_gap = self._separation(gap)
-        least = FACTORS[self.gamma][0]
+        least = FIT_COEFFICIENTS[self.gamma][0]
         share = self._near(least)[0] / (self.sigma * self._width(least)[0])
-        near, steep = self._near(np.clip(H, least, LINKED))
+        near, steep = self._near(np.clip(H, least, SHEAR_FIT_END))
         far = self._far(H)
-        phi = np.where(H > LINKED, far, np.where(H > least, near, share * gap))
-        slope = np.where(H > LINKED, -0.25 * far * by_gap, np.where(H > least, steep * by_gap, share))
+        phi = np.where(H > SHEAR_FIT_END, far, np.where(H > least, near, share * gap))
+        slope = np.where(H > SHEAR_FIT_END, -0.25 * far * by_gap, np.where(H > least, steep * by_gap, share))
         return v * self.sigma * phi, v * self.sigma * slope
 
     def _near(self, H: Numbers) -> tuple[Array, Array]:
-        """Return the fit of phi_s up to :data:`LINKED`, for v = 1, and its slope by H."""
-        _, _, _, A_1, a_1, a_2, a_3, _ = FACTORS[self.gamma]
+        """Return the fit of phi_s up to :data:`SHEAR_FIT_END`, for v = 1, and its slope by H."""
+        _, _, _, A_1, a_1, a_2, a_3, _ = FIT_COEFFICIENTS[self.gamma]
         phi = np.asarray(A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H))
         return phi, phi * (a_1 / H - a_2 + 2 * a_3 * H)
 
     def _far(self, H: Numbers) -> Array:
         """Return the fit of phi_s beyond, for v = 1."""
-        return np.asarray(FACTORS[self.gamma][-1] * np.exp(-0.25 * H))
+        return np.asarray(FIT_COEFFICIENTS[self.gamma][-1] * np.exp(-0.25 * H))
 
     def jump(self, gap: Array, slide: float) -> Array | None:
         """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet.
@@ -224,10 +222,10 @@ class PatirCheng(FlowFactors):
             return None
         H = self._separation(gap)[0]
         apart = np.abs(np.diff(H)) / 6
-        least = FACTORS[self.gamma][0]
-        (near, steep), (last, falls), far = self._near(LINKED), self._near(least), self._far(LINKED)
+        least = FIT_COEFFICIENTS[self.gamma][0]
+        (near, steep), (last, falls), far = self._near(SHEAR_FIT_END), self._near(least), self._far(SHEAR_FIT_END)
         width, by_H = self._width(least)
-        linked, ends = ((H[..., 1:] > at) != (H[..., :-1] > at) for at in (LINKED, least))
+        linked, ends = ((H[..., 1:] > at) != (H[..., :-1] > at) for at in (SHEAR_FIT_END, least))
         found = np.zeros_like(gap)
         found[..., :-1] += linked * v * (np.abs(far - near) + np.abs(steep + 0.25 * far) * apart)
         found[..., :-1] += ends * v * np.abs(falls - last * by_H / width) * apart
@@ -242,11 +240,11 @@ class PatirCheng(FlowFactors):
         inverse, inverse_slope = mean_inverse_width(H)
         width = gap / self.sigma
         v = 2 * self.substrate_share - 1
-        inside = np.clip(H, 0.0, VANISHED)
-        fs = v * 11.1 * inside**2.31 * np.exp(-2.38 * inside + 0.11 * inside**2) * (H < VANISHED)
+        inside = np.clip(H, 0.0, FRICTION_FIT_END)
+        fs = v * 11.1 * inside**2.31 * np.exp(-2.38 * inside + 0.11 * inside**2) * (H < FRICTION_FIT_END)
         fs_slope = fs * (2.31 / np.maximum(inside, 1e-9) - 2.38 + 0.22 * inside) * by_gap * (H > 0)
         # Both are of eta s over the nominal separation.
-        least = FACTORS[self.gamma][0]
+        least = FIT_COEFFICIENTS[self.gamma][0]
         fitted = np.maximum(H, least)
         ratio = width / fitted
         ratio_slope = 1 / self.sigma / fitted - np.where(H > least, ratio / fitted * by_gap, 0.0)
@@ -260,7 +258,7 @@ class PatirCheng(FlowFactors):
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether surfaces are closer than the fits go."""
-        H, least = self._separation(np.atleast_1d(gap.min()))[0][0], FACTORS[self.gamma][0]
+        H, least = self._separation(np.atleast_1d(gap.min()))[0][0], FIT_COEFFICIENTS[self.gamma][0]
         if H >= least:
             return ()
         return (
@@ -291,7 +289,7 @@ def mean_width(H: Numbers) -> Numbers:
 @lru_cache(maxsize=1)
 def _separations() -> tuple[Array, Array]:
     """Logarithms of mean widths, ascending, and their separations."""
-    H = np.linspace(*ENDS, 4001)
+    H = np.linspace(*SEPARATION_RANGE, 4001)
     return np.log(mean_width(H)), H
 
 
@@ -303,7 +301,7 @@ def nominal_separation(width: Array) -> Array:
     for _ in range(2):  # in the logarithms Newton's steps square an error of 1e-5 twice
         known = mean_width(H)
         H = H - (np.log(known) - log) * known / scipy.special.ndtr(H)
-    return np.where(width > ENDS[1], width, H)
+    return np.where(width > SEPARATION_RANGE[1], width, H)
 
 
 def mean_inverse_width(H: Array) -> tuple[Array, Array]:
@@ -324,8 +322,8 @@ def mean_inverse_width(H: Array) -> tuple[Array, Array]:
 
 
 def lifted(phi: Array, slope: Array) -> tuple[Array, Array]:
-    """Return a flow factor that stays above zero: itself far above :data:`FLOOR`, and its slope."""
-    root = np.sqrt(phi * phi + 4 * FLOOR**2)
+    """Return a flow factor that stays above zero: itself far above :data:`MIN_FLOW_FACTOR`, and its slope."""
+    root = np.sqrt(phi * phi + 4 * MIN_FLOW_FACTOR**2)
     found = 0.5 * (phi + root)
     return found, found / root * slope
 
@@ -353,7 +351,7 @@ def milder_roughness(sigma: float, part: float) -> float:
 
     The flow closes where the roughness becomes as high as the film, which may be a thousandth of it.
     """
-    return sigma * math.exp(-min(MILDNESS * (1 - part) / max(part, SMOOTHEST), MOST_DECAYS))
+    return sigma * math.exp(-min(HOMOTOPY_EXPONENT * (1 - part) / max(part, MIN_HOMOTOPY_PART), MAX_HOMOTOPY_EXPONENT))
 
 
 def with_sigma(factors: Factors, sigma: float) -> Factors:

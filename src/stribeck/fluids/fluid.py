@@ -17,11 +17,9 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 
-MOST_KEPT = 16
-"""Shapes of arrays of nodes for which what a film last was is kept."""
+MAX_CACHED_SHAPES = 16  # Shapes of node arrays for which a film caches its last gradient and slopes.
 
-Key = tuple[object, ...]
-"""What a film was asked for, to the bit."""
+Key = tuple[object, ...]  # Exact arguments of a film's last evaluation.
 
 
 def key_of(*asked: Array | Numbers | None) -> Key:

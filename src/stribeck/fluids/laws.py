@@ -31,8 +31,7 @@ class FilmUnits(NamedTuple):
         return self.viscosity / self.time
 
 
-HERTZ = FilmUnits(1.0, 1.0, 1.0, 1.0)
-"""Units of laws that are in Hertz units already."""
+HERTZ_UNITS = FilmUnits(1.0, 1.0, 1.0, 1.0)  # Units of laws that are in Hertz units already.
 
 
 class Law(Protocol):

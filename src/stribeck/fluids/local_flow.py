@@ -28,34 +28,25 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import Profile, RateLaw
 
-ALIKE = 0.5
-"""Smallest ratio of the wall rates, of one sign, at which the Gauss rule serves."""
+MIN_RATE_RATIO = 0.5  # Least ratio of the wall rates, of one sign, for the Gauss rule; below it the moments serve.
 
-NODES, WEIGHTS = legendre.leggauss(9)
-"""Gauss rule in the rate: exact to 1e-14 for rates that differ by a factor of two."""
+GAUSS_NODES, GAUSS_WEIGHTS = legendre.leggauss(9)  # Rule in the shear rate, good to 1e-14 for rates that differ by two.
 
-SHARES = 0.5 * WEIGHTS
-"""Weights of the mean."""
+MEAN_WEIGHTS = 0.5 * GAUSS_WEIGHTS  # Weights of the mean over the shear rate.
 
-STEEPEST = 1e-6
-"""Relative difference of the wall rates below which the stress is linear in the rate to rounding of the moments."""
+LINEAR_STRESS_BELOW = 1e-6  # Relative difference of the wall rates below which the stress is linear in the rate to rounding.
 
-CLOSE = 1e-7
-"""Relative step after which the next would be below rounding, as steps are squared."""
+STEP_RTOL = 1e-7  # Relative Newton step that ends the iteration: the next one, its square, is below rounding.
 
-MOST_STEPS = 80
+MAX_STEPS = 80  # Newton steps of a column before its flow counts as not found.
 
-AT_REST = 1e-8
-"""Smallest wall rate over that of the other wall."""
+MIN_WALL_RATE = 1e-8  # Least wall rate over the rate at the other wall; laws without a plateau are singular at zero.
 
-SMALL_STEP = 0.01
-"""Step of the stress over the stress up to which it makes no difference which of the two is the unknown."""
+LINEAR_RATE_BELOW = 0.01  # Stress step over the stress up to which rate and stress serve equally as the unknown.
 
-LARGEST_STEP = 4.0
-"""Factor by which the larger wall rate may grow in a step; it may fall by as much."""
+MAX_RATE_GROWTH = 4.0  # Largest factor by which the larger wall rate grows or falls in one step.
 
-SIDES = np.array([[-0.5], [0.5]])
-"""Where the walls are across the film."""
+WALL_POSITIONS = np.array([[-0.5], [0.5]])  # Position of both walls across the film over its width.
 
 
 def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | None = None) -> Profile:
@@ -64,17 +55,17 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     if closed is not None:
         return closed
     x = np.stack((r_0 - 6 * r_1, r_0 + 6 * r_1) if start is None else start)
-    size = AT_REST * np.abs(x).max(axis=0)
+    size = MIN_WALL_RATE * np.abs(x).max(axis=0)
     x = np.where(np.abs(x) < size, size, x)  # a wall at rest is singular in laws without a plateau
     found = np.empty((9, len(r_0)))
     left = np.arange(len(r_0))
     wanted = np.stack([r_0, r_1])
     here = _Walls.at(law, x, wanted)
     part = np.ones(len(r_0))
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         ahead = _moved(law, here.x, here.g, part * here.step, here.slope)
-        done = (part == 1.0) & (here.step_over_stress() < CLOSE)
-        done &= larger(ahead - here.x) < CLOSE * larger(here.x)
+        done = (part == 1.0) & (here.step_over_stress() < STEP_RTOL)
+        done &= larger(ahead - here.x) < STEP_RTOL * larger(here.x)
         if done.any():
             ended = np.concatenate((ahead, here.g + here.step, here.slope, here.by))
             if len(left) == len(r_0) and done.all():
@@ -115,7 +106,7 @@ class _Walls(NamedTuple):
         determinant = by[0] * by[2] - by[1] ** 2
         of_mean = (by[2] * missing[0] - by[1] * missing[1]) / determinant
         of_slope = (by[0] * missing[1] - by[1] * missing[0]) / determinant
-        return cls(x, g, slope, by, of_mean + SIDES * of_slope, np.hypot(missing[0], 3 * missing[1]))
+        return cls(x, g, slope, by, of_mean + WALL_POSITIONS * of_slope, np.hypot(missing[0], 3 * missing[1]))
 
     def step_over_stress(self) -> Array:
         """Return the step of the stresses over the larger of these."""
@@ -146,12 +137,12 @@ def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
 def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array:
     """Return the wall rates after a step of the stress: linear in the rate at the wall of the larger, else in the stress."""
     size = np.abs(x)
-    bound = LARGEST_STEP * larger(x)
+    bound = MAX_RATE_GROWTH * larger(x)
     linear = np.clip(x + step / slope, -bound, bound)
-    minor = (size < ALIKE * size[::-1]) & (np.abs(step) > SMALL_STEP * np.abs(g))
+    minor = (size < MIN_RATE_RATIO * size[::-1]) & (np.abs(step) > LINEAR_RATE_BELOW * np.abs(g))
     if minor.any():
         moved = g[minor] + step[minor]
-        largest = law.stress(LARGEST_STEP * size[::-1][minor])[0]
+        largest = law.stress(MAX_RATE_GROWTH * size[::-1][minor])[0]
         moved = np.clip(moved, -largest, largest)
         linear[minor] = np.copysign(law.rate(np.abs(moved)), moved)
     return linear
@@ -160,7 +151,7 @@ def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array
 def _integrals(law: RateLaw, x: Array, g: Array) -> tuple[Array, Array]:
     """Return both integrals and their derivatives A, B, C."""
     size = np.abs(x)
-    alike: Flags = (x[0] * x[1] > 0) & (np.minimum(size[0], size[1]) > ALIKE * np.maximum(size[0], size[1]))
+    alike: Flags = (x[0] * x[1] > 0) & (np.minimum(size[0], size[1]) > MIN_RATE_RATIO * np.maximum(size[0], size[1]))
     few = np.flatnonzero(alike)
     found = np.empty((5, len(alike)))
     if len(few) < len(alike):
@@ -186,16 +177,16 @@ def _by_moments(law: RateLaw, x: Array, g: Array) -> tuple[Array, ...]:
 def _by_rule(law: RateLaw, x: Array, g_walls: Array) -> tuple[Array, ...]:
     """Return integrals and derivatives by the Gauss rule in the rate."""
     middle, half = 0.5 * (x[0] + x[1]), 0.5 * (x[1] - x[0])
-    offset = half * NODES[:, None]
+    offset = half * GAUSS_NODES[:, None]
     g, slope = _odd(law, middle + offset)
-    mean_slope = SHARES @ slope  # Q = 2 half mean_slope
+    mean_slope = MEAN_WEIGHTS @ slope  # Q = 2 half mean_slope
     # zeta at the nodes: the stress relative to that in the middle of the film, over Q.
-    flat = np.abs(half) < STEEPEST * np.abs(middle)
+    flat = np.abs(half) < LINEAR_STRESS_BELOW * np.abs(middle)
     Q = np.where(flat, 1.0, 2 * half * mean_slope)
-    zeta = np.where(flat, 0.5 * NODES[:, None], (g - 0.5 * (g_walls[0] + g_walls[1])) / Q)
+    zeta = np.where(flat, 0.5 * GAUSS_NODES[:, None], (g - 0.5 * (g_walls[0] + g_walls[1])) / Q)
     by_mean = 1 / mean_slope
     slope *= offset  # d zeta is the share of the slope in its mean
-    i_0 = middle + by_mean * (SHARES @ slope)
+    i_0 = middle + by_mean * (MEAN_WEIGHTS @ slope)
     slope *= zeta
-    i_1 = by_mean * (SHARES @ slope)  # the mean of zeta is zero
-    return i_0, i_1, by_mean, by_mean * (SHARES @ zeta), by_mean * (SHARES @ (zeta * zeta))
+    i_1 = by_mean * (MEAN_WEIGHTS @ slope)  # the mean of zeta is zero
+    return i_0, i_1, by_mean, by_mean * (MEAN_WEIGHTS @ zeta), by_mean * (MEAN_WEIGHTS @ (zeta * zeta))

@@ -16,7 +16,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MOST_KEPT, Key, Slopes, key_of
+from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Key, Slopes, key_of
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
@@ -203,7 +203,7 @@ class Newtonian:
         last = self._known.get(gap.shape)
         if last is not None and last.key == key and (last.slopes is not None or not with_slopes):
             return last
-        if len(self._known) >= MOST_KEPT:
+        if len(self._known) >= MAX_CACHED_SHAPES:
             self._known.clear()
         h, m, s = gap, flux_gap, self.slide
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)

@@ -38,8 +38,9 @@ __all__ = ["PRESETS", "Liquid", "Preset", "celsius", "glycerol_water", "water"]
 
 _TEMPERATURE = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]*)?)\s*(degC|°C|deg C|C|K)\s*")
 
-WATER_STRESS, GLYCEROL_STRESS, OIL_STRESS = 1e8, 3e7, 3e6
-"""kT for each molecule of water, of glycerol and of PAO 10 (0.63 kg/mol), rounded down [Pa]."""
+WATER_EYRING_STRESS = 1e8  # Stress kT per molecule of water, rounded down [Pa].
+GLYCEROL_EYRING_STRESS = 3e7  # Stress kT per molecule of glycerol, rounded down [Pa].
+OIL_EYRING_STRESS = 3e6  # Stress kT per molecule of PAO 10 (0.63 kg/mol), rounded down [Pa].
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,7 @@ def water(temperature: str | float = 25.0) -> Liquid:
     """
     T = _between(celsius(temperature), 0, 100)
     viscosity = _water(T)
-    return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_STRESS / viscosity)
+    return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_EYRING_STRESS / viscosity)
 
 
 def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0) -> Liquid:
@@ -181,7 +182,7 @@ def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0
     b = (4.9 + 0.036 * T) * a**2.5
     w = 1 - C + a * b * C * (1 - C) / (a * C + b * (1 - C))
     viscosity, name = _water(T) ** w * eta_g ** (1 - w), f"{100 * C:g} % glycerol in water at {T:g} degC"
-    return Liquid(name, viscosity, Fluid(), "Cheng 2008", GLYCEROL_STRESS / viscosity)
+    return Liquid(name, viscosity, Fluid(), "Cheng 2008", GLYCEROL_EYRING_STRESS / viscosity)
 
 
 def _water(T: float) -> float:
@@ -242,7 +243,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
             "pao-10": Preset(
                 "PAO 10 at 40 degC",
                 {},
-                _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_STRESS),
+                _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_EYRING_STRESS),
                 _OIL,
                 "40 degC, to 0.5 GPa",
             ),

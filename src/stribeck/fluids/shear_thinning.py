@@ -21,7 +21,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, key_of
+from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Fall, Key, Slopes, key_of
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Newtonian
@@ -29,17 +29,13 @@ from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
 __all__ = ["ShearThinning"]
 
-AT_REST = 1e-60
-"""Weissenberg number at speed zero: the fluid has its viscosity of low rates, and squares stay in double precision."""
+MIN_WEISSENBERG = 1e-60  # Weissenberg number at rest: the viscosity is that of low rates, and squares stay above zero.
 
-FAR = 4.0
-"""Factor by which a film may change before the local solutions of the last one are no good start."""
+MAX_GAP_RATIO = 4.0  # Largest ratio of the films of two evaluations for which the last flow is the first guess.
 
-NEAR = 0.3
-"""Change of a wall rate over the larger one up to which first order is a good start."""
+FIRST_ORDER_BELOW = 0.3  # Change of a wall rate over the larger one up to which a first-order prediction is the first guess.
 
-FAR_ABOVE = 1e4
-"""Largest rate of a film over that of the plateau of a power law from which on the inlet does not feel the plateau."""
+PLATEAU_RATE_RATIO = 1e4  # Largest rate of a film over the plateau of a power law above which the inlet misses the plateau.
 
 
 class _Local(NamedTuple):
@@ -167,7 +163,7 @@ class ShearThinning:
         """Return where the state leaves the range of the laws, or shears a power law at hardly more than its plateau."""
         said = notes_of(self.law, self.viscosity, self.density, gap=gap, pressure=pressure)
         rate = self.law.time * float(self.speed) / float(gap.min())
-        if not 0 < self.law.plateau < 1 or rate > FAR_ABOVE * self.law.plateau:
+        if not 0 < self.law.plateau < 1 or rate > PLATEAU_RATE_RATIO * self.law.plateau:
             return said
         return (
             *said,
@@ -186,7 +182,7 @@ class ShearThinning:
 
     def _weissenberg(self, eta: Array) -> Array:
         """Return the relaxation time in units of the film's, at each node: with the pressure it grows as the viscosity."""
-        wi = np.maximum(self.law.time * np.asarray(self.speed), AT_REST)
+        wi = np.maximum(self.law.time * np.asarray(self.speed), MIN_WEISSENBERG)
         return np.asarray(wi * eta)
 
     def _sheared(self, gap: Array, pressure: Array | None) -> tuple[Array, ...]:
@@ -228,13 +224,13 @@ class ShearThinning:
         wi = self._weissenberg(eta)
         r_0 = -wi * self.slide / gap
         r_1 = 0.5 * wi * (gap - flux_gap / rho) / gap**2
-        r_1 = np.where((r_0 == 0) & (r_1 == 0), AT_REST * wi / gap, r_1)
+        r_1 = np.where((r_0 == 0) & (r_1 == 0), MIN_WEISSENBERG * wi / gap, r_1)
         start = None if last is None or last.r_0.shape != r_0.shape else _scaled(last, r_0, r_1)
         shape = r_0.shape
         flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
         flow = Profile(*(each.reshape(shape) for each in flow))
         found = _Local(key, flow, wi, *of_pressure, r_0, r_1)
-        if len(self._known) >= MOST_KEPT:
+        if len(self._known) >= MAX_CACHED_SHAPES:
             self._known.clear()
         self._known[gap.shape] = found
         return found
@@ -253,6 +249,6 @@ def _scaled(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:
     ):
         step = (mean + 0.5 * sign * slope) / of_rate
         ratio = now / before
-        far = np.where((ratio < FAR) & (ratio > 1 / FAR), x * ratio, newtonian)
-        found.append(np.where(np.abs(step) < NEAR * size, x + step, far).ravel())
+        far = np.where((ratio < MAX_GAP_RATIO) & (ratio > 1 / MAX_GAP_RATIO), x * ratio, newtonian)
+        found.append(np.where(np.abs(step) < FIRST_ORDER_BELOW * size, x + step, far).ravel())
     return found[0], found[1]

@@ -15,20 +15,17 @@ from stribeck.solids.solid import Solid, lengths_of
 
 __all__ = ["check_solid"]
 
-MEMBERS = ("name", "parameters", "scaled", "deflection", "far_gap")
+REQUIRED_MEMBERS = ("name", "parameters", "scaled", "deflection", "far_gap")
 
-RTOL = 1e-6
-"""Largest difference of deflections in two units of length, over the largest of them: they differ by rounding alone."""
+SCALING_RTOL = 1e-6  # Largest difference of deflections in two units of length over the largest: rounding alone differs.
 
-FAR, FAR_RTOL = 1e3, 0.05
-"""Distance over the longest length of the body where a load of pi/2 is nearly one of a point, and the largest difference of
-gaps from a tenth of that distance on [u_Hz]."""
+FAR_DISTANCE = 1e3  # Distance over the longest length of the body at which a load of pi/2 acts nearly as a point.
+FAR_GAP_TOLERANCE = 0.05  # Largest difference of gaps from a tenth of that distance on [u_Hz].
 
-UNITS = (0.1, 10.0)
-"""Units of length to which the body is scaled."""
+CHECKED_UNITS = (0.1, 10.0)  # Units of length to which the body is scaled.
 
-ORDERS = np.geomspace(1e-6, 1.0, 7)
-"""Lengths at which a body is looked at that tells none of its own, SI to Hertz units."""
+# Lengths at which a body that has no length of its own is checked, SI to Hertz units.
+CHECKED_LENGTHS = np.geomspace(1e-6, 1.0, 7)
 
 GUIDE = "See Add a fluid in for_developers.md."
 
@@ -37,7 +34,7 @@ def check_solid(name: str, solid: Any) -> None:
     """Refuse a body of somebody else's whose members contradict each other; those of the package have tests of their own."""
     if type(solid).__module__.startswith("stribeck."):
         return
-    lacking = [member for member in MEMBERS if not hasattr(solid, member)]
+    lacking = [member for member in REQUIRED_MEMBERS if not hasattr(solid, member)]
     if lacking:
         raise InputError(f"{name} = {show(solid)} lacks {', '.join(lacking)}. {GUIDE}")
     if not isinstance(solid, Hashable):
@@ -49,7 +46,7 @@ def check_solid(name: str, solid: Any) -> None:
 def _checked(solid: Solid) -> None:
     try:
         longest = _longest(solid.scaled(1.0))
-        for length in (longest,) if longest > 0 else ORDERS.tolist():
+        for length in (longest,) if longest > 0 else CHECKED_LENGTHS.tolist():
             _scaling(solid, length)
         _far_gap(solid, longest if longest > 0 else 1.0)
     except InputError:
@@ -60,20 +57,20 @@ def _checked(solid: Solid) -> None:
 
 def _scaling(solid: Solid, length: float) -> None:
     """Refuse a body that deflects in another way in another unit of length: deflection over u_Hz is a length over a."""
-    mesh = Mesh(_edges(FAR), ORDER)
+    mesh = Mesh(_edges(FAR_DISTANCE), NODES_PER_PANEL)
     longest = _longest(solid.scaled(1.0))
-    for unit in UNITS:
+    for unit in CHECKED_UNITS:
         found = unit * length * _longest(solid.scaled(unit * length))
-        if not abs(found - longest) <= RTOL * longest:
+        if not abs(found - longest) <= SCALING_RTOL * longest:
             raise InputError(
                 f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its lengths have "
                 f"{found:.6g} for {longest:.6g}. {GUIDE}"
             )
     first = _deflection(solid.scaled(length), mesh)
     size = float(np.abs(first).max())
-    for unit in UNITS:
-        other = unit * _deflection(solid.scaled(unit * length), Mesh(mesh.edges / unit, ORDER))
-        if not np.abs(other - first).max() <= RTOL * size:
+    for unit in CHECKED_UNITS:
+        other = unit * _deflection(solid.scaled(unit * length), Mesh(mesh.edges / unit, NODES_PER_PANEL))
+        if not np.abs(other - first).max() <= SCALING_RTOL * size:
             raise InputError(
                 f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its deflection differs "
                 f"by {np.abs(other - first).max() / size:.2g} of the largest. {GUIDE}"
@@ -83,23 +80,23 @@ def _scaling(solid: Solid, length: float) -> None:
 def _far_gap(solid: Solid, length: float) -> None:
     """Refuse a body whose gap far away is not that of its own deflection under a load of pi/2."""
     scaled = solid.scaled(length)
-    mesh = Mesh(_edges(FAR), ORDER)
+    mesh = Mesh(_edges(FAR_DISTANCE), NODES_PER_PANEL)
     x = mesh.nodes[: -mesh.order]
     gap = np.asarray(scaled.far_gap(x), dtype=float)
     if gap.shape != x.shape:
         raise InputError(f"{_name(solid)}: far_gap must return a number for each place. {GUIDE}")
     beyond = gap - 0.5 * x**2 - _deflection(scaled, mesh)
     for side in (-1, 1):
-        far = beyond[side * x > 0.1 * FAR]
-        if not np.ptp(far) <= FAR_RTOL:
+        far = beyond[side * x > 0.1 * FAR_DISTANCE]
+        if not np.ptp(far) <= FAR_GAP_TOLERANCE:
             raise InputError(
                 f"{_name(solid)}: far_gap does not agree with deflection under a load of pi/2: beyond an offset they differ "
-                f"by {np.ptp(far):.2g} u_Hz from {0.1 * FAR:g} to {FAR:g} times the longest of its lengths. {GUIDE}"
+                f"by {np.ptp(far):.2g} u_Hz from {0.1 * FAR_DISTANCE:g} to {FAR_DISTANCE:g} times the longest of its "
+                f"lengths. {GUIDE}"
             )
 
 
-ORDER = 8
-"""Nodes of a panel."""
+NODES_PER_PANEL = 8  # Nodes of a panel of the mesh of the check.
 
 
 def _edges(far: float) -> Array:
@@ -114,7 +111,7 @@ def _deflection(solid: Solid, mesh: Mesh) -> Array:
     if matrix.shape != (mesh.size, mesh.size) or not np.isfinite(matrix).all():
         raise InputError(f"{_name(solid)}: deflection must return a finite matrix, nodes by nodes. {GUIDE}")
     finite = slice(0, mesh.size - mesh.order)
-    half = mesh.edges[-1] / FAR
+    half = mesh.edges[-1] / FAR_DISTANCE
     x = mesh.nodes[finite] / half
     pressure = np.where(np.abs(x) < 1, 15 * np.pi / 32 * (1 - x**2) ** 2, 0.0)
     found = matrix[finite, finite] @ pressure

@@ -27,22 +27,19 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids.check_solid import check_solid
 from stribeck.solids.solid import Solid
 
-FAR_ACCURACY = 4e-13
-"""Error of a panel's own Gauss rule for the logarithm from which a target counts as far: rho**(-2 order) for a distance of
-(rho + 1/rho)/2 half-widths."""
+# Error of a panel's own Gauss rule for the logarithm, rho**(-2 order) at (rho + 1/rho)/2 half-widths, below which it serves.
+FAR_RULE_ERROR = 4e-13
 
-LOST_DIGITS = 1e5
-"""Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
-coefficients are small.  Beyond, a finer Gauss rule takes over."""
+# Growth of rounding that the upward recurrence of Q_n may have outside a panel: above it a finer Gauss rule serves.
+MAX_ROUNDING_GROWTH = 1e5
 
-EXACT = 1e-16
-"""Error of that rule."""
+FINE_RULE_ERROR = 1e-16  # Error of that finer Gauss rule.
 
 
 def log_moments(points: Array, order: int) -> Array:
     r"""Return :math:`\int_{-1}^{1} P_n(t) \ln|s - t| dt` for ``n < order`` at ``points`` s, shape (len(points), order)."""
     s = np.asarray(points, dtype=float)
-    near = np.abs(s) <= np.cosh(np.log(LOST_DIGITS) / (2 * order))
+    near = np.abs(s) <= np.cosh(np.log(MAX_ROUNDING_GROWTH) / (2 * order))
     moments = np.empty((len(s), order))
     moments[near] = _by_recurrence(s[near], order)
     if not near.all():
@@ -70,8 +67,8 @@ def _by_recurrence(s: Array, order: int) -> Array:
 @lru_cache(maxsize=32)
 def _rule_outside(order: int) -> tuple[Array, Array]:
     """Nodes of a rule that integrates the logarithm where no upward recurrence does, and weights times polynomials there."""
-    log_rho = np.log(LOST_DIGITS) / (2 * order)
-    nodes, weights = legendre.leggauss(math.ceil(0.5 * (order - np.log(EXACT) / log_rho)))
+    log_rho = np.log(MAX_ROUNDING_GROWTH) / (2 * order)
+    nodes, weights = legendre.leggauss(math.ceil(0.5 * (order - np.log(FINE_RULE_ERROR) / log_rho)))
     return nodes, weights[:, None] * legendre.legvander(nodes, order - 1)
 
 
@@ -96,7 +93,7 @@ def _log_integrals(s: Array, order: int) -> Array:
 
 def near_distance(order: int) -> float:
     """Return the distance from its centre, in half-widths, within which a panel is integrated exactly."""
-    rho = float(FAR_ACCURACY ** (-0.5 / order))
+    rho = float(FAR_RULE_ERROR ** (-0.5 / order))
     return 0.5 * (rho + 1 / rho)
 
 

@@ -21,18 +21,15 @@ from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.legendre_q import ring_functions
 
-FAR_DISTANCE, FAR_POINTS = 1.35, 24
-"""Distance from its centre, in half-widths, from which a target is far from a panel, and Gauss points for it: the kernel
-leaves rho**-35 of them beside a polynomial of degree 12, 1e-12."""
+FAR_DISTANCE = 1.35  # Distance from the centre of a panel [half-widths] from which FAR_POINTS serve, with an error of 1e-12.
+FAR_POINTS = 24  # Gauss points of a panel for targets from FAR_DISTANCE on: rho**-35 is left beside a polynomial of degree 12.
 
-FARTHER_DISTANCE, FARTHER_POINTS = 2.8, 16
-"""The same for targets that are far enough for fewer points."""
+FARTHER_DISTANCE = 2.8  # Distance from the centre of a panel [half-widths] from which FARTHER_POINTS serve.
+FARTHER_POINTS = 16  # Gauss points of a panel for targets from FARTHER_DISTANCE on.
 
-NEAR_POINTS = 40
-"""Gauss points on each part of a near panel."""
+NEAR_POINTS = 40  # Gauss points on each part of a near panel.
 
-CLUSTER = 5
-"""Power with which these cluster towards the target."""
+CLUSTER_POWER = 5  # Power with which the points of a near panel cluster towards the target.
 
 
 @lru_cache(maxsize=8)
@@ -45,7 +42,7 @@ def _clustered(count: int) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1], clustered towards 0."""
     t, w = _gauss(count)
     v = 0.5 * (t + 1.0)
-    return v**CLUSTER, 0.5 * w * CLUSTER * v ** (CLUSTER - 1)
+    return v**CLUSTER_POWER, 0.5 * w * CLUSTER_POWER * v ** (CLUSTER_POWER - 1)
 
 
 def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array | None = None) -> Array:

@@ -16,8 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 
-OFFSET = -(1 + math.log(4)) / 4
-"""Offset of the Hertz contact [u_Hz]."""
+HERTZ_OFFSET = -(1 + math.log(4)) / 4  # Offset of the Hertz contact [u_Hz].
 
 
 def pressure(x: Array) -> Array:

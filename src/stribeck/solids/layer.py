@@ -38,32 +38,29 @@ from stribeck.solids.solid import Lengths
 
 __all__ = ["Layer"]
 
-REACH = 24.0
-"""Distance in thicknesses beyond which the kernel is taken for zero."""
+KERNEL_RADIUS = 24.0  # Distance [thicknesses] at which the kernel, below 3e-9 there, is cut to zero.
 
-TABLE = 160
-"""Chebyshev coefficients of the smooth part of the kernel: exact to 1e-13."""
+KERNEL_COEFFICIENTS = 160  # Chebyshev coefficients of the smooth part of the kernel, good to 1e-13.
 
-LARGEST_WAVE, WAVE_PANELS = 40.0, 60
-"""Wave number times thickness beyond which S is one to rounding, and panels of waves up to there."""
+MAX_WAVENUMBER = 40.0  # Wave number times thickness above which S is one to rounding.
+WAVENUMBER_PANELS = 60  # Gauss panels of the wave numbers up to there.
 
-CELLS, DEGREES = 1024, 6
-"""Cells over :data:`REACH` on which the smooth part is a polynomial, and its coefficients there: to 1e-14 the same."""
+KERNEL_CELLS = 1024  # Cells up to KERNEL_RADIUS on which the smooth part is a polynomial, equal to its series to 1e-14.
+CELL_TERMS = 6  # Coefficients of the polynomial on a cell.
 
-FINEST_PANEL = 0.75
-"""Half-width of a panel in thicknesses up to which its own nodes integrate the smooth part; wider ones need more near them."""
+OWN_NODES_BELOW = 0.75  # Half-width of a panel [thicknesses] up to which its own nodes integrate the smooth part.
 
-EXACT = 1e-13
-"""Error of those: by the ellipse of Gauss' rule through the nearest singularity, the image two thicknesses below a place."""
+# Error of the rule for the smooth part on wider panels, by the image two thicknesses below the target.
+SMOOTH_RULE_ERROR = 1e-13
 
-WIDEST_PANEL = 6.0
-"""Half-width of a panel in thicknesses from which its pressure is integrated over the reach of the kernel alone."""
+KERNEL_RULE_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure is integrated over the kernel's radius.
 
-STEPS = (64, 8)
-"""Nodes over that reach on each side of a place, and the power by which they crowd there: to 1e-14 for logarithms."""
+# Nodes over that radius on each side of a target, and the power by which they cluster: 1e-14 for a logarithm.
+NEAR_RULE = (64, 8)
 
-OFF_PANEL, FROM_AFAR, STEPS_FROM_AFAR = 4.0, 40, (32, 1)
-"""Distance from such a panel in thicknesses beyond which so many places tell what it does at all others, and their nodes."""
+FAR_FROM_PANEL = 4.0  # Distance from a wide panel [thicknesses] above which the deflection is interpolated.
+FAR_TARGETS = 40  # Chebyshev targets of that interpolation.
+FAR_RULE = (32, 1)  # Nodes over the kernel's radius for those targets, and the power by which they cluster.
 
 
 @dataclass(frozen=True, init=False)
@@ -131,14 +128,14 @@ class Layer:
         by_panels[first, :, second] = found
         smooth *= mesh.weights[:, None]
         width = mesh.half_widths[:-1] / d
-        for k in np.flatnonzero((width > FINEST_PANEL) & (width <= WIDEST_PANEL)).tolist():
+        for k in np.flatnonzero((width > OWN_NODES_BELOW) & (width <= KERNEL_RULE_ABOVE)).tolist():
             near = _sees_images(mesh, k, d)
             smooth[k * mesh.order : (k + 1) * mesh.order, near] = self._of_wide_panel(mesh, k, mesh.nodes[near])
         kernel += smooth.T
-        kernel[np.abs(mesh.nodes[:, None] - mesh.nodes) >= REACH * d] = 0.0
-        for k in np.flatnonzero(width > WIDEST_PANEL).tolist():
+        kernel[np.abs(mesh.nodes[:, None] - mesh.nodes) >= KERNEL_RADIUS * d] = 0.0
+        for k in np.flatnonzero(width > KERNEL_RULE_ABOVE).tolist():
             column = kernel[:, k * mesh.order : (k + 1) * mesh.order]
-            near = np.abs(mesh.nodes - mesh.centres[k]) < mesh.half_widths[k] + REACH * d
+            near = np.abs(mesh.nodes - mesh.centres[k]) < mesh.half_widths[k] + KERNEL_RADIUS * d
             column[:] = 0.0
             column[near] = self._within_reach(mesh, k, mesh.nodes[near])
         beyond = np.arange(mesh.size - mesh.order, mesh.size)
@@ -149,7 +146,7 @@ class Layer:
         """Return the smooth part of the kernel between places, the logarithm of the thickness included."""
         distance = np.abs(x - y)
         distance *= 1 / self.thickness
-        np.minimum(distance, REACH, out=distance)
+        np.minimum(distance, KERNEL_RADIUS, out=distance)
         found = smooth_kernel(distance, self.poisson_ratio)
         found += math.log(self.thickness) / math.pi
         return found
@@ -160,7 +157,7 @@ class Layer:
         nodes, weights = _finer_rule(mesh.order, _nodes_for(half / d, mesh.order))
         y = (float(mesh.centres[k]) + half * nodes)[:, None]
         smooth = self._between(x, y)
-        beyond = np.abs(x - y) > REACH * d
+        beyond = np.abs(x - y) > KERNEL_RADIUS * d
         smooth[beyond] = np.log(np.abs(x - y)[beyond]) / math.pi  # where the whole kernel is zero
         return np.asarray((half * weights) @ smooth)
 
@@ -170,14 +167,18 @@ class Layer:
         panel = reference(mesh.order)
 
         def ahead(place: Array, steps: int, grading: int) -> Array:
-            first, last = np.clip(-half - place, 0.0, REACH), np.clip(half - place, 0.0, REACH)
+            first, last = np.clip(-half - place, 0.0, KERNEL_RADIUS), np.clip(half - place, 0.0, KERNEL_RADIUS)
             found = np.zeros((len(place), mesh.order))
             some = last > first
             # From afar it is a smooth function of the place, and the nodes in the contact lie close together.
-            far = some & (first > OFF_PANEL)
-            if 2 * half >= REACH - OFF_PANEL and np.count_nonzero(far) > FROM_AFAR:
-                rule, middle, span = reference(FROM_AFAR), -half - 0.5 * (OFF_PANEL + REACH), 0.5 * (REACH - OFF_PANEL)
-                there = ahead(middle + span * rule.nodes, *STEPS_FROM_AFAR)
+            far = some & (first > FAR_FROM_PANEL)
+            if 2 * half >= KERNEL_RADIUS - FAR_FROM_PANEL and np.count_nonzero(far) > FAR_TARGETS:
+                rule, middle, span = (
+                    reference(FAR_TARGETS),
+                    -half - 0.5 * (FAR_FROM_PANEL + KERNEL_RADIUS),
+                    0.5 * (KERNEL_RADIUS - FAR_FROM_PANEL),
+                )
+                there = ahead(middle + span * rule.nodes, *FAR_RULE)
                 found[far] = rule.interpolation((place[far] - middle) / span) @ there
                 some &= ~far
             first, length = first[some, None], (last - first)[some, None]
@@ -188,7 +189,7 @@ class Layer:
             found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
-        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), *STEPS).reshape(2, len(x), -1)
+        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), *NEAR_RULE).reshape(2, len(x), -1)
         return np.asarray(to_right + to_left[:, ::-1])
 
     def far_gap(self, x: Array) -> Array:
@@ -202,13 +203,13 @@ def _sees_images(mesh: Mesh, k: int, thickness: float) -> Flags:
     Polynomials on the panel converge by the ellipse through the image.
     """
     image = (mesh.nodes - mesh.centres[k] + 2j * thickness) / mesh.half_widths[k]
-    return np.asarray(np.abs(image - 1) + np.abs(image + 1) < 2 * math.hypot(1.0, 2 / FINEST_PANEL))
+    return np.asarray(np.abs(image - 1) + np.abs(image + 1) < 2 * math.hypot(1.0, 2 / OWN_NODES_BELOW))
 
 
 def _nodes_for(half_width: float, order: int) -> int:
     """Return how many nodes integrate the smooth part times the polynomials of a panel, with its half-width in thicknesses."""
     rho = 2 / half_width + math.hypot(1.0, 2 / half_width)
-    return 4 * math.ceil((order - 1 - math.log(EXACT) / math.log(rho)) / 8)
+    return 4 * math.ceil((order - 1 - math.log(SMOOTH_RULE_ERROR) / math.log(rho)) / 8)
 
 
 @lru_cache(maxsize=64)
@@ -239,24 +240,24 @@ def transfer(x: Array, poisson_ratio: float) -> Array:
 
 @lru_cache(maxsize=16)
 def _on_cells(poisson_ratio: float) -> Cells:
-    """Return the smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
+    """Return the smooth kernel over ``0 <= xi <= KERNEL_RADIUS``, quick to evaluate."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
-    half = 0.5 * LARGEST_WAVE / WAVE_PANELS
-    q = (half * (1 + 2 * np.arange(WAVE_PANELS)[:, None] + nodes)).ravel()
-    weights = np.tile(half * weights, WAVE_PANELS)
+    half = 0.5 * MAX_WAVENUMBER / WAVENUMBER_PANELS
+    q = (half * (1 + 2 * np.arange(WAVENUMBER_PANELS)[:, None] + nodes)).ravel()
+    weights = np.tile(half * weights, WAVENUMBER_PANELS)
     excess = transfer(q, poisson_ratio) - 1
     return smooth_on_cells(lambda xi: ((excess * np.cos(np.outer(xi, q)) + np.exp(-q)) / q) @ weights / np.pi)
 
 
 def smooth_on_cells(function: Callable[[Array], Array]) -> Cells:
-    """Return a smooth function over ``0 <= xi <= REACH`` on cells, by its Chebyshev series."""
-    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
-    series = chebyshev.chebfit(2 * xi / REACH - 1, function(xi), TABLE - 1)
+    """Return a smooth function over ``0 <= xi <= KERNEL_RADIUS`` on cells, by its Chebyshev series."""
+    xi = 0.5 * KERNEL_RADIUS * (1 + np.cos(np.pi * (np.arange(KERNEL_COEFFICIENTS) + 0.5) / KERNEL_COEFFICIENTS))
+    series = chebyshev.chebfit(2 * xi / KERNEL_RADIUS - 1, function(xi), KERNEL_COEFFICIENTS - 1)
 
     def smooth(xi: Array) -> Array:
-        return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, series), dtype=float)
+        return np.asarray(chebyshev.chebval(2 * xi / KERNEL_RADIUS - 1, series), dtype=float)
 
-    return Cells.of(smooth, 0.0, REACH, CELLS, DEGREES)
+    return Cells.of(smooth, 0.0, KERNEL_RADIUS, KERNEL_CELLS, CELL_TERMS)
 
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:

@@ -23,29 +23,27 @@ from stribeck._types import Array
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflection_by_mode
-from stribeck.solids.layer import LARGEST_WAVE, REACH, Layer, smooth_on_cells, transfer
+from stribeck.solids.layer import KERNEL_RADIUS, MAX_WAVENUMBER, Layer, smooth_on_cells, transfer
 
 __all__ = ["layer_by_mode", "smooth_kernel"]
 
-WIDEST_PANEL = 6.0
-"""Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
+LOCAL_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure acts at its own nodes only.
 
-ANGLES_PER_MODE = 4
-"""Points around a ring over the number of modes."""
+ANGLES_PER_MODE = 4  # Points around a ring over the number of angular modes.
 
 
 @lru_cache(maxsize=16)
 def _on_cells(poisson_ratio: float) -> Cells:
-    """Return k_s over ``0 <= xi <= REACH``, quick to evaluate."""
+    """Return k_s over ``0 <= xi <= KERNEL_RADIUS``, quick to evaluate."""
     nodes, weights = np.polynomial.legendre.leggauss(1200)
-    q, weights = 0.5 * LARGEST_WAVE * (1 + nodes), 0.5 * LARGEST_WAVE * weights
+    q, weights = 0.5 * MAX_WAVENUMBER * (1 + nodes), 0.5 * MAX_WAVENUMBER * weights
     weights = weights * (transfer(q, poisson_ratio) - 1)
     return smooth_on_cells(lambda xi: np.asarray(scipy.special.j0(np.outer(xi, q)) @ weights))
 
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
     """Return k_s at distances of xi thicknesses."""
-    return np.where(xi < REACH, _on_cells(poisson_ratio)(xi), -1.0 / np.maximum(xi, REACH))
+    return np.where(xi < KERNEL_RADIUS, _on_cells(poisson_ratio)(xi), -1.0 / np.maximum(xi, KERNEL_RADIUS))
 
 
 def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
@@ -57,7 +55,7 @@ def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
     d, nu, r = layer.thickness, layer.poisson_ratio, mesh.radii
     found = deflection_by_mode(mesh)
     half_widths = 0.5 * np.diff(mesh.edges)
-    wide = half_widths > WIDEST_PANEL * d
+    wide = half_widths > LOCAL_ABOVE * d
     first_wide = int(np.argmax(wide)) if wide.any() else mesh.panels
     last = mesh.rings if first_wide == mesh.panels else int(mesh.of_panel[first_wide, 0]) + 1
     # The angle must resolve the layer on the largest ring of sources.

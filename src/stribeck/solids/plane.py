@@ -38,8 +38,8 @@ def _thickness(solid: Layer) -> float:
     return solid.thickness
 
 
+# Body on the plane by the kind of solid of the model; the half-plane becomes the half-space.
 BODIES: dict[type, PlaneBody] = {
     HalfPlane: PlaneBody(_half_space, _any, 1.0),
     Layer: PlaneBody(layer_by_mode, _thickness, 0.0),
 }
-"""By the kind of the solid of the model, whose half-plane is the half-space here."""

@@ -16,8 +16,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 
-KEPT = 3
-"""Deflections kept: of the meshes at both ends of an interval and of the finer one of an error estimate."""
+# Deflection matrices kept: the meshes at both ends of an interval and the finer one of an error estimate.
+CACHED_DEFLECTIONS = 3
 
 
 class Lengths(NamedTuple):
@@ -73,6 +73,6 @@ def deflecting(solids: Sequence[Solid], mesh: Mesh) -> Callable[[Array], Array]:
     return lambda pressure: np.asarray(np.matmul(stacked, pressure[..., None])[..., 0])
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_DEFLECTIONS)
 def _deflection(solid: Solid, mesh: Mesh) -> Array:
     return solid.deflection(mesh)

@@ -36,10 +36,9 @@ from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
 
 __all__ = ["Memory", "Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction"]
 
-MOST_TERMS = 40
+MAX_TERMS = 40  # Terms of a Prony series that are accepted.
 
-FORGOTTEN = 37.0
-"""Times after which what is left of a pressure is rounding."""
+MEMORY_DECAY = 37.0  # Retardation times after which what is left of a pressure is rounding.
 
 AGES, SHARES = (0.5 * each for each in leggauss(24))
 AGES = AGES + 0.5
@@ -166,8 +165,8 @@ class Prony(_Viscoelastic):
     def __init__(self, times: Any, moduli: Any, base: Solid | None = None) -> None:
         if isinstance(times, str) or not all(hasattr(each, "__len__") and np.shape(each) for each in (times, moduli)):
             raise InputError(f"times = {show(times)} and moduli = {show(moduli)} must be lists, of the same length.")
-        if not 0 < len(times) == len(moduli) <= MOST_TERMS:
-            raise InputError(f"times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MOST_TERMS}.")
+        if not 0 < len(times) == len(moduli) <= MAX_TERMS:
+            raise InputError(f"times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MAX_TERMS}.")
         tau = tuple(_positive("times", each) for each in times)
         g = tuple(to_si(each, "number", "moduli") for each in moduli)
         if min(g) <= 0 or len(set(tau)) < len(tau):
@@ -268,7 +267,7 @@ def _beyond_panels(mesh: Mesh, deborah: Array) -> tuple[Array, Array]:
     """
     n, edge, de = mesh.order, float(mesh.edges[-1]), deborah[:, None]
     x = np.append(-edge, mesh.nodes[-n:])
-    ages = np.where(x > 0, np.minimum((x - edge) / de, FORGOTTEN), FORGOTTEN)[..., None] * AGES
+    ages = np.where(x > 0, np.minimum((x - edge) / de, MEMORY_DECAY), MEMORY_DECAY)[..., None] * AGES
     t = 1 / (x[:, None] - de[..., None] * ages)
     basis = reference(n).interpolation((t / mesh.half_widths[-1]).ravel()).reshape(*t.shape, n)
     weights = ages[..., -1:] / AGES[-1] * SHARES * np.exp(-ages) * t**2

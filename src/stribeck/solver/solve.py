@@ -454,7 +454,7 @@ def hertz_solution(groups: Groups, contact: Contact | None, rtol: float) -> Solu
         minimum_gap=0.0,
         minimum_position=0.0,
         flux_gap=0.0,
-        offset=hertz.OFFSET,
+        offset=hertz.HERTZ_OFFSET,
         viscous_published=0.0,
         viscous_balanced=0.0,
     )

@@ -112,4 +112,4 @@ def offset(groups: Groups) -> Value:
     -----
     Source: [BP] Eq. (vertical_position_Hz).
     """
-    return np.full(groups.shape, hertz.OFFSET)
+    return np.full(groups.shape, hertz.HERTZ_OFFSET)

@@ -126,7 +126,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     Source: theory.md, section 7.
     """
     kappa = groups.relative_roughness
-    leading: Array = hertz.OFFSET + kappa * (math.log(2) - 0.5 * np.log(groups.load))
+    leading: Array = hertz.HERTZ_OFFSET + kappa * (math.log(2) - 0.5 * np.log(groups.load))
     return leading + second(terms) * np.square(kappa) / 3
 
 

@@ -1,7 +1,4 @@
-"""Parts of charts as plain data for ``chart.js``: axes, lines, points and legends; and the difference of two charts.
-
-Every series has a name for itself, ``id``, by which later data find it.
-"""
+"""Parts of charts as plain data for ``chart.js``: axes, lines, points and legends."""
 
 from __future__ import annotations
 
@@ -14,27 +11,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.explorer.charts.palette import Palette
 
-__all__ = ["Options", "chart", "difference", "line", "linear_axis", "log_axis", "marker", "pairs", "points"]
+__all__ = ["Options", "chart", "line", "linear_axis", "log_axis", "marker", "pairs", "points"]
 
 Options = dict[str, Any]
-
-
-def difference(old: Options, new: Options) -> Options | None:
-    """Return what takes a chart from ``old`` to ``new``."""
-    if old == new:
-        return None
-    changed = {key: value for key, value in new.items() if key != "series" and old.get(key) != value}
-    before = {each["id"]: each for each in old.get("series", ())}
-    if old.get("series") != new["series"]:
-        changed["series"] = [_series_change(before.get(each["id"], {}), each) for each in new["series"]]
-    return changed
-
-
-def _series_change(old: Options, new: Options) -> Options:
-    if old == new:
-        return {"id": new["id"]}
-    same = old.keys() == new.keys() and all(old[key] == value for key, value in new.items() if key != "data")
-    return {"id": new["id"], "data": new["data"]} if same else new
 
 
 def chart(palette: Palette, x: Options, y: Options, series: list[Options], listed: Sequence[str] = ()) -> Options:

@@ -20,7 +20,7 @@ from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA
-from stribeck.contact_laws.scaled import NAMED
+from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.model import Model
 from stribeck.explorer.inputs.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_model
@@ -266,7 +266,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         if value == "persson":
             tables["surface"] = {key: TYPICAL[key] for key in SURFACE[0]}
             return _of_surface(now, tables | {"law": value})
-        return _with(now, {**tables, "law": value}, **_same_pressure(now, NAMED[value]))
+        return _with(now, {**tables, "law": value}, **_same_pressure(now, NAMED_LAWS[value]))
     if name == "geometry":
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         motion = tables.pop("motion", {})

@@ -20,22 +20,19 @@ from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Eyring"]
 
-MILDEST = 1e-3
-"""What stresses change by on the way from nearly Newtonian fluids."""
+STRESS_RATIO_AT_START = 1e-3  # Eyring stress over that at the start of the homotopy from a nearly Newtonian fluid.
 
-SMALLEST, LARGEST = 1e-150, 300.0
-"""Half differences of the wall stresses, over Eyring's, between which squares of rates are numbers."""
+MIN_HALF_DIFFERENCE = 1e-150  # Least half difference of the wall stresses over Eyring's stress: its square is above zero.
+MAX_HALF_DIFFERENCE = 300.0  # Largest half difference of the wall stresses over Eyring's stress: the rates stay finite.
 
-LONGEST_STEP = math.log(4.0)
-"""Largest change of the logarithm of that difference in a step."""
+MAX_LOG_STEP = math.log(4.0)  # Largest change of the logarithm of that half difference in one step.
 
-CLOSE = 1e-7
-"""Step in the logarithm after which the next would be below rounding, as steps are squared."""
+STEP_RTOL = 1e-7  # Step of that logarithm that ends the iteration: the next one, its square, is below rounding.
 
-MOST_STEPS = 80
+MAX_STEPS = 80  # Newton steps of a column before its flow counts as not found.
 
-SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
-"""Of Eyring's second moment over the third power of the stress, up to his: the next term is 1e-17 of the first."""
+# Eyring's second moment over the third power of the stress in powers of its square, to 1e-17 up to Eyring's stress.
+SECOND_MOMENT_SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
 
 
 @dataclass(frozen=True, init=False)
@@ -90,7 +87,7 @@ class Eyring(RateLaw):
 
     def milder(self, part: float) -> Self:
         """Return the fluid with a higher stress."""
-        return type(self)(self.eyring_stress * MILDEST ** (part - 1))
+        return type(self)(self.eyring_stress * STRESS_RATIO_AT_START ** (part - 1))
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return arsinh(x) and its slope."""
@@ -116,20 +113,20 @@ class Eyring(RateLaw):
 
         The left side rises with Q.
         """
-        size = np.maximum(np.abs(r_1), SMALLEST * (1 + np.abs(r_0)))
+        size = np.maximum(np.abs(r_1), MIN_HALF_DIFFERENCE * (1 + np.abs(r_0)))
         wanted, square = np.log(2 * size), r_0 * r_0
         q = np.arcsinh(6 * size) if start is None else 0.5 * np.abs(np.arcsinh(start[1]) - np.arcsinh(start[0]))
-        q = np.clip(q, np.minimum(3 * size / (1 + np.abs(r_0)), 1.0), LARGEST)
-        for _ in range(MOST_STEPS):
+        q = np.clip(q, np.minimum(3 * size / (1 + np.abs(r_0)), 1.0), MAX_HALF_DIFFERENCE)
+        for _ in range(MAX_STEPS):
             S, S_q = of_half(q)
             slip = square / (S * S)
             missing = wanted - np.log(S_q) - 0.5 * np.log1p(slip)
             change = missing / (q * ((S - 2 * S_q / q) / S_q - slip / (1 + slip) * S_q / S))
-            q = np.minimum(q * np.exp(np.clip(change, -LONGEST_STEP, LONGEST_STEP)), LARGEST)
-            if not np.abs(change).max() > CLOSE:
+            q = np.minimum(q * np.exp(np.clip(change, -MAX_LOG_STEP, MAX_LOG_STEP)), MAX_HALF_DIFFERENCE)
+            if not np.abs(change).max() > STEP_RTOL:
                 break
         else:
-            q = np.where(np.abs(change) > CLOSE, np.nan, q)
+            q = np.where(np.abs(change) > STEP_RTOL, np.nan, q)
         S, S_q = of_half(q)
         sinh_T = r_0 / S
         T, cosh_T, curvature = np.arcsinh(sinh_T), np.hypot(1.0, sinh_T), 0.25 * (S - 2 * S_q / q)
@@ -150,8 +147,8 @@ def of_half(q: Array) -> tuple[Array, Array]:
 
 def _series(square: Array) -> Array:
     """Return (q cosh q - sinh q)/q**3 for q**2 up to one."""
-    found = np.full_like(square, SERIES[0])
-    for term in SERIES[1:]:
+    found = np.full_like(square, SECOND_MOMENT_SERIES[0])
+    for term in SECOND_MOMENT_SERIES[1:]:
         found *= square
         found += term
     return found

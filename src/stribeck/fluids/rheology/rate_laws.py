@@ -26,7 +26,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, RateLaw
 from stribeck.fluids.rheology.tabulated import (
-    SMALLEST_EXPONENT,
+    MIN_EXPONENT,
     TabulatedLaw,
     checked_exponent,
     checked_time,
@@ -40,15 +40,13 @@ __all__ = ["Carreau", "Cross", "PowerLaw"]
 
 Plateaus = TypeVar("Plateaus", bound="_BetweenPlateaus")
 
-LOWEST = 1e-8
-"""Rate times relaxation time below which a power law has its plateau: without one, pressure and drag fall off so slowly far
-away that for n <= 1/2 the drag has no bound."""
+# Shear rate times relaxation time below which a power law has its plateau: without one, its drag has no bound for n <= 1/2.
+PLATEAU_RATE = 1e-8
 
-FAR_DRAG = 0.75
-"""Exponent below which the drag grows by more than about 1e-3 if the plateau begins at a rate 1e4 times lower."""
+# Exponent below which the drag grows by 1e-3 or more if the plateau begins at a rate 1e4 times lower.
+FAR_DRAG_EXPONENT = 0.75
 
-MILDEST = 1e-3
-"""What plateaus change by on the way from nearly Newtonian fluids."""
+PLATEAU_RATIO_AT_START = 1e-3  # Factor between the plateaus at both ends of the homotopy from a nearly Newtonian fluid.
 
 
 @dataclass(frozen=True, init=False)
@@ -159,9 +157,9 @@ class Cross(_BetweenPlateaus):
     def _checked(exponent: float) -> float:
         """Return the exponent, if it is one of the law."""
         m = to_si(exponent, "number", "exponent")
-        if not 0.1 <= m <= 1 - SMALLEST_EXPONENT:
+        if not 0.1 <= m <= 1 - MIN_EXPONENT:
             raise InputError(
-                f"exponent = {show(exponent)} of a Cross fluid must lie between 0.1 and {1 - SMALLEST_EXPONENT:g}: its "
+                f"exponent = {show(exponent)} of a Cross fluid must lie between 0.1 and {1 - MIN_EXPONENT:g}: its "
                 "viscosity falls as the rate to the power -exponent. Of a Carreau fluid it is 1 - n."
             )
         return m
@@ -208,9 +206,8 @@ class PowerLaw(RateLaw):
     Below the rate :math:`10^{-8}/t` the viscosity is constant, which films do not feel where :math:`U/h` is above
     :math:`10^{-4}/t`; a note says where it is not.  A pure power law is infinitely viscous where nothing flows: its drag falls
     off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  Much of the drag comes from far outside the
-    contact, where no cylinder is a parabola, for n below :data:`FAR_DRAG` so much that a note says so; films and load shares
-    do not.  If the
-    viscosity grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
+    contact, where no cylinder is a parabola, for n below 0.75 so much that a note says so; films and load shares do not.  If
+    the viscosity grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
     """
 
     relaxation_time: float
@@ -241,11 +238,11 @@ class PowerLaw(RateLaw):
     @property
     def plateau(self) -> float:
         """Rate below which the viscosity is constant."""
-        return LOWEST
+        return PLATEAU_RATE
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether the drag is that of places where no surface is a parabola."""
-        if self.exponent >= FAR_DRAG:
+        if self.exponent >= FAR_DRAG_EXPONENT:
             return ()
         return (
             f"much of the drag of a power law with exponent {self.exponent:g} comes from far outside the contact, up to where "
@@ -259,19 +256,19 @@ class PowerLaw(RateLaw):
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
         n, square = self.exponent, rate * rate
-        whole = square + LOWEST**2
+        whole = square + PLATEAU_RATE**2
         viscosity = whole ** (0.5 * (n - 1))
         return rate * viscosity, viscosity * (1 + (n - 1) * square / whole)
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
-        return LOWEST * table_of(Carreau, self.exponent).rate(stress / LOWEST**self.exponent)
+        return PLATEAU_RATE * table_of(Carreau, self.exponent).rate(stress / PLATEAU_RATE**self.exponent)
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both moments: those of Carreau's law in the units of its plateau."""
-        n, unit = self.exponent, LOWEST**self.exponent
-        first, second = table_of(Carreau, n).moments(rate / LOWEST, stress / unit)
-        return LOWEST * unit * first, LOWEST * unit**2 * second
+        n, unit = self.exponent, PLATEAU_RATE**self.exponent
+        first, second = table_of(Carreau, n).moments(rate / PLATEAU_RATE, stress / unit)
+        return PLATEAU_RATE * unit * first, PLATEAU_RATE * unit**2 * second
 
 
 def _infinite(value: str | float) -> float:
@@ -283,7 +280,11 @@ def _infinite(value: str | float) -> float:
 
 def _milder_plateau(ratio: float, part: float) -> float:
     """Return a viscosity ratio that falls from near one to ``ratio`` as the part rises to one."""
-    return ratio + (0.999 - ratio) * (MILDEST**part - MILDEST) / (1 - MILDEST) if part < 1 else ratio
+    return (
+        ratio + (0.999 - ratio) * (PLATEAU_RATIO_AT_START**part - PLATEAU_RATIO_AT_START) / (1 - PLATEAU_RATIO_AT_START)
+        if part < 1
+        else ratio
+    )
 
 
 def _ratio(viscosity: float, units: FilmUnits) -> float:

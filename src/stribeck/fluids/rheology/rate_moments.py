@@ -19,20 +19,17 @@ from stribeck._types import Array
 from stribeck.numerics.cells import Cells
 from stribeck.quantities.lazy import cached_property
 
-WIDTH = 0.5
-"""Of the panels, in ln(rate)."""
+PANEL_WIDTH = 0.5  # Width of a panel of the table in the logarithm of the rate.
 
-ORDER = 12
-"""Chebyshev coefficients of each panel: exact to 1e-14 with singularities pi/2 from the real axis, as of Carreau."""
+# Chebyshev coefficients of a panel, good to 1e-14 with singularities pi/2 off the real axis (Carreau).
+PANEL_COEFFICIENTS = 12
 
-CELLS, TERMS = 8, 7
-"""Cells of a panel, and terms of the polynomial on each: the same to rounding, and quicker to evaluate."""
+CELLS_PER_PANEL = 8  # Cells of a panel on which the same function is a polynomial that is quicker to evaluate.
+CELL_TERMS = 7  # Coefficients of the polynomial on a cell, equal to the panel to rounding.
 
-LARGEST = 30.0
-"""Natural logarithm of the rate at which tables end; beyond, the ratios have their limits."""
+MAX_LOG_RATE = 30.0  # Natural logarithm of the rate at which the table ends; above it the ratios have their limits.
 
-POLISH = 3
-"""Newton steps in the logarithms with which a rate is found from its stress."""
+INVERSION_STEPS = 3  # Newton steps in the logarithms that find a rate from its stress.
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,22 +42,22 @@ class Table:
     @cached_property
     def count(self) -> int:
         """Number of panels."""
-        return int(np.ceil((LARGEST - self.smallest) / WIDTH))
+        return int(np.ceil((MAX_LOG_RATE - self.smallest) / PANEL_WIDTH))
 
     @cached_property
     def coefficients(self) -> Array:
-        """Of both ratios, shape (panels, 2, ORDER)."""
-        points = np.cos(np.pi * (np.arange(ORDER) + 0.5) / ORDER)[::-1]
-        found = np.empty((self.count, 2, ORDER))
-        to_coefficients = np.linalg.inv(chebyshev.chebvander(points, ORDER - 1))
-        nodes, weights = legendre.leggauss(ORDER)
+        """Of both ratios, shape (panels, 2, PANEL_COEFFICIENTS)."""
+        points = np.cos(np.pi * (np.arange(PANEL_COEFFICIENTS) + 0.5) / PANEL_COEFFICIENTS)[::-1]
+        found = np.empty((self.count, 2, PANEL_COEFFICIENTS))
+        to_coefficients = np.linalg.inv(chebyshev.chebvander(points, PANEL_COEFFICIENTS - 1))
+        nodes, weights = legendre.leggauss(PANEL_COEFFICIENTS)
         start = np.array([self.smallest])
         x = np.exp(start)
         g = self.stress(x)[0]
         first, second = g * x / 2, g * g * x / 3
         for panel in range(self.count):
-            left = self.smallest + panel * WIDTH
-            ends = np.append(left + 0.5 * WIDTH * (1 + points), left + WIDTH)
+            left = self.smallest + panel * PANEL_WIDTH
+            ends = np.append(left + 0.5 * PANEL_WIDTH * (1 + points), left + PANEL_WIDTH)
             half = 0.5 * (ends - left)
             at = left + half[:, None] * (1 + nodes)
             x = np.exp(at)
@@ -85,17 +82,19 @@ class Table:
         """Both ratios, quick to evaluate."""
 
         def by_panels(log_rate: Array) -> Array:
-            place = np.clip((log_rate - self.smallest) / WIDTH, 0.0, self.count * (1 - 1e-15))
+            place = np.clip((log_rate - self.smallest) / PANEL_WIDTH, 0.0, self.count * (1 - 1e-15))
             panel = place.astype(np.intp)
-            basis = chebyshev.chebvander(2 * (place - panel) - 1, ORDER - 1)
+            basis = chebyshev.chebvander(2 * (place - panel) - 1, PANEL_COEFFICIENTS - 1)
             return np.asarray(np.einsum("xfk,xk->fx", self.coefficients[panel], basis))
 
-        return Cells.of(by_panels, self.smallest, self.smallest + WIDTH * self.count, CELLS * self.count, TERMS)
+        return Cells.of(
+            by_panels, self.smallest, self.smallest + PANEL_WIDTH * self.count, CELLS_PER_PANEL * self.count, CELL_TERMS
+        )
 
     @cached_property
     def _inverse(self) -> tuple[Array, Array]:
         """Logarithms of stresses and of the rates there, to start from."""
-        rate = np.linspace(self.smallest, LARGEST, 4 * self.count)
+        rate = np.linspace(self.smallest, MAX_LOG_RATE, 4 * self.count)
         return np.log(self.stress(np.exp(rate))[0]), rate
 
     def rate(self, stress: Array) -> Array:
@@ -106,7 +105,7 @@ class Table:
         log_rate = np.where(wanted < known[0], wanted, log_rate)
         steepest = (rates[-1] - rates[-2]) / (known[-1] - known[-2])
         log_rate = np.where(wanted > known[-1], rates[-1] + steepest * (wanted - known[-1]), log_rate)
-        for _ in range(POLISH):
+        for _ in range(INVERSION_STEPS):
             x = np.exp(log_rate)
             g, slope = self.stress(x)
             log_rate = log_rate - (np.log(np.maximum(g, 1e-300)) - wanted) * g / (x * slope)

@@ -11,10 +11,9 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.rheology.rate_moments import Table
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["SMALLEST_EXPONENT", "TabulatedLaw", "checked_exponent", "checked_time", "parameters_of", "set_numbers", "table_of"]
+__all__ = ["MIN_EXPONENT", "TabulatedLaw", "checked_exponent", "checked_time", "parameters_of", "set_numbers", "table_of"]
 
-SMALLEST_EXPONENT = 0.05
-"""Of fluids that thin: with less, the stress hardly depends on the rate, as that of a plastic solid."""
+MIN_EXPONENT = 0.05  # Least exponent of a shear-thinning fluid; below it the stress is nearly that of a plastic solid.
 
 
 class TabulatedLaw(RateLaw):
@@ -70,9 +69,9 @@ def checked_time(value: str | float) -> float:
 def checked_exponent(value: float) -> float:
     """Return the exponent of a fluid that thins; raise InputError unless it is between 0.05 and 1."""
     n = to_si(value, "number", "exponent")
-    if not SMALLEST_EXPONENT <= n <= 1:
+    if not MIN_EXPONENT <= n <= 1:
         raise InputError(
-            f"exponent = {show(value)} must lie between {SMALLEST_EXPONENT:g} and 1, which is Newtonian; the stress grows as "
+            f"exponent = {show(value)} must lie between {MIN_EXPONENT:g} and 1, which is Newtonian; the stress grows as "
             "the rate to this power. Fluids that thicken are not modelled."
         )
     return n

@@ -20,20 +20,16 @@ from stribeck._types import Array
 from stribeck.fluids.laws import DensityLaw, FilmUnits, ViscosityLaw
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["LARGEST_COEFFICIENT", "Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands", "check_range"]
+__all__ = ["MAX_PRESSURE_EXPONENT", "Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands", "check_range"]
 
-LARGEST_COEFFICIENT = 5.0
-"""Pressure coefficient times Hertz pressure beyond which the pressure has the spike of hard elastohydrodynamics."""
+MAX_PRESSURE_EXPONENT = 5.0  # Pressure coefficient times Hertz pressure above which the pressure has the spike of hard EHL.
 
-REFERENCE_PRESSURE = 1.96e8
-"""p_r of Roelands' law [Pa]."""
+REFERENCE_PRESSURE = 1.96e8  # p_r of Roelands' law [Pa].
 
-REFERENCE_VISCOSITY = 6.31e-5
-"""eta_r of Roelands' law [Pa s]: ln(eta_r) = -9.67."""
+REFERENCE_VISCOSITY = 6.31e-5  # eta_r of Roelands' law [Pa s]: ln(eta_r) = -9.67.
 
 
-TENSION = 0.1
-"""Suction over the pressure of the law from which a note is written: no liquid is stretched so far."""
+MAX_SUCTION_RATIO = 0.1  # Suction over the pressure of the density law that draws a note; no liquid is stretched so far.
 
 
 @dataclass(frozen=True)
@@ -268,7 +264,7 @@ class DowsonHigginson(DensityLaw):
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""
         c, k = self.pressure, self.limit
-        held = np.maximum(pressure, -TENSION * c)
+        held = np.maximum(pressure, -MAX_SUCTION_RATIO * c)
         beyond, above = held - pressure, c + k * held
         falls = (k - 1) * c / above**2
         bends = 2 * k * falls / above
@@ -277,19 +273,20 @@ class DowsonHigginson(DensityLaw):
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether suction stretches the fluid farther than the law can mean."""
-        if pressure is None or float(pressure.min(initial=0.0)) > -TENSION * self.pressure:
+        if pressure is None or float(pressure.min(initial=0.0)) > -MAX_SUCTION_RATIO * self.pressure:
             return ()
         return (
-            f"the suction exceeds {TENSION:g} of the pressure in the Dowson-Higginson density: no liquid is stretched so far",
+            f"the suction exceeds {MAX_SUCTION_RATIO:g} of the pressure in the Dowson-Higginson density: no liquid is "
+            "stretched so far",
         )
 
 
 def check_range(law: ViscosityLaw) -> None:
     """Refuse a law in Hertz units whose coefficient is that of hard elastohydrodynamics."""
     a = law.parameters.get("pressure_coefficient", 0.0)
-    if isinstance(a, float) and a > LARGEST_COEFFICIENT:
+    if isinstance(a, float) and a > MAX_PRESSURE_EXPONENT:
         raise InputError(
-            f"pressure_coefficient times the Hertz pressure is {a:.3g}; it must lie between 0 and {LARGEST_COEFFICIENT:g}. "
+            f"pressure_coefficient times the Hertz pressure is {a:.3g}; it must lie between 0 and {MAX_PRESSURE_EXPONENT:g}. "
             "Beyond, the contact is one of hard elastohydrodynamics, which needs a solver that follows the pressure spike; "
             "for film thickness there are the formulas of Hamrock and Dowson, or of Moes for lines."
         )
