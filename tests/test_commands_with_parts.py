@@ -29,7 +29,7 @@ PARTS = {
 }
 SHOWN = {
     ("line", "exit"): "end of the film",
-    ("line", "cavity"): "film begins anew",
+    ("line", "cavity"): "film reforms",
     ("point", "exit"): "dry wake",
     ("line", "prony"): "Prony series",
     ("point", "layer"): "layer",

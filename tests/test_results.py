@@ -9,7 +9,7 @@ import pytest
 from fit_data import noisy
 
 import stribeck as sb
-from stribeck.quantities.results import Card, Shown, same
+from stribeck.quantities.results import Card, Shown, equal_values
 
 CONTACT = sb.LineContact(
     radius="10 mm", modulus="2.7 MPa", load="30 N/m", viscosity="50 mPa*s", speed="1 mm/s", roughness="1 um", alpha=2.0,
@@ -127,10 +127,10 @@ class Holder:
 
 
 def test_nan_equals_nan_and_no_number():
-    assert same(Holder(np.ones(2)), Holder(np.ones(2))) and not same(Holder(np.ones(2)), Holder(np.zeros(2)))
-    assert same(np.array([1.0, np.nan]), np.array([1.0, np.nan])) and same(float("nan"), float("nan"))
-    assert not same(np.array([1.0, np.nan]), np.array([1.0, 2.0])) and not same(float("nan"), 1.0)
-    assert same({"a": (1, [np.nan])}, {"a": (1, [np.nan])}) and not same({"a": 1}, {"b": 1})
+    assert equal_values(Holder(np.ones(2)), Holder(np.ones(2))) and not equal_values(Holder(np.ones(2)), Holder(np.zeros(2)))
+    assert equal_values(np.array([1.0, np.nan]), np.array([1.0, np.nan])) and equal_values(float("nan"), float("nan"))
+    assert not equal_values(np.array([1.0, np.nan]), np.array([1.0, 2.0])) and not equal_values(float("nan"), 1.0)
+    assert equal_values({"a": (1, [np.nan])}, {"a": (1, [np.nan])}) and not equal_values({"a": 1}, {"b": 1})
 
 
 @pytest.mark.quick

@@ -23,7 +23,7 @@ from stribeck.files.writing import MissingExtraError
 from stribeck.sweeps import rows as sweep_rows
 from stribeck.sweeps import store as sweep_store
 from stribeck.sweeps.columns import OUTCOMES, columns_of
-from stribeck.sweeps.lock import LOCK_FILE, locked
+from stribeck.sweeps.lock import LOCK_FILE, hold_lock
 from stribeck.sweeps.seal import SEALED_FILES, SUMS_FILE
 
 PHYSICS = sb.Groups(0.0, 1.0, 0.0).physics
@@ -506,7 +506,7 @@ def test_of_many_who_want_a_dead_lock_one_has_it_at_a_time(copy):
     def contend(number):
         for _ in range(20):
             try:
-                with locked(store):
+                with hold_lock(store):
                     inside.append(number)
                     most.append(len(inside))
                     held.append(number)

@@ -63,4 +63,4 @@ def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...]
     common = {"groups": states} | {name: f"{kind}\n    {words}" for name, (kind, words) in ARGUMENTS.items()}
     refused = [f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS]
     value = f"float or ndarray\n    {VALUES[predicts]}" + (f"; nan {undefined}." if undefined else ".")
-    return docstrings.completed(function, common, value, "\n".join(refused))
+    return docstrings.complete_docstring(function, common, value, "\n".join(refused))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_friction, shaped, slopes_of
+from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_friction, reshape_to_groups, slopes_of
 from stribeck.contacts.friction import PURE_SLIDING, Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
@@ -71,7 +71,7 @@ def friction(
     boundary_friction = quantity("boundary_friction", boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     contact, viscous = friction_terms(groups, inputs, check_definition(definition))
-    return shaped(groups, boundary_friction * _rubbing(groups, inputs) * contact + viscous)
+    return reshape_to_groups(groups, boundary_friction * _sliding_factor(groups, inputs) * contact + viscous)
 
 
 def viscous_friction(
@@ -106,7 +106,7 @@ def viscous_friction(
         If a state is outside the box of its table, or an argument is wrong.
     """
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
-    return shaped(groups, friction_terms(groups, inputs, check_definition(definition))[1])
+    return reshape_to_groups(groups, friction_terms(groups, inputs, check_definition(definition))[1])
 
 
 @answers_typos
@@ -153,7 +153,7 @@ def friction_derivatives(
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     reading = read_friction(groups, check_definition(definition), slopes=3)
     contact, viscous = slopes_of(groups, reading, inputs, definition)
-    return (boundary_friction * _rubbing(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
+    return (boundary_friction * _sliding_factor(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
 
 
 def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array]:
@@ -260,7 +260,7 @@ def shares_and_friction(
     arrays = inputs_for(groups, inputs)
     viscous = RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
     by_contact, by_viscous = slopes_of(groups, reading, inputs, definition)
-    by_speed = boundary_friction * _rubbing(groups, inputs) * by_contact[0] + by_viscous[0]
+    by_speed = boundary_friction * _sliding_factor(groups, inputs) * by_contact[0] + by_viscous[0]
     return np.stack([contact_share(-reading.odds), reading.contact, viscous, by_speed]).reshape(4, *groups.shape)
 
 
@@ -279,6 +279,6 @@ def _inputs(groups: Groups, beta: float, slide_to_roll: float, wetted_radius: fl
     return {name: given[name] for name in wanted}
 
 
-def _rubbing(groups: Groups, inputs: Mapping[str, Any]) -> float:
+def _sliding_factor(groups: Groups, inputs: Mapping[str, Any]) -> float:
     """Return the part of boundary_friction that acts, with the sign of the sliding."""
-    return float(RULES[groups.geometry].rubbing(groups, inputs))
+    return float(RULES[groups.geometry].sliding_factor(groups, inputs))

@@ -32,7 +32,7 @@ __all__ = [
     "inputs_for",
     "look_up",
     "read_friction",
-    "shaped",
+    "reshape_to_groups",
     "slopes_of",
 ]
 
@@ -172,6 +172,6 @@ def contact_share(odds: Array) -> Array:
     return np.asarray(1 / (1 + np.exp(odds)))
 
 
-def shaped(groups: Groups, values: Array) -> Value:
+def reshape_to_groups(groups: Groups, values: Array) -> Value:
     """Return flat values in the shape of the groups, a number of a single state."""
     return float(values[0]) if groups.shape == () else values.reshape(groups.shape)

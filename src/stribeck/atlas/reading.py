@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.atlas.lookup import CENTRAL, DEFLECTION, FLUX, MINIMUM, ODDS, Value, contact_share, look_up, shaped
+from stribeck.atlas.lookup import CENTRAL, DEFLECTION, FLUX, MINIMUM, ODDS, Value, contact_share, look_up, reshape_to_groups
 from stribeck.atlas.tables import TABLES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
@@ -37,7 +37,7 @@ def contact_load_share(groups: Groups) -> Value:
     InputError
         If a state is outside the box of its table.
     """
-    return shaped(groups, contact_share(look_up(groups, (ODDS,)).values.values[0]))
+    return reshape_to_groups(groups, contact_share(look_up(groups, (ODDS,)).values.values[0]))
 
 
 def fluid_load_share(groups: Groups) -> Value:
@@ -58,7 +58,7 @@ def fluid_load_share(groups: Groups) -> Value:
     InputError
         If a state is outside the box of its table.
     """
-    return shaped(groups, contact_share(-look_up(groups, (ODDS,)).values.values[0]))
+    return reshape_to_groups(groups, contact_share(-look_up(groups, (ODDS,)).values.values[0]))
 
 
 def central_gap(groups: Groups) -> Value:
@@ -143,7 +143,7 @@ def offset(groups: Groups) -> Value:
         If a state is outside the box of its table.
     """
     values = look_up(groups, (CENTRAL, DEFLECTION)).values
-    return shaped(groups, np.exp(values.values[0]) + values.values[1])
+    return reshape_to_groups(groups, np.exp(values.values[0]) + values.values[1])
 
 
 def info(name: str = TABLES[0].name) -> dict[str, Any]:
@@ -181,4 +181,4 @@ def info(name: str = TABLES[0].name) -> dict[str, Any]:
 
 
 def _gap(groups: Groups, name: str) -> Value:
-    return shaped(groups, np.exp(look_up(groups, (name,)).values.values[0]))
+    return reshape_to_groups(groups, np.exp(look_up(groups, (name,)).values.values[0]))

@@ -48,7 +48,7 @@ FUNCTIONS = {"line": LINE_FUNCTIONS, "point": BALL_FUNCTIONS}  # What is tabulat
 # are its own.
 SOLVER_MODULES = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
 
-# Packages that have a part in the numbers; the others have words
+# Packages whose code changes the numbers
 NUMERIC_PACKAGES = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 
 COEFFICIENT_UNIT = 2.0**-25  # Unit of the coefficients in the file, which holds whole numbers

@@ -81,7 +81,7 @@ class TableRow:
         """Return whether a contact law is that of the table, of Persson's within :data:`LAW_ATOL`."""
         if self.law == "exponential":
             return is_exponential(law)
-        return law is not None and law.name == self.law and _departure(self.file, self.grid, law) < LAW_ATOL  # type: ignore[arg-type]
+        return law is not None and law.name == self.law and _law_difference(self.file, self.grid, law) < LAW_ATOL  # type: ignore[arg-type]
 
     def speeds(self, groups: Groups) -> tuple[float, float]:
         """Return the smallest and largest speed of groups, of which none or all are smooth, beside zero [-]."""
@@ -102,7 +102,7 @@ class TableRow:
 
 
 @lru_cache(maxsize=128)
-def _departure(file: str, grid: Grid, law: AsperityLaw) -> float:
+def _law_difference(file: str, grid: Grid, law: AsperityLaw) -> float:
     """Return the largest difference of ln Phi between a law and that of a table."""
     separation, log_pressure = load_table(file, grid).law
     return float(np.abs(law.log_pressure(separation) - log_pressure).max())

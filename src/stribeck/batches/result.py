@@ -126,7 +126,7 @@ class BatchSolution(Exported, Shown, ByValue):
         inputs = {"beta": self._coefficient("beta", beta), "far": far_film(groups.model)}
         for name, of in rule.inputs.items():
             inputs.setdefault(name, self._each(of))
-        mu0 = rule.rubbing(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)
+        mu0 = rule.sliding_factor(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)
         if self.own_viscous:
             viscous, error = self.own_viscous[definition]
         else:

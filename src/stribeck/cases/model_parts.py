@@ -164,7 +164,7 @@ def _one_of(table: dict[str, Any], key: str, known: tuple[str, ...], default: st
     return str(value)
 
 
-def _only(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
+def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
     """Refuse keys that another choice would need."""
     for key in table:
         if key not in keys:
@@ -174,7 +174,7 @@ def _only(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
 def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if "preset" in table:
         return _preset(table, contact)
-    _only(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
+    _refuse_other_keys(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
     given = {"viscosity_law": "barus"} | table if PRESSURE.keys() & table.keys() else table
     return {"fluid": Fluid(*(_law(given, key) for key in FLUID_LAWS))}
 
@@ -201,7 +201,7 @@ def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if isinstance(contact, dict) and not doubled:
         contact["viscosity"] = 1.0  # stands for that of the liquid, so that a wrong condition is no lack of a viscosity
     name = _one_of(table, "preset", tuple(PRESETS), "")
-    _only(table, ("preset", *CONDITIONS), "a preset")
+    _refuse_other_keys(table, ("preset", *CONDITIONS), "a preset")
     liquid = _liquid(table)
     if doubled:
         raise InputError(
@@ -253,7 +253,7 @@ def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     model = _one_of(table, "model", tuple(FLOW_FACTORS), "")
     made, rest = FLOW_FACTORS[model], {key: value for key, value in table.items() if key != "model"}
     if made is not PatirCheng:
-        _only(rest, (), f"model = {model!r}")
+        _refuse_other_keys(rest, (), f"model = {model!r}")
     return {"flow_factors": None if made is None else made(**rest)}
 
 

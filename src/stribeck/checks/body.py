@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, judged, verdict_of
+from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_against_limits, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import POINT, InputTable
@@ -44,14 +44,14 @@ INPUTS_IN_PER_CENT = ("slide_to_roll", "boundary_friction")  # Inputs that are o
 USUAL_RANGE_FACTOR = 3.0  # Factor beyond its usual range that an input may have; a slip of a unit is ten or more
 
 
-def usual(subject: Subject) -> Check:
+def input_sizes(subject: Subject) -> Check:
     """Return the check of the inputs against what contacts usually have, which finds slips of a unit."""
     contact = subject.contact
     motion = {"slide_to_roll": 2 * float(contact.groups.model.film.slide)}
-    return of_usual_size(dict(contact.inputs()) | motion, contact.INPUTS)
+    return check_sizes(dict(contact.inputs()) | motion, contact.INPUTS)
 
 
-def of_usual_size(values: Mapping[str, float], table: InputTable) -> Check:
+def check_sizes(values: Mapping[str, float], table: InputTable) -> Check:
     """Return the check of inputs by name, in SI units."""
     worst, odd = 1.0, []
     rows = {"slide_to_roll": SLIDE_TO_ROLL} | dict(table.quantities)
@@ -92,7 +92,7 @@ def adhesion(subject: Subject) -> Check | None:
         "outside": "adhesion and not the load holds the bodies together, which is not modelled.",
     }
     begin = f"The pull-off force is {ratio:.2g} of the load: "
-    return judged("adhesion", ratio, PULL_OFF_FINE, PULL_OFF_OUTSIDE, begin, meanings)
+    return check_against_limits("adhesion", ratio, PULL_OFF_FINE, PULL_OFF_OUTSIDE, begin, meanings)
 
 
 def pores(subject: Subject) -> Check | None:
@@ -124,7 +124,7 @@ def pores(subject: Subject) -> Check | None:
         "doubtful": "the liquid in the pores carries some load, which is not modelled.",
         "outside": "the liquid in the pores carries load that the model gives to asperities, and friction is lower.",
     }
-    return judged("pores", peclet, PECLET_FINE, PECLET_OUTSIDE, f"U a/D is {peclet:.2g}: ", meanings)
+    return check_against_limits("pores", peclet, PECLET_FINE, PECLET_OUTSIDE, f"U a/D is {peclet:.2g}: ", meanings)
 
 
 def pressure(subject: Subject) -> Check:
@@ -213,7 +213,7 @@ def layer(subject: Subject) -> Check | None:
         + LAYER_ADVICE,
     }
     begin = f"The contact is {ratio:.2g} of the thickness wide to each side. "
-    return judged("layer a/thickness", ratio, LAYER_RATIO_FINE, LAYER_RATIO_OUTSIDE, begin, meanings)
+    return check_against_limits("layer a/thickness", ratio, LAYER_RATIO_FINE, LAYER_RATIO_OUTSIDE, begin, meanings)
 
 
 def loss(subject: Subject) -> Check | None:
@@ -231,4 +231,4 @@ def loss(subject: Subject) -> Check | None:
         "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic.",
     }
     begin = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): "
-    return judged("loss tangent", tangent, LOSS_TANGENT_FINE, LOSS_TANGENT_OUTSIDE, begin, meanings)
+    return check_against_limits("loss tangent", tangent, LOSS_TANGENT_FINE, LOSS_TANGENT_OUTSIDE, begin, meanings)

@@ -15,7 +15,7 @@ from stribeck.files.results import Exported
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OUTSIDE", "MIN_STATED_CHANGE", "Check", "Checks", "Verdict", "judged", "number_text", "verdict_of"]
+__all__ = ["OUTSIDE", "MIN_STATED_CHANGE", "Check", "Checks", "Verdict", "check_against_limits", "number_text", "verdict_of"]
 
 Verdict = Literal["fine", "doubtful", "outside"]
 
@@ -286,7 +286,9 @@ def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:
     return "doubtful" if value <= outside else "outside"
 
 
-def judged(name: str, value: float, fine: float, outside: float, begin: str, meanings: Mapping[Verdict, str]) -> Check:
+def check_against_limits(
+    name: str, value: float, fine: float, outside: float, begin: str, meanings: Mapping[Verdict, str]
+) -> Check:
     """Return the check of a number that is fine up to one bound and outside beyond another, with what each verdict means."""
     verdict = verdict_of(value, fine, outside)
     return Check(name, value, fine, verdict, begin + meanings[verdict])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stribeck.checks.check import Check, Verdict, judged, number_text, verdict_of
+from stribeck.checks.check import Check, Verdict, check_against_limits, number_text, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contacts.friction_rules import slide_to_roll
 from stribeck.quantities.formats import format_percent
@@ -105,7 +105,7 @@ def supply(subject: Subject) -> Check | None:
         "outside": "more than is supplied. The contact is starved, and the supply sets its film.",
     }
     begin = f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: "
-    return judged("supply h*/(2 supply)", ratio, SUPPLY_FINE, SUPPLY_OUTSIDE, begin, meanings)
+    return check_against_limits("supply h*/(2 supply)", ratio, SUPPLY_FINE, SUPPLY_OUTSIDE, begin, meanings)
 
 
 def molecules(subject: Subject) -> Check:
@@ -151,7 +151,7 @@ def inertia(subject: Subject) -> Check:
         "fine": "the inertia of the fluid is negligible.", "doubtful": neglected, "outside": neglected
     }  # fmt: skip
     begin = f"The reduced Reynolds number is {number:.2g}: "
-    return judged("inertia", number, REYNOLDS_FINE, REYNOLDS_OUTSIDE, begin, meanings)
+    return check_against_limits("inertia", number, REYNOLDS_FINE, REYNOLDS_OUTSIDE, begin, meanings)
 
 
 def _sliding_speed(subject: Subject) -> float:

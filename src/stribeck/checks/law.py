@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, judged, verdict_of
+from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_against_limits, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
@@ -66,7 +66,7 @@ def roughness_slope(subject: Subject) -> Check | None:
         "Most of it may come from the shortest wavelengths: check where the spectrum ends.",
     }
     begin = f"The rms slope of the roughness is {slope:.2g}: "
-    return judged(name, slope, RMS_SLOPE_FINE, RMS_SLOPE_OUTSIDE, begin, meanings)
+    return check_against_limits(name, slope, RMS_SLOPE_FINE, RMS_SLOPE_OUTSIDE, begin, meanings)
 
 
 def range_at_centre(subject: Subject) -> Check | None:
@@ -130,7 +130,7 @@ def range_at_minimum(subject: Subject) -> Check | None:
     return Check(MINIMUM_CHECK, ratio, limit, verdict, sentence, "h_rms", error=error, notable=bool(note))
 
 
-def beside_the_tail(minimum: Check) -> Check:
+def without_error(minimum: Check) -> Check:
     """Return the check of the minimum beside that of the tail, which computes the error."""
     return replace(minimum, error=0.0, sentence=minimum.sentence.replace(MINIMUM_ERROR_TEXT, "."))
 

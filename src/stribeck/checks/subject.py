@@ -113,7 +113,7 @@ class Subject:
         return None
 
     def models(self, part: str) -> str:
-        """Return the name of the contact's fluid, solid or cavitation beyond the plain ones; empty if it has none."""
+        """Return the name of the contact's fluid, solid or cavitation, empty for that of the base model."""
         found = getattr(self.contact, part, None)
         name = str(found) if isinstance(found, str) else str(getattr(found, "name", "") or "")
         return "" if name.lower() in BASE_MODEL_NAMES else name

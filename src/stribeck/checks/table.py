@@ -39,7 +39,7 @@ class Row:
 
 # All checks, cheapest first.
 ROWS = (
-    Row("inputs", body.usual, "contact"),
+    Row("inputs", body.input_sizes, "contact"),
     Row("Hertz pressure", body.pressure, "contact"),
     Row("stiffness", body.stiffness, "contact"),
     Row("contact width", body.width, "contact"),
@@ -114,7 +114,7 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
         elif row.missing:
             missing[row.name] = row.missing
     if any(each.name == law.TAIL_CHECK for each in found):
-        found = [law.beside_the_tail(each) if each.name == law.MINIMUM_CHECK else each for each in found]
+        found = [law.without_error(each) if each.name == law.MINIMUM_CHECK else each for each in found]
     return Checks(tuple(found), tuple(unsolved), missing)
 
 

@@ -360,12 +360,12 @@ def _write(
 
 def _say_unusual(boundary_friction: str | None, slide_to_roll: str | None) -> None:
     """Say which numbers given beside groups are hardly meant; those of a case are checked with it."""
-    from stribeck.checks.body import of_usual_size
+    from stribeck.checks.body import check_sizes
     from stribeck.quantities.inputs import LINE
 
     given = {"boundary_friction": boundary_friction, "slide_to_roll": slide_to_roll}
     numbers = {name: number for name, text in given.items() if (number := as_number(name, text)) is not None}
-    found = of_usual_size(numbers, LINE)
+    found = check_sizes(numbers, LINE)
     if found.verdict != "fine":
         complain(found.sentence, 0)
 

@@ -100,7 +100,7 @@ def sweep_command(
 
 def _say_unusual(plan: SweepDesign) -> None:
     """Say which inputs of a sweep are hardly meant, at the ends of what varies."""
-    from stribeck.checks.body import of_usual_size
+    from stribeck.checks.body import check_sizes
     from stribeck.quantities.inputs import INPUT_TABLES
 
     table = INPUT_TABLES[plan.physics["geometry"]]
@@ -110,7 +110,7 @@ def _say_unusual(plan: SweepDesign) -> None:
         fixed["slide_to_roll"] = plan.parts.slide_to_roll
     ends = ({name: float(end(inputs[name])) for name in plan.varied if name in inputs} for end in (min, max))
     for given in (fixed, *ends):
-        found = of_usual_size(given, table)
+        found = check_sizes(given, table)
         if found.verdict != "fine":
             complain(found.sentence, 0)
 

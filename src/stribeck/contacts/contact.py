@@ -14,8 +14,8 @@ from typing import Any, ClassVar, Self
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.contact_values import contact_values, replaced
-from stribeck.quantities.conversions import converted
+from stribeck.quantities.contact_values import contact_values, replace_inputs
+from stribeck.quantities.conversions import convert_inputs
 from stribeck.quantities.inputs import InputTable, si_text
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, card_html
@@ -76,7 +76,7 @@ class Contact(ABC):
         self._keep(law, inputs)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        for name, value in contact_values(converted(inputs, self.INPUTS), self.INPUTS).items():
+        for name, value in contact_values(convert_inputs(inputs, self.INPUTS), self.INPUTS).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
@@ -171,7 +171,7 @@ class Contact(ABC):
             Where a value is impossible, as in the contact itself.
         """
         kept = {field.name: getattr(self, field.name) for field in fields(self)}
-        inputs = replaced(kept, changes, self.INPUTS)
+        inputs = replace_inputs(kept, changes, self.INPUTS)
         return self.of_kept(inputs, inputs.pop("law"))
 
     def _check_scales(self) -> None:

@@ -133,7 +133,7 @@ def friction_integral(
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
     moves = np.real(speed) > 0
-    at_shear, at_pressure = (np.exp(-2.0 * (_rise(parts, speed, far) + each)) for each in (by_shear, by_pressure))
+    at_shear, at_pressure = (np.exp(-2.0 * (_minus_log_cut_off(parts, speed, far) + each)) for each in (by_shear, by_pressure))
     couette = parts["J_couette"] + far.couette * speed * (by_shear + 0.5 * np.log1p(at_shear))
     rest = by_pressure + far.rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
     found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * rest
@@ -147,23 +147,19 @@ def friction_integral(
 def far_error(
     parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_radius: Any, far: FarFilm = FULL_FAR_FILM
 ) -> Any:
-    r"""Return by how much :func:`friction_integral` may miss that of the film up to where a disc of liquid ends.
-
-    It leaves out the offset of thin films, which is at least minus one indentation.
-    """
-    from_there = wetted_radius**2 + np.exp(-2.0 * _rise(parts, speed, far))
+    """Return the largest error of :func:`friction_integral` by the end of a disc of liquid."""
+    # The offset of thin films, at least minus one indentation, is left out.
+    from_there = wetted_radius**2 + np.exp(-2.0 * _minus_log_cut_off(parts, speed, far))
     return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed / from_there
 
 
 def is_far(model: Model, wetted_radius: float) -> bool:
-    """Return whether a far film in closed form holds from where the liquid ends.
-
-    That of a fluid that thins does nowhere, and those of thick films that break are not known.
-    """
+    """Return whether a far film in closed form holds from where the liquid ends."""
+    # No closed form holds for a thinning fluid, and none is known for thick films that rupture.
     nearest = FAR_FILM_MIN_RADIUS if model.cavitation is Cavitation.NONE else math.inf
     return not model.film.uses_speed and wetted_radius >= nearest
 
 
-def _rise(parts: Mapping[str, Any], speed: Any, far: FarFilm) -> Any:
-    """Return -ln X_0."""
+def _minus_log_cut_off(parts: Mapping[str, Any], speed: Any, far: FarFilm) -> Any:
+    """Return minus the logarithm of the cut-off X_0."""
     return parts["J_couette"] / np.where(np.real(speed) > 0, far.couette * speed, 1.0)

@@ -41,13 +41,15 @@ class FrictionRule(NamedTuple):
     parts: Callable[[Definition], tuple[str, ...]]  # `parts(definition)` names the observables that the viscous friction takes
     is_enough: Callable[[Model, Sequence[Values]], bool]
     viscous: Callable[[Values, Any, Any, Values, Definition], Any]
-    missed: Callable[[Values, Any, Any, Values], Any]
+    far_error: Callable[[Values, Any, Any, Values], Any]
     scale: Callable[[Values, Any], dict[str, Any]]
-    rubbing: Callable[[Groups, Values], Any]  # `rubbing(groups, inputs)` is the part of boundary_friction that acts
+    sliding_factor: Callable[
+        [Groups, Values], Any
+    ]  # `sliding_factor(groups, inputs)` is the part of boundary_friction that acts
     hersey: Callable[[Contact], float]  # `hersey(contact)` is the speed at the Hersey number one [m/s]
-    hersey_exponents: Mapping[str, float]  # Exponents of the inputs in it
+    hersey_exponents: Mapping[str, float]  # Exponents of the inputs in the Hersey number
     hersey_symbol: str  # The Hersey number in symbols
-    hersey_name: str  # The same in words, for files
+    hersey_name: str  # The Hersey number in words, for files
 
     def speed_per(self, abscissa: str, contact: Contact) -> float:
         """Return the speed [m/s] at the value one [SI] of what friction may be measured against."""
@@ -60,17 +62,17 @@ class FrictionRule(NamedTuple):
         return of[abscissa]
 
     def exponents_at(self, abscissa: str) -> Mapping[str, float]:
-        """Return the exponents of inputs in that speed, where it is of a Hersey number."""
+        """Return the exponents of inputs in the speed at a Hersey number, empty for other abscissas."""
         if abscissa == "hersey_per_length":
             return {name: power for name, power in self.hersey_exponents.items() if name != "radius"}
         return self.hersey_exponents if abscissa == "hersey_number" else {}
 
     def of_contact(self, contact: Contact | None) -> dict[str, float]:
-        """Return the inputs of a contact; of none, those of groups alone."""
+        """Return the inputs of a contact, or of groups alone if the contact is None."""
         return {name: value(contact) for name, value in self.inputs.items()}
 
     def motion(self, contact: Contact | None) -> dict[str, Any]:
-        """Return those beside beta: motion and liquid, as the functions of :mod:`stribeck.atlas` take them."""
+        """Return motion and liquid as keywords of the functions of :mod:`stribeck.atlas`."""
         return {name: value for name, value in self.of_contact(contact).items() if name != "beta"}
 
     def viscous_error(
@@ -79,7 +81,7 @@ class FrictionRule(NamedTuple):
         """Return the absolute error of the viscous friction by the stated errors of its observables."""
         scales = self.scale(parts, speed)
         here = self.viscous(parts, speed, load, inputs, definition)
-        total = self.missed(parts, speed, load, inputs)
+        total = self.far_error(parts, speed, load, inputs)
         for name in self.parts(definition):
             moved = {**parts, name: parts[name] + errors[name] * scales[name]}
             total = total + np.abs(self.viscous(moved, speed, load, inputs, definition) - here)
@@ -107,7 +109,7 @@ def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definiti
     return 1.5 / math.pi * slope * J
 
 
-def _ball_missed(parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
+def _ball_far_error(parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
     J = far_error(parts, speed, inputs["slide_to_roll"], inputs["wetted_radius"], inputs.get("far", FULL_FAR_FILM))
     return 1.5 / math.pi * _slope(load, inputs) * J
 
@@ -121,7 +123,7 @@ def _ball_scale(parts: Values, speed: Any) -> dict[str, Any]:
     return dict.fromkeys(parts, largest) | {name: np.where(size > 0, size, largest) for name, size in own.items()}
 
 
-def _wetted(contact: Contact | None) -> float:
+def _liquid_radius(contact: Contact | None) -> float:
     """Return the radius of the liquid [a], infinite for a whole ball."""
     radius = getattr(contact, "wetted_radius", None)
     return math.inf if contact is None or radius is None else float(radius) / contact.hertz.half_width
@@ -159,9 +161,9 @@ RULES: dict[Geometry, FrictionRule] = {
         parts=_line_parts,
         is_enough=lambda model, inputs: True,
         viscous=_line_viscous,
-        missed=lambda parts, speed, load, inputs: 0.0,
+        far_error=lambda parts, speed, load, inputs: 0.0,
         scale=_line_scale,
-        rubbing=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
+        sliding_factor=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
         hersey=lambda each: each.load / each.viscosity,
         hersey_exponents={"load": 1.0, "viscosity": -1.0},
         hersey_symbol="ηU/F_N",
@@ -171,7 +173,7 @@ RULES: dict[Geometry, FrictionRule] = {
         inputs={
             "beta": _beta,
             "slide_to_roll": slide_to_roll,
-            "wetted_radius": _wetted,
+            "wetted_radius": _liquid_radius,
         },
         exponents={"wetted_radius": {"radius": -1 / 3, "modulus": 1 / 3, "load": -1 / 3}},
         parts=_ball_parts,
@@ -179,9 +181,9 @@ RULES: dict[Geometry, FrictionRule] = {
             all(is_far(model, each["wetted_radius"]) for each in inputs) and is_far(model, math.inf)
         ),
         viscous=_ball_viscous,
-        missed=_ball_missed,
+        far_error=_ball_far_error,
         scale=_ball_scale,
-        rubbing=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
+        sliding_factor=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
         hersey=lambda each: each.load / each.viscosity / each.radius,
         hersey_exponents={"load": 1.0, "viscosity": -1.0, "radius": -1.0},
         hersey_symbol="ηUR/F_N",

@@ -76,7 +76,7 @@ class LineContact(WithParts):
     cavitation : {"none", "exit", "reform"}
         How the film ends behind the contact.
     cavity_pressure : str or float
-        Pressure at which a film that forms anew ruptures, above the ambient one, zero or below [Pa].
+        Rupture pressure of a film that reforms, above the ambient one, zero or below [Pa].
     flow_factors : {"none", "effective-medium", "patir-cheng"} or law of sb.fluids, optional
         What roughness does to the flow.
     solid : solid of sb.solids, optional

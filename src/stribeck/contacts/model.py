@@ -21,10 +21,10 @@ class Model:
     film: Film = Newtonian()  # The fluid, in Hertz units
     cavitation: Cavitation = Cavitation.NONE  # How the film ends behind the contact
     solid: Solid = HalfPlane()  # The soft body, in Hertz units
-    cavity_pressure: float = 0.0  # Pressure above the ambient at which a film that forms anew ruptures, at most zero [p_Hz]
+    cavity_pressure: float = 0.0  # Rupture pressure of a film that reforms, above the ambient one, at most zero [p_Hz]
 
     def __post_init__(self) -> None:
-        """Refuse films and endings of somebody else, and bodies that contradict themselves."""
+        """Refuse films and cavitation of other types, and bodies that contradict themselves."""
         if not type(self.film).__module__.startswith("stribeck."):
             raise InputError(
                 f"film = {show(self.film)}; films are those of the package. A fluid of your own is a law of shear, viscosity "

@@ -199,7 +199,7 @@ class WithParts(Contact):
 
     @property
     def cavity_pressure(self) -> float:
-        """Pressure at which a film that forms anew ruptures, above the ambient one [Pa]."""
+        """Rupture pressure of a film that reforms, above the ambient one [Pa]."""
         return self.parts.cavity_pressure
 
     @property

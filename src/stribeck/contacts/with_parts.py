@@ -75,18 +75,14 @@ def model_at(contact: Contact, name: str, step: float) -> Model:
 
 
 def models_at_both_sides(contact: Contact, name: str) -> tuple[Model, Model, float] | None:
-    """Return the models at two values of one input of a contact, below and above, and the distance of the logarithms.
-
-    None where the input changes no number of fluid or solid in Hertz units.  At an end of what it may be, one of them is that
-    of the contact.
-    """
+    """Return models at two values of an input and the distance of their logarithms; None if the input changes no model."""
     below, above = steps = admissible_steps(contact, name, CENTRAL_STEP, ONE_SIDED_STEP)
     models = [model_at(contact, name, step) for step in steps]
     return None if models[0] == models[1] else (models[0], models[1], above - below)
 
 
 def admissible_steps(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
-    """Return steps of the logarithm of an input to both sides; to one of them, by ``alone``, where the other is refused."""
+    """Return steps of the logarithm of an input to both sides, or by ``alone`` to the only side that the input may take."""
     try:
         for each in (-step, step):
             model_at(contact, name, each)

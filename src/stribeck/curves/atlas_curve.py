@@ -182,7 +182,7 @@ class AtlasCurve(Drawn, Shown):
     def _rubbing(self) -> float:
         """``boundary_friction`` as far as it acts, with the sign of the sliding."""
         inputs = self._rule.of_contact(self.contact)
-        return self.boundary_friction * float(self._rule.rubbing(self.groups_at(self.values[:1]), inputs))
+        return self.boundary_friction * float(self._rule.sliding_factor(self.groups_at(self.values[:1]), inputs))
 
     def _inputs(self, groups: Groups) -> dict[str, Any]:
         """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""

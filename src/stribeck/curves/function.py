@@ -18,7 +18,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, OUTPUT_TABLES
-from stribeck.quantities.results import ByValue, Card, Shown, brief
+from stribeck.quantities.results import ByValue, Card, Shown, brief_text
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.path.line_path import POSITION, LineProblem
@@ -196,8 +196,8 @@ class CurveValues(Shown, ByValue):
     def _card(self) -> Card:
         known = {"friction": (self.friction, self.friction_error)}
         known |= {name: (self.values[name], error) for name, error in self.errors.items() if np.isfinite(error).all()}
-        rows = [(name, f"{brief(value)}, error {np.max(error):.1e}") for name, (value, error) in known.items()]
-        return Card(f"at {brief(self.value)}", rows, ("Hertz units; errors of friction and load shares are absolute.",))
+        rows = [(name, f"{brief_text(value)}, error {np.max(error):.1e}") for name, (value, error) in known.items()]
+        return Card(f"at {brief_text(self.value)}", rows, ("Hertz units; errors of friction and load shares are absolute.",))
 
     def __getattr__(self, name: str) -> Any:
         """Return an observable under its own name."""

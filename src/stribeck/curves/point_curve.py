@@ -144,7 +144,7 @@ class PointCurve(StribeckCurve):
         inputs: dict[str, Any] = dict(rule.of_contact(self._path.contact_at(0.0))) | {"beta": self.beta}
         if self.contact is None:
             inputs["slide_to_roll"] = 2.0 * start.model.film.slide
-        return start, inputs, self.boundary_friction * float(rule.rubbing(start, inputs))
+        return start, inputs, self.boundary_friction * float(rule.sliding_factor(start, inputs))
 
     def _parts_at(self, s: Array) -> tuple[Array, Array, Array]:
         """Return the load share of the fluid and both parts of the friction at real or complex coordinates."""

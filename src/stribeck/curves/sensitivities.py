@@ -112,7 +112,7 @@ def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
     inputs = rule.of_contact(contact)
     slopes = atlas.friction_derivatives(groups, boundary_friction, contact.beta, definition, **rule.motion(contact))
     share, viscous = (float(term[0]) for term in atlas.friction_terms(groups, inputs, definition))
-    direct = {"boundary_friction": boundary_friction * float(rule.rubbing(groups, inputs)) * share}
+    direct = {"boundary_friction": boundary_friction * float(rule.sliding_factor(groups, inputs)) * share}
     for name, value in inputs.items():
         if math.isfinite(value):
             moved = atlas.friction_terms(groups, {**inputs, name: value * (1 + 1j * COMPLEX_STEP)}, definition)[1]

@@ -119,7 +119,7 @@ def content_of(
         uncertainty=found,
         margins=tuple(ways_to(margins)),
         levers=levers,
-        notes=tuple(note for note in (*solution.notes, *margins.notes) if not _told(note, checks)),
+        notes=tuple(note for note in (*solution.notes, *margins.notes) if not _is_in_checks(note, checks)),
         versions=_versions(case),
         curve=curve,
         solution=solution,
@@ -127,7 +127,7 @@ def content_of(
     )
 
 
-def _told(note: str, checks: Checks) -> bool:
+def _is_in_checks(note: str, checks: Checks) -> bool:
     """Return whether a check contains a note."""
     return checks.covers(note) or any(note in each.sentence for each in checks)
 

@@ -67,7 +67,7 @@ def write_report(
         If matplotlib or jinja2 is not installed.
     """
     target = check_writable(path, REPORT_ENDINGS, force=force)
-    _need(target.suffix.lower())
+    _check_libraries(target.suffix.lower())
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file or a Case.")
@@ -169,7 +169,7 @@ def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     yield from wrapped(content.versions)
 
 
-def _need(ending: str) -> None:
+def _check_libraries(ending: str) -> None:
     from importlib.util import find_spec
 
     for library in ("matplotlib", *(["jinja2"] if ending == ".html" else [])):

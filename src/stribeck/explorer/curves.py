@@ -180,7 +180,7 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
     terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
-    solid = boundary_friction * float(rule.rubbing(groups, inputs)) * terms["balanced"][0]
+    solid = boundary_friction * float(rule.sliding_factor(groups, inputs)) * terms["balanced"][0]
     friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
     doubtful = where_law_is_in_doubt(along, contact, terms["balanced"][1])
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}", doubtful=doubtful)

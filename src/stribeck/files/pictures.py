@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
-from stribeck.quantities.docstrings import completed
+from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def picture(also: str = "") -> Callable[[Draws], Draws]:
     """Return a decorator that says of a function which draws what all of them do; ``also`` is what else it refuses."""
 
     def say(function: Draws) -> Draws:
-        function.__doc__ = completed(function, ARGUMENTS, RETURNS, RAISES.format(f", or if {also}" if also else ""))
+        function.__doc__ = complete_docstring(function, ARGUMENTS, RETURNS, RAISES.format(f", or if {also}" if also else ""))
         return function
 
     return say
@@ -200,14 +200,14 @@ def caption_lines(figure: Figure, parts: Sequence[Sequence[str]], notes: Sequenc
         items = [item for item in part if item]
         pieces = [f"{item}," for item in items[:-1]] + items[-1:]
         whole = [word for piece in pieces for word in ([piece] if fits(piece) else piece.split(" "))]
-        lines += [(line, GREY) for line in _broken(whole, fits)]
+        lines += [(line, GREY) for line in _wrap(whole, fits)]
     probe.set_parse_math(False)
-    lines += [(line, INK) for note in notes for line in _broken(note.split(), fits)]
+    lines += [(line, INK) for note in notes for line in _wrap(note.split(), fits)]
     probe.remove()
     return lines
 
 
-def _broken(words: Sequence[str], fits: Callable[[str], bool]) -> list[str]:
+def _wrap(words: Sequence[str], fits: Callable[[str], bool]) -> list[str]:
     """Return words as lines that fit; a word longer than a line is cut."""
     lines: list[str] = []
     for word in words:

@@ -95,7 +95,7 @@ class _Handler:
 
 
 def _parse(book: zipfile.ZipFile, part: str, handler: _Handler) -> None:
-    """Give the elements of a part to a handler; none is kept, whatever there is of them."""
+    """Give the elements of a part to a handler without keeping any."""
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
 

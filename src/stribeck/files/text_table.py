@@ -100,7 +100,7 @@ class TextTable:
         return tuple(row[at] for row in self.rows)
 
 
-def knows_nothing(name: str) -> bool:
+def knows_no_name(name: str) -> bool:
     """Return that a name of a column is not known."""
     return False
 
@@ -109,7 +109,7 @@ def read_table(
     path: Path,
     header_row: int | None = None,
     expected: str = HEADER_ADVICE,
-    knows: Callable[[str], bool] = knows_nothing,
+    knows: Callable[[str], bool] = knows_no_name,
     sheet: str | None = None,
 ) -> TextTable:
     """Return the cells of a file of columns with a header."""
@@ -171,7 +171,7 @@ def read_table(
         above=above,
         notes=notes,
     )
-    return _with_errors_apart(_each_once(_one_below_another(table, labels)))
+    return _split_errors(_drop_repeated_columns(_stack_curves(table, labels)))
 
 
 def read_two_columns(
@@ -216,8 +216,8 @@ def values_of(
 
 
 def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...]]:
-    """Return name and lines of the sheet whose table has most known names, or else most numbers; and the other sheets."""
-    sheets = {name: _within_bounds(path, filled) for name, filled in sheets_of(path, wanted).items()}
+    """Return name and lines of the sheet with most known names, or else most numbers, and the remaining sheets."""
+    sheets = {name: _check_size(path, filled) for name, filled in sheets_of(path, wanted).items()}
     known = {
         name: max((min(each.known, 2) for each in headings_in(lines, knows)), default=0) for name, lines in sheets.items()
     }
@@ -230,10 +230,10 @@ def _lines_of_text(path: Path, sheet: str | None) -> list[Line]:
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
     text = text_of(path, MAX_TABLE_BYTES, "a table is a few pages of text", "a text file of columns")
-    return _within_bounds(path, [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")])
+    return _check_size(path, [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")])
 
 
-def _within_bounds(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
+def _check_size(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
     """Return the lines of a table, or refuse one that would take minutes to read."""
     cells = sum(line.count(mark) for _, line in filled for mark in SEPARATORS)
     for count, most, what in ((len(filled), MAX_ROWS, "rows"), (cells, MAX_CELLS, "cells")):
@@ -263,7 +263,7 @@ def _heading(
         there = next((each for each in tables.values() for one in each if one.at == plain[0]), [])
         own = [each for each in there if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
         return own[0], own, [each for each in found if each not in own and each.at > plain[0]]
-    told = {id(each): min(_telling(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
+    told = {id(each): min(_count_settings(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
     count = {id(each): sum(one.rows for one in each) for each in tables.values()}
     ranked = sorted(tables.values(), key=lambda each: (told.get(id(each), 0), count[id(each)]), reverse=True)
     best = ranked[0]
@@ -279,8 +279,8 @@ def _heading(
     return best[0], best, [each for each in found if each not in best]
 
 
-def _telling(lines: list[Line], headings: list[Heading], knows: Callable[[str], bool]) -> int:
-    """Return how many columns of known names hold more than one setting: at rest or at one speed nothing is a curve."""
+def _count_settings(lines: list[Line], headings: list[Heading], knows: Callable[[str], bool]) -> int:
+    """Return the number of columns of known names with more than one setting."""
     heading = headings[0]
     telling = 0
     cells = [
@@ -352,7 +352,7 @@ def comparable(cell: str) -> Any:
     return number_of(cell, ",") or cell
 
 
-def _each_once(table: TextTable) -> TextTable:
+def _drop_repeated_columns(table: TextTable) -> TextTable:
     """Return the table without columns that come again with the same name and cells, and without unnamed empty ones."""
     seen: dict[str, list[tuple[Any, ...]]] = {}
     kept = []
@@ -384,7 +384,7 @@ def _are_pairs(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> bool:
     )
 
 
-def _one_below_another(table: TextTable, labels: tuple[str, ...]) -> TextTable:
+def _stack_curves(table: TextTable, labels: tuple[str, ...]) -> TextTable:
     """Return the table with curves that stand side by side one below another, each with its name in a column.
 
     Columns before the first label belong to all curves.  Without labels, columns whose names come again in the same order,
@@ -422,7 +422,7 @@ def _one_below_another(table: TextTable, labels: tuple[str, ...]) -> TextTable:
     return replace(table, header=header, rows=tuple(rows), numbers=tuple(numbers), units_row=units, notes=(*table.notes, note))
 
 
-def _with_errors_apart(table: TextTable) -> TextTable:
+def _split_errors(table: TextTable) -> TextTable:
     """Return the table with what follows a plus-minus sign in the cells of a column in one of its own."""
     for at in reversed(range(len(table.header))):
         cells = [row[at] for row in table.rows]

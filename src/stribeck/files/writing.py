@@ -67,7 +67,7 @@ def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = F
                 raise InputError(f"{given} is write-protected; choose another name.")
         if not target.parent.is_dir():
             raise InputError(f"{given} cannot be written because the folder {given.parent} does not exist; create it first.")
-        probe = _beside(target)
+        probe = _temporary_name(target)
         probe.touch(exist_ok=False)
         probe.unlink()
     except (OSError, RuntimeError, ValueError) as problem:
@@ -84,7 +84,7 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
     Whatever ends the writing, ``path`` then holds its new content whole, or what it held before.
     """
     target = check_writable(path, suffixes, force=force)
-    temporary = _beside(target)
+    temporary = _temporary_name(target)
     try:
         yield temporary
         with temporary.open("rb+") as file:
@@ -98,7 +98,7 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
         temporary.unlink(missing_ok=True)
 
 
-def _beside(target: Path) -> Path:
+def _temporary_name(target: Path) -> Path:
     """Return a new hidden name in the folder of ``target``, with its ending."""
     return target.with_name(f".stribeck-{secrets.token_hex(6)}{target.suffix}")
 
@@ -121,7 +121,7 @@ def sync_folder(folder: Path) -> None:
 def reason_of(problem: BaseException, file: Path | None = None) -> str:
     """Return what was wrong with a file, in the words of the system."""
     if file is not None and getattr(problem, "errno", None) not in FULL_DISK_ERRORS:
-        trial = _beside(file)
+        trial = _temporary_name(file)
         try:
             with trial.open("wb") as stream:
                 stream.write(bytes(PROBE_BYTES))

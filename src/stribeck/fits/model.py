@@ -166,7 +166,7 @@ class FrictionModel:
         return np.asarray(found)
 
     def _rubbing(self, contact: Contact) -> float:
-        return float(self.rule.rubbing(contact.groups, self.rule.of_contact(contact)))
+        return float(self.rule.sliding_factor(contact.groups, self.rule.of_contact(contact)))
 
     def start(self) -> tuple[Array, Array]:
         """Return where the curves of a ball begin, and what the fit changes."""

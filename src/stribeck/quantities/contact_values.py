@@ -10,7 +10,7 @@ from typing import Any
 from stribeck.quantities.inputs import LINE, InputTable, quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["check_alternatives", "contact_values", "replaced", "signature_of"]
+__all__ = ["check_alternatives", "contact_values", "replace_inputs", "signature_of"]
 
 
 def contact_values(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, float | None]:
@@ -74,7 +74,7 @@ def check_alternatives(given: Mapping[str, Any], table: InputTable = LINE) -> No
             )
 
 
-def replaced(kept: Mapping[str, Any], changes: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
+def replace_inputs(kept: Mapping[str, Any], changes: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
     """Return inputs with some changed; an alternative among the changes takes the place of what it stands for."""
     found = dict(kept)
     if "radius_2" in changes and "radius" not in changes:

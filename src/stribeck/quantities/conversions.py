@@ -17,7 +17,7 @@ from stribeck.quantities.inputs import LINE, InputTable
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["CONVERSIONS", "GIVEN", "Conversion", "Given", "GivenInput", "converted", "read_given"]
+__all__ = ["CONVERSIONS", "GIVEN", "Conversion", "Given", "GivenInput", "convert_inputs", "read_given"]
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class Conversion:
     geometry: str = ""  # The geometry that it is for; empty for all
 
 
-def gent(hardness: float) -> float:
+def modulus_of_shore_a(hardness: float) -> float:
     """Return Young's modulus [Pa] of rubber of a Shore A hardness."""
     return 0.0981e6 * (56 + 7.62336 * hardness) / (0.137505 * (254 - 2.54 * hardness))
 
 
-def qi(hardness: float) -> float:
+def modulus_of_shore_d(hardness: float) -> float:
     """Return Young's modulus [Pa] of an elastomer of a Shore D hardness."""
     return float(1e6 * 10 ** (0.0235 * (hardness + 50) - 0.6403))
 
@@ -59,7 +59,7 @@ CONVERSIONS = (
     Conversion(
         "youngs_modulus",
         (GivenInput("shore_a", "number", "70", (20, 90)),),
-        gent,
+        modulus_of_shore_a,
         "E = 0.0981 (56 + 7.62336 S)/(0.137505 (254 - 2.54 S)) MPa",
         "Gent 1958; other relations differ by a factor of up to 2",
         0.3,
@@ -68,7 +68,7 @@ CONVERSIONS = (
     Conversion(
         "youngs_modulus",
         (GivenInput("shore_d", "number", "50", (30, 85)),),
-        qi,
+        modulus_of_shore_d,
         "lg(E/MPa) = 0.0235 (S + 50) - 0.6403",
         "Qi, Joyce and Boyce 2003",
         0.4,
@@ -158,7 +158,7 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
     return Given(values, errors, tuple(said), tuple(problems))
 
 
-def converted(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
+def convert_inputs(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
     """Return inputs of a contact with those of data sheets converted, values with errors left to be refused."""
     if not any(given.get(name) is not None for name in GIVEN):
         return {name: value for name, value in given.items() if name not in GIVEN}
@@ -182,16 +182,16 @@ def _row(name: str, table: InputTable) -> Input | GivenInput:
 def _convert(
     row: Conversion, values: dict[str, Any], errors: dict[str, float], given: Mapping[str, Any], table: InputTable
 ) -> str:
-    """Put the input that a conversion gives in the place of those it follows from, and return what was done."""
+    """Replace the inputs of a conversion by its result, and return a sentence on that."""
     names = [each.name for each in row.inputs]
     there = [name for name in names if values.get(name) is not None]
-    shown = " and ".join(f"{name} = {_shown(given[name])}" for name in there)
+    shown = " and ".join(f"{name} = {_given_text(given[name])}" for name in there)
     missing = [each for each in row.inputs if each.name not in there]
     if missing:
         raise InputError(f"{shown} needs {missing[0].name} too, as in {missing[0].name} = {show(missing[0].typical)}.")
     if values.get(row.of) is not None:
         raise InputError(
-            f"{row.of} = {_shown(given.get(row.of, values[row.of]))} and {shown} are both given; remove one of them."
+            f"{row.of} = {_given_text(given.get(row.of, values[row.of]))} and {shown} are both given; remove one of them."
         )
     numbers = [_si(each, values.pop(each.name)) for each in row.inputs]
     result = row.value(*numbers)
@@ -209,7 +209,7 @@ def _convert(
     return f"{made}: {row.formula} ({row.source}{about}){besides}."
 
 
-def _shown(value: Any) -> str:
+def _given_text(value: Any) -> str:
     """Return a value as it was given, ``{ value, error }`` as people write it."""
     if isinstance(value, Mapping) and value.keys() == {"value", "error"}:
         return show(f"{value['value']} +- {value['error']}")

@@ -10,7 +10,7 @@ from typing import Any
 _HEADING = re.compile(r"^(\w+)\n-+\n", re.MULTILINE)
 
 
-def completed(function: Callable[..., Any], arguments: Mapping[str, str], returns: str, raises: str) -> str:
+def complete_docstring(function: Callable[..., Any], arguments: Mapping[str, str], returns: str, raises: str) -> str:
     """Return the docstring of a function with the sections, and the arguments, that it leaves out."""
     head, *parts = _HEADING.split(inspect.getdoc(function) or "")
     own = {title: text.strip("\n") for title, text in zip(parts[::2], parts[1::2], strict=True)}

@@ -24,7 +24,7 @@ OTHER_SOURCES = {"viscosity": 'or name the liquid in a table [fluid], for exampl
 _RMS_HINT = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
 _LOAD_HINT = "give load: for a cylinder in N/m, or force in N with its width; for a ball, geometry = 'point', the force in N"
 
-# Whole words of a key, and what the package has instead.  The first that matches is said.
+# Whole words of a key, and what the package has instead. The first match answers.
 _HINTS = (
     (("shore", "hardness", "irhd"), FROM_HARDNESS),
     (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS_HINT),

@@ -41,7 +41,7 @@ class Alternative:
     value: Callable[..., float]  # Its value from theirs, in SI units
     meaning: str  # What the kept input is, for sentences
     hint: str = ""  # What to know if one of several is missing
-    other: tuple[str, ...] = ()  # The same of a second body, which may be given besides, all together
+    other: tuple[str, ...] = ()  # Inputs of a second body, which may be given besides, all together
 
 
 def _in_series(*bodies: float) -> float:
@@ -93,7 +93,7 @@ class InputTable:
 
     @cached_property
     def choices(self) -> frozenset[str]:
-        """Those that need not be given: they have a default, or others may take their place."""
+        """Inputs with a default or an alternative, which need not be given."""
         optional = {row.name for row in self.rows if row.optional}
         return frozenset(optional.union(*((other.of, *other.inputs, *other.other) for other in self.alternatives)))
 

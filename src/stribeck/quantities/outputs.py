@@ -106,12 +106,12 @@ class OutputTable:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Those with an estimated error, in the order of every array of them."""
+        """Observables with an estimated error, in the order of every array of them."""
         return tuple(row.name for row in self.rows if row.error)
 
     @cached_property
     def absolute(self) -> tuple[str, ...]:
-        """Those whose estimated error is absolute."""
+        """Observables whose estimated error is absolute."""
         return tuple(row.name for row in self.rows if row.error == "absolute")
 
     @cached_property
@@ -137,8 +137,8 @@ RUPTURE_ROWS = (
     Observable("exit_position", "end of the film", "position where the film ends", "width", "film_exit_position"),
     Observable(
         "reformation_position",
-        "film begins anew",
-        "position where the film begins anew behind the cavity",
+        "film reforms",
+        "position where the film reforms behind the cavity",
         "width",
         "film_reformation_position",
     ),

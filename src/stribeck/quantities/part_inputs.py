@@ -143,7 +143,7 @@ def fitted_rows(table: InputTable) -> dict[str, Input]:
 
 
 def part_names(contact: Any) -> tuple[str, ...]:
-    """Return the names of those numbers that a contact has and that are not zero."""
+    """Return the names of the numbers of laws that a contact has and that are not zero."""
     return tuple(name for name in PART_INPUTS if getattr(contact, name, None))
 
 
@@ -160,14 +160,14 @@ def with_part_value(parts: Any, name: str, value: str | float) -> Any:
     row = PART_INPUTS[name]
     if part_value(parts, name) is None:
         raise InputError(f"{name} = {show(value)}, but this contact has none: it belongs to {row.of}; give it to the contact.")
-    return _with(parts, row.path, to_si(value, row.dimension, name, row.typical))
+    return _replace_at_path(parts, row.path, to_si(value, row.dimension, name, row.typical))
 
 
-def _with(thing: Any, path: tuple[str, ...], value: float) -> Any:
+def _replace_at_path(thing: Any, path: tuple[str, ...], value: float) -> Any:
     """Return a frozen dataclass with another value at the end of a path of attributes.
 
     Its arguments are its fields in their order, whatever they are called.
     """
     first, *rest = path
-    new = _with(getattr(thing, first), tuple(rest), value) if rest else value
+    new = _replace_at_path(getattr(thing, first), tuple(rest), value) if rest else value
     return type(thing)(*(new if each.name == first else getattr(thing, each.name) for each in fields(thing)))

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["ByValue", "Card", "Shown", "brief", "same"]
+__all__ = ["ByValue", "Card", "Shown", "brief_text", "equal_values"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Shown:
     def _card(self) -> Card:
         said = (inspect.getdoc(type(self)) or "").partition("\n")[0]
         named = [each.name for each in fields(self) if each.name != "notes"]  # type: ignore[arg-type]
-        return Card(said, [(name, brief(getattr(self, name))) for name in named], getattr(self, "notes", ()))
+        return Card(said, [(name, brief_text(getattr(self, name))) for name in named], getattr(self, "notes", ()))
 
     def __repr__(self) -> str:
         """Return the card as lines of text."""
@@ -43,7 +43,7 @@ class Shown:
         return card_html(type(self).__name__, self._card())
 
 
-def brief(value: Any) -> str:
+def brief_text(value: Any) -> str:
     """Return a value in less than a line: numbers with four digits, arrays by their size and range."""
     if isinstance(value, np.ndarray):
         shape = " x ".join(map(str, value.shape)) or "1"
@@ -75,27 +75,27 @@ class ByValue:
         if type(other) is not type(self):
             return NotImplemented
         names = [each.name for each in fields(self) if each.compare]  # type: ignore[arg-type]
-        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+        return all(equal_values(getattr(self, name), getattr(other, name)) for name in names)
 
     def __hash__(self) -> int:
         """Hash by type: equal results have equal hashes, and few of them meet in one dictionary."""
         return hash(type(self))
 
 
-def same(one: Any, other: Any) -> bool:
+def equal_values(one: Any, other: Any) -> bool:
     """Return whether two values are equal, arrays and numbers bit for bit, NaN to NaN; functions are left out."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         numeric = np.asarray(one).dtype.kind == "f" and np.asarray(other).dtype.kind == "f"
         return np.array_equal(one, other, equal_nan=numeric)
     if isinstance(one, tuple | list) and isinstance(other, tuple | list):
-        return len(one) == len(other) and all(map(same, one, other))
+        return len(one) == len(other) and all(map(equal_values, one, other))
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
+        return one.keys() == other.keys() and all(equal_values(value, other[key]) for key, value in one.items())
     if isinstance(one, float) and isinstance(other, float) and one != one:
         return other != other
     if type(one) is type(other) and is_dataclass(one) and not isinstance(one, ByValue | type):
         names = [each.name for each in fields(one) if each.compare]
-        return all(same(getattr(one, name), getattr(other, name)) for name in names)
+        return all(equal_values(getattr(one, name), getattr(other, name)) for name in names)
     if isinstance(one, Callable) and isinstance(other, Callable):  # type: ignore[arg-type]
         return True
     return bool(one == other)

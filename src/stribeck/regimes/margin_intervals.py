@@ -23,7 +23,7 @@ from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.solve import SolveError
-from stribeck.uncertainty.propagate import STATE_RTOL, kept_errors, moving_with
+from stribeck.uncertainty.propagate import STATE_RTOL, errors_of_kept_inputs, inputs_tied_to
 from stribeck.uncertainty.result import exact_inputs
 
 __all__ = ["with_intervals"]
@@ -36,7 +36,7 @@ def with_intervals(
     contact: Contact, margins: RegimeMargins, errors: Mapping[str, Any], definition: Definition = "balanced"
 ) -> RegimeMargins:
     """Return margins with the 95 % interval of each factor."""
-    sigmas = kept_errors(contact, errors)
+    sigmas = errors_of_kept_inputs(contact, errors)
     if not sigmas:
         return margins
 
@@ -61,7 +61,7 @@ def _sigma(
     slopes = _slopes(contact.replace(**{name: mark.value}), by_friction, definition)
     total = 0.0
     for each, sigma in sigmas.items():
-        moved = moving_with(contact, each, sigmas)
+        moved = inputs_tied_to(contact, each, sigmas)
         change = -sum(slopes[other] for other in moved if other != name) / slopes[name]
         total += ((change - (name in moved)) * sigma) ** 2
     return math.sqrt(total)

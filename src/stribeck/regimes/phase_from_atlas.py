@@ -83,7 +83,7 @@ def transition_speeds(
 
     bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
     motion = {"slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
-    rubbing = boundary_friction * float(RULES[groups.geometry].rubbing(groups, motion))
+    rubbing = boundary_friction * float(RULES[groups.geometry].sliding_factor(groups, motion))
 
     def signs(s: Array, h: Array) -> Array:
         """Return what passes from below to above zero at each of the three, shape (3, ...)."""
@@ -162,7 +162,7 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups, of: Contact |
     rule = RULES[groups.geometry]
     inputs = {**rule.of_contact(of), "beta": diagram.beta}
     share, viscous = atlas.friction_terms(groups, inputs, diagram.definition)
-    solid = diagram.boundary_friction * float(rule.rubbing(groups, inputs)) * share
+    solid = diagram.boundary_friction * float(rule.sliding_factor(groups, inputs)) * share
     friction = solid + viscous
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
     contact = friction_share(solid, viscous)

@@ -53,7 +53,7 @@ def plot_surface(
         return finish_figure(figure, path, force)
     figure, (heights, spectrum, law) = new_figure(
         (14.0, 4.4),
-        [_found(surface)],
+        [_caption(surface)],
         surface.notes if notes else (),
         title=title or surface.topography.source or "Surface",
         columns=3,
@@ -159,7 +159,7 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
     axes.set_title("Contact law", size=10, color=GREY, loc="left")
 
 
-def _found(surface: Surface) -> list[str]:
+def _caption(surface: Surface) -> list[str]:
     """Return what was found, for the caption."""
     found, (alpha, beta) = surface.to_dict(), surface.fit.exponential_limit(surface.gamma)
     parts = [

@@ -117,7 +117,7 @@ class _Trial:
 
 def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
     n = q.size
-    plain = [_fitted(data, q, roll_off, False, 0, n) for roll_off in (False, True)]
+    plain = [_fit_between_cut_offs(data, q, roll_off, False, 0, n) for roll_off in (False, True)]
     best = min((trial for trial in plain if trial), key=lambda trial: trial.score, default=None)
     if best is None:
         return
@@ -125,11 +125,13 @@ def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
     # does not vanish beyond them, so they are looked for in maps only.
     if data.is_line:
         yield from (trial for trial in plain if trial)
-        yield from (trial for trial in (_fitted(data, q, roll_off, True, 0, n) for roll_off in (False, True)) if trial)
+        yield from (
+            trial for trial in (_fit_between_cut_offs(data, q, roll_off, True, 0, n) for roll_off in (False, True)) if trial
+        )
         return
     trials = list(plain)
     for first in ("low", "high"):
-        # One end after the other, and the first once more when the other is known.
+        # One cut-off, then the second, and the first once more with the second known.
         ends, end = (0, n), first
         for _ in range(3):
             places = (
@@ -137,27 +139,27 @@ def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
                 if end == "low"
                 else [(ends[0], j) for j in range(ends[0] + 6, n)]
             )
-            found = _cut(data, q, places)
+            found = _fit_best_cut_offs(data, q, places)
             trials.append(found)
             ends = (found.low, found.high) if found else ends
             end = "high" if end == "low" else "low"
     noisy = min((trial for trial in trials if trial), key=lambda trial: trial.score)
     if noisy.high == n:
-        trials.append(_fitted(data, q, noisy.roll_off, True, noisy.low, n))
-        trials.append(_fitted(data, q, not noisy.roll_off, True, noisy.low, n))
+        trials.append(_fit_between_cut_offs(data, q, noisy.roll_off, True, noisy.low, n))
+        trials.append(_fit_between_cut_offs(data, q, not noisy.roll_off, True, noisy.low, n))
     yield from (trial for trial in trials if trial)
 
 
-def _cut(data: _Data, q: Array, places: list[tuple[int, int]]) -> _Trial | None:
-    trials = [_fitted(data, q, False, False, low, high) for low, high in places]
+def _fit_best_cut_offs(data: _Data, q: Array, places: list[tuple[int, int]]) -> _Trial | None:
+    trials = [_fit_between_cut_offs(data, q, False, False, low, high) for low, high in places]
     best = min((trial for trial in trials if trial), key=lambda trial: trial.score, default=None)
     if best is None:
         return None
-    rolled = _fitted(data, q, True, False, best.low, best.high)
+    rolled = _fit_between_cut_offs(data, q, True, False, best.low, best.high)
     return min((trial for trial in (best, rolled) if trial), key=lambda trial: trial.score)
 
 
-def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
+def _fit_between_cut_offs(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
     """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1."""
     n = q.size
     inside = np.zeros(n, dtype=bool)

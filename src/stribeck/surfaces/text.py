@@ -332,9 +332,9 @@ def _table(path: Path) -> _Table:
         start -= 1
     body = [k for k in range(start, len(rows)) if not rows[k][1].startswith(("#", "%"))]
     numbers, cells = [rows[k][0] for k in body], [split(k) for k in body]
-    width = max(_filled(row) for row in cells if len(row) <= len(cells[0]))
+    width = max(_count_filled(row) for row in cells if len(row) <= len(cells[0]))
     for number, row in zip(numbers, cells, strict=True):
-        if len(row) < width or _filled(row) > len(cells[0]):
+        if len(row) < width or _count_filled(row) > len(cells[0]):
             raise InputError(
                 f"{path}: line {number} has {len(row)} columns where the lines above have {len(cells[0])}; "
                 "correct the line, or check separator and decimal comma."
@@ -371,7 +371,7 @@ def _longest_run(data: list[bool]) -> tuple[int, int]:
     return best
 
 
-def _filled(row: list[str]) -> int:
+def _count_filled(row: list[str]) -> int:
     """Return the number of cells up to the last that is not empty."""
     filled = [j for j, cell in enumerate(row) if cell]
     return max(filled, default=0) + 1
@@ -397,7 +397,7 @@ def _values(
         f"{_points(count, 'reads', 'read')} {show(word)} and {_counts(count)} as missing." for word, count in words.items()
     ]
     for code in np.unique(z[beyond & np.isfinite(z)]):
-        notes.append(_said(float(code), z == code))
+        notes.append(_code_note(float(code), z == code))
     z[beyond] = np.nan
     declared = {float(code.replace(",", ".")) for code in codes}
     for code in sorted(declared | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
@@ -405,12 +405,12 @@ def _values(
         rest = z[~here & ~np.isnan(z)]
         far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
         if here.any() and (code in declared or far):
-            notes.append(_said(code, here))
+            notes.append(_code_note(code, here))
             z[here] = np.nan
     return values, notes
 
 
-def _said(code: float, here: Array) -> str:
+def _code_note(code: float, here: Array) -> str:
     count = int(here.sum())
     return f"{_points(count, 'holds', 'hold')} {code:g}, a code for no height, and {_counts(count)} as missing."
 

@@ -222,7 +222,7 @@ def _spikes(heights: Array) -> Flags:
     deviation = np.abs(z - ndimage.median_filter(z, **options))
     scatter = ndimage.maximum_filter(z, **options) - ndimage.minimum_filter(z, **options)
     usual = 1.4826 * float(np.median(deviation[~dead]))
-    # Heights in a few steps may have no scatter at all; then nothing can be told.
+    # Heights in a few steps may have no scatter at all; then no spike can be found.
     if usual == 0:
         return np.zeros(z.shape, dtype=bool)
     return np.asarray(~dead & (deviation > SPIKE_DEVIATION * usual) & (deviation > SPIKE_ISOLATION * scatter))

@@ -16,7 +16,7 @@ from pathlib import Path
 from stribeck.files.writing import MissingExtraError, reason_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["LOCK_FILE", "locked"]
+__all__ = ["LOCK_FILE", "hold_lock"]
 
 LOCK_FILE = "sweep.lock"
 
@@ -24,7 +24,7 @@ MAX_RECORD_BYTES = 1024  # [byte]
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[str]:
+def hold_lock(folder: Path) -> Iterator[str]:
     """Hold the lock of a store."""
     try:
         from filelock import SoftFileLock, Timeout
@@ -59,7 +59,7 @@ def _in_use(file: Path) -> str:
     if holder is None:
         return f"{file.parent} was in use a moment ago; run the same sweep again."
     pid, host = holder
-    if host.partition("?")[0] == socket.gethostname() and _runs(pid):  # the library adds a mark in containers
+    if host.partition("?")[0] == socket.gethostname() and _is_running(pid):  # the library adds a mark in containers
         return (
             f"{file.parent} is in use by process {pid} on this machine; wait for it, stop it with Ctrl-C, "
             "or choose another store."
@@ -86,7 +86,7 @@ def _holder(file: Path) -> tuple[int, str] | None:
         ) from None
 
 
-def _runs(pid: int) -> bool:
+def _is_running(pid: int) -> bool:
     """Return whether a process of this host runs, as far as that can be seen."""
     if os.name == "nt":
         return True  # there, the signal that only asks would end the process

@@ -26,7 +26,7 @@ from stribeck.files.writing import FULL_DISK_ERRORS, reason_of
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.store import TEXT_BYTES, SweepError, describe_store
 
-__all__ = ["Rows", "Writer", "clean", "read_rows"]
+__all__ = ["Rows", "Writer", "remove_unfinished", "read_rows"]
 
 MAX_CHUNK_BYTES = 100_000  # [byte]
 
@@ -81,7 +81,7 @@ def read_rows(path: Path) -> Rows:
     n = about["states"]
     values = np.full((n, len(about["values"]["columns"])), np.nan)
     done, texts = np.zeros(n, dtype=bool), [""] * n
-    with _told(path, "read"):
+    with _store_problem(path, "read"):
         for row in _chunks(path, "done", n):
             found = _finished(path, row, values.shape[1])
             if found is not None:
@@ -106,9 +106,9 @@ def _finished(path: Path, row: int, columns: int) -> tuple[Array, str] | None:
     return np.frombuffer(numbers, dtype="<f8"), said.rstrip(b"\0").decode("utf-8", errors="replace")
 
 
-def clean(path: Path, rows: Rows) -> None:
+def remove_unfinished(path: Path, rows: Rows) -> None:
     """Remove what killed processes left: temporary files, and chunks of states that do not count as done."""
-    with _told(path, "cleared"):
+    with _store_problem(path, "cleared"):
         for array in ("values", "text", "done"):
             for row, name in _chunks(path, array, len(rows.done)).items():
                 if not rows.done[row]:
@@ -132,8 +132,8 @@ def _chunks(path: Path, array: str, n: int) -> dict[int, str]:
 
 
 @contextmanager
-def _told(path: Path, what: str) -> Iterator[None]:
-    """Make a sentence of what the system says about a file of a store."""
+def _store_problem(path: Path, what: str) -> Iterator[None]:
+    """Return an error of the system on a file of a store as a sentence."""
     try:
         yield
     except OSError as problem:

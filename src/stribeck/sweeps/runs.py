@@ -38,7 +38,7 @@ def _lines(path: Path) -> Iterator[dict[str, Any]]:
     for line in text.splitlines():
         try:
             found = json.loads(line)
-        except (ValueError, RecursionError):  # torn by the end of its run
+        except (ValueError, RecursionError):  # cut off by the end of its run
             continue
         if isinstance(found, dict):
             yield found

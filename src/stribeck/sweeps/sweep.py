@@ -19,8 +19,8 @@ from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.sweeps.chain import Chain
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.lock import locked
-from stribeck.sweeps.rows import clean, read_rows
+from stribeck.sweeps.lock import hold_lock
+from stribeck.sweeps.rows import read_rows, remove_unfinished
 from stribeck.sweeps.runs import log_run
 from stribeck.sweeps.store import SweepError, create_or_open, describe_store
 
@@ -112,7 +112,7 @@ def sweep(
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
     store = create_or_open(out, plan)
     began = time.monotonic()
-    with locked(store) as note:
+    with hold_lock(store) as note:
         run = _Run(plan, store, workers, scheduler, on_progress)
         interrupted = run.to_the_end()
     if not interrupted and not run.rows.done.all():
@@ -139,7 +139,7 @@ class _Run:
 
     def to_the_end(self) -> bool:
         """Solve what is not done; return whether that was interrupted."""
-        clean(self.store, self.rows)
+        remove_unfinished(self.store, self.rows)
         self.before = int(self.rows.done.sum())
         facts = {"host": socket.gethostname(), "pid": os.getpid(), "workers": self.workers, "scheduler": self.scheduler}
         with log_run(self.store, **facts, done=self.before) as ending:
@@ -151,7 +151,7 @@ class _Run:
             except KeyboardInterrupt:
                 ending["outcome"] = "INTERRUPTED"
             finally:
-                # Workers may have written more than they told before they were stopped.
+                # Workers may have written more than they reported before they were stopped.
                 self.rows = read_rows(self.store)
                 ending["reported"] = self.computed
                 ending["computed"] = self.computed = int(self.rows.done.sum()) - self.before
@@ -161,7 +161,7 @@ class _Run:
         # Imported here because most uses of the package start no processes.
         from concurrent.futures.process import BrokenProcessPool
 
-        from stribeck.sweeps.workers import in_this_process, on_cluster, on_processes
+        from stribeck.sweeps.workers import solve_in_process, solve_on_cluster, solve_on_processes
 
         for deaths in range(1, MAX_REPLACEMENTS + 2):
             chains = self._chains()
@@ -169,11 +169,11 @@ class _Run:
                 if not chains:
                     pass
                 elif self.scheduler is not None:
-                    on_cluster(self.store, chains, self.scheduler, self._finished, self._tell)
+                    solve_on_cluster(self.store, chains, self.scheduler, self._finished, self._tell)
                 elif self.workers > 1:
-                    on_processes(self.store, chains, min(self.workers, len(chains)), self._finished, self._tell)
+                    solve_on_processes(self.store, chains, min(self.workers, len(chains)), self._finished, self._tell)
                 else:
-                    in_this_process(self.store, chains, self._finished, self._tell)
+                    solve_in_process(self.store, chains, self._finished, self._tell)
             except BrokenProcessPool:
                 if deaths > MAX_REPLACEMENTS:
                     raise SweepError(
@@ -182,7 +182,7 @@ class _Run:
                         "What is finished is kept: run the same sweep again, with fewer workers."
                     ) from None
                 self.rows = read_rows(self.store)
-                clean(self.store, self.rows)
+                remove_unfinished(self.store, self.rows)
             else:
                 return
 

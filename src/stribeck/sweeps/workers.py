@@ -33,7 +33,7 @@ from stribeck.sweeps.columns import OUTCOMES
 from stribeck.sweeps.rows import Writer
 from stribeck.sweeps.store import SweepError
 
-__all__ = ["in_this_process", "on_cluster", "on_processes"]
+__all__ = ["solve_in_process", "solve_on_cluster", "solve_on_processes"]
 
 POLL_INTERVAL = 0.25  # Time between two looks at whether the user wants to stop [s]
 
@@ -51,8 +51,8 @@ def _is_failure(values: Array) -> int:
     return int(OUTCOMES[int(values[-1])] != Outcome.CONVERGED.name)
 
 
-def in_this_process(path: Path, chains: Chains, finished: Finished, pause: Pause) -> None:
-    """Solve one chain after the other; each state is written as it is finished."""
+def solve_in_process(path: Path, chains: Chains, finished: Finished, pause: Pause) -> None:
+    """Solve the chains in turn, and write each state as it is finished."""
     write = Writer(path)
 
     def on_row(row: int, values: Array, text: str) -> None:
@@ -78,7 +78,7 @@ class _StopWorkError(Exception):
     """Raised in a worker between two states when the sweep ends."""
 
 
-def on_processes(path: Path, chains: Chains, workers: int, finished: Finished, pause: Pause) -> None:
+def solve_on_processes(path: Path, chains: Chains, workers: int, finished: Finished, pause: Pause) -> None:
     """Solve the chains on processes of this machine, which write each state as it is finished."""
     context = multiprocessing.get_context("spawn")  # a fork would copy locks that threads of this process hold
     stop = context.Event()
@@ -146,7 +146,7 @@ def _solve_here(chain: Chain) -> tuple[int, int]:
 # --- a cluster ---
 
 
-def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, pause: Pause) -> None:
+def solve_on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, pause: Pause) -> None:
     """Solve the chains on a Dask cluster; its workers send each state as it is finished, and this process writes it."""
     try:
         from distributed import Client

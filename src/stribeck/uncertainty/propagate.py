@@ -28,7 +28,7 @@ from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
 from stribeck.uncertainty.states import NODE_DEVIATION, films_of, states_by_inputs, states_of
 
-__all__ = ["STATE_RTOL", "kept_errors", "moving_with", "propagate"]
+__all__ = ["STATE_RTOL", "errors_of_kept_inputs", "inputs_tied_to", "propagate"]
 
 SAMPLES = 20_000  # Random samples of the inputs
 SEED = 20261122  # Fixed, so that results repeat
@@ -99,11 +99,11 @@ def propagate(
     checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}")
     if not errors:
         raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
-    sigmas = kept_errors(contact, errors)
+    sigmas = errors_of_kept_inputs(contact, errors)
     names = list(sigmas)
     draws = np.random.default_rng(SEED).standard_normal((SAMPLES, max(1, len(names))))
     offsets = draws[:, : len(names)] * np.array([sigmas[name] for name in names])
-    moves = [moving_with(contact, name, sigmas) for name in names]
+    moves = [inputs_tied_to(contact, name, sigmas) for name in names]
 
     def power(function: Any) -> Array:
         """Return the powers with which the inputs enter a power law."""
@@ -119,7 +119,7 @@ def propagate(
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
-    rubbing = rule.rubbing(groups, inputs) * scale(lambda each: each.boundary_friction)
+    rubbing = rule.sliding_factor(groups, inputs) * scale(lambda each: each.boundary_friction)
     shearing = np.full(SAMPLES, contact.beta)
     for name, exponent in _exponents(solution, inputs, definition).items():
         shearing = shearing * (scale(rule.inputs[name]) / inputs[name]) ** exponent
@@ -166,7 +166,7 @@ def propagate(
     )
 
 
-def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
+def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
     """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
     rows = fitted_rows(contact.INPUTS)
     found: dict[str, float] = {}
@@ -207,7 +207,7 @@ def _check_range(row: PartInput, value: float, sigma: float) -> None:
             )
 
 
-def moving_with(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
+def inputs_tied_to(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
     """Return the inputs that move together with one."""
     return ("roughness", "beta") if name == "roughness" and follows_surface(contact, {name, *sigmas}) else (name,)
 
@@ -259,7 +259,7 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
             continue
         factor = math.exp(sigma)
         moved, _ = marks(
-            contact.replace(**{each: getattr(contact, each) * factor for each in moving_with(contact, name, sigmas)})
+            contact.replace(**{each: getattr(contact, each) * factor for each in inputs_tied_to(contact, name, sigmas)})
         )
         for mark, value in start.items():
             if mark in moved:

@@ -69,7 +69,7 @@ def states_of(
     """Return load share, viscous friction and films of samples."""
     table = atlas.for_groups(groups)
     if table is not None:
-        samples = _moved(groups, offsets)
+        samples = _scale_groups(groups, offsets)
         if bool(np.all(atlas.covers(samples))):
             inputs = RULES[groups.geometry].of_contact(contact)
             films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
@@ -112,7 +112,7 @@ def states_by_inputs(
         (draws[:, i], values(inputs, NODE_DEVIATION * sigma), values(inputs, -NODE_DEVIATION * sigma))
         for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
     ]
-    return _followed(_quadratic(start, axes, contact.groups.geometry, len(draws)), draws, sample, friction)
+    return _correct_by_solved_states(_quadratic(start, axes, contact.groups.geometry, len(draws)), draws, sample, friction)
 
 
 def _by_quadratics(
@@ -127,7 +127,7 @@ def _by_quadratics(
     variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
 
     def values(distance: Array) -> Array:
-        return _values(solve(_moved(groups, middle + distance), rtol=rtol), definition, contact)
+        return _values(solve(_scale_groups(groups, middle + distance), rtol=rtol), definition, contact)
 
     axes = []
     for variance, direction in zip(variances, directions.T, strict=True):
@@ -139,7 +139,7 @@ def _by_quadratics(
     if friction is None or not axes:
         return found.values(), ()
     places = np.stack([place for place, *_ in axes], axis=1)
-    return _followed(found, places, lambda i: values(offsets[i] - middle), friction)
+    return _correct_by_solved_states(found, places, lambda i: values(offsets[i] - middle), friction)
 
 
 class _Samples(NamedTuple):
@@ -167,7 +167,7 @@ class _Samples(NamedTuple):
         }
 
 
-def _followed(
+def _correct_by_solved_states(
     base: _Samples, places: Array, solved: Callable[[int], Array], friction: Callable[[dict[str, Array]], Array]
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return samples corrected by solved states until the ends of the interval of friction are where solved states have them.
@@ -200,7 +200,7 @@ def _followed(
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known |= new
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            return found.values(), _unsettled(wrong / width if width else 0.0, int(tried.sum()), len(known))
+            return found.values(), _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known))
         rows = list(known)
         rest = np.array([known[i] - base.y[i] for i in rows]).reshape(-1, base.y.shape[1])
         # The middle is known too; the smooth function leaves it where it is.
@@ -209,8 +209,8 @@ def _followed(
         found = base._replace(y=base.y + smooth(places))
 
 
-def _unsettled(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
-    """Return what to know of an interval: that its ends are not settled, and how many of its samples cannot be solved."""
+def _interval_notes(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
+    """Return notes on an interval with uncertain ends, and on samples that cannot be solved."""
     notes = []
     if wrong > INTERVAL_END_RTOL:
         apart = f"lie up to {format_percent(wrong)} of its width" if math.isfinite(wrong) else "cannot be solved or lie far"
@@ -253,7 +253,7 @@ def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
     return np.array([np.log(contact / fluid), viscous, *np.log([max(value, MIN_SHARE) for value in films])])
 
 
-def _moved(groups: Groups, offsets: Array) -> Groups:
+def _scale_groups(groups: Groups, offsets: Array) -> Groups:
     factors = np.exp(offsets)
     speed, load, roughness = (
         np.asarray(getattr(groups, name)) * factors[..., i] for i, name in enumerate(("speed", "load", "roughness"))

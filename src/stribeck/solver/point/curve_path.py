@@ -21,7 +21,7 @@ from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.series import beyond, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, same
+from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.path.path import (
     BETWEEN_RTOL_FRACTION,
     MAX_EXPANSIONS,
@@ -300,7 +300,7 @@ class CurveState(ByValue, PointState):
         """Return whether groups, values and errors are equal."""
         if type(other) is not type(self):
             return NotImplemented
-        return all(same(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
+        return all(equal_values(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
 
     __hash__ = ByValue.__hash__
 
