@@ -127,7 +127,7 @@ def judge_with_parts(seed: int, number: int, places: int, rtol: float, seconds: 
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     took = f"{curve.states} in {time.process_time() - began:.1f} s" + ("" if curve.outcome.ok else f", {curve.outcome.name}")
-    values = np.geomspace(*np.exp(curve._solved_path.coordinates[[0, -1]]), places + 2)[1:-1]
+    values = np.geomspace(*np.exp(curve._function.coordinates[[0, -1]]), places + 2)[1:-1]
     here, found = curve.at(values), np.full((places, len(ALL_NAMES)), np.nan)
     for i, value in enumerate(values.tolist()):
         try:

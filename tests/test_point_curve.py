@@ -119,10 +119,33 @@ def test_a_curve_of_a_ball_stays_itself_after_pickling_and_fits_a_screen(curve):
     assert len(repr(curve)) < 3000
 
 
-def test_a_ball_at_rest_is_known_at_its_points_only():
-    found = sb.stribeck_curve(groups(0.0), load=(1e-3, 2e-3), points=2, rtol=1e-3)
-    with pytest.raises(sb.InputError, match="known at its points only"):
-        found.at(1.5e-3)
+@pytest.mark.parametrize(
+    "physics",
+    [
+        {"cavitation": "exit"},
+        {"cavitation": "reform", "cavity_pressure": -0.02},
+        {"fluid": sb.fluids.Carreau(1e4, 0.5)},
+        {"flow_factors": sb.fluids.PatirCheng(1)},
+    ],
+    ids=lambda each: next(iter(each)),
+)
+def test_a_curve_of_any_film_is_right_between_its_states_within_its_stated_error(physics):
+    found = sb.stribeck_curve(groups(0.1), speed=(3e-4, 1e-2), points=4, rtol=2e-3, **physics)
+    for speed in (5e-4, 4e-3):
+        there, solved = found.at(speed), found.solve_at(speed)
+        for name in ("contact_load_share", "central_gap", "J_balanced"):
+            scale = 1.0 if name.endswith("share") else abs(getattr(solved, name))
+            error = (there.errors[name] + solved.errors[name]) * scale
+            assert abs(getattr(there, name) - getattr(solved, name)) <= error, name
+        friction = solved.friction()
+        assert abs(there.friction - friction.total) <= there.friction_error + friction.error
+
+
+def test_a_curve_over_the_load_of_a_ball_at_rest_is_a_function():
+    found = sb.stribeck_curve(groups(0.0), load=(1e-3, 4e-3), points=2, rtol=1e-3)
+    there, solved = found.at(2.2e-3), sb.solve(sb.Groups(0.0, 2.2e-3, groups(0.0).roughness, geometry="point"))
+    assert there.central_gap == pytest.approx(solved.central_gap, rel=2e-3)
+    assert there.minimum_gap == pytest.approx(solved.minimum_gap, rel=2e-3)
 
 
 def test_a_neighbour_solver_keeps_its_states_without_their_factors():

@@ -25,7 +25,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
-__all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "friction_at", "places_of"]
+__all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "friction_at"]
 
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located on states; their errors are added to it."""
@@ -87,19 +87,13 @@ def friction_at(friction: Friction) -> float:
     return friction.total if abs(friction.total) > friction.error else 0.0
 
 
-def places_of(path: SolvedPath) -> Array:
-    """Return the coordinates of a path at which landmarks are searched for."""
-    inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
-    return np.append(np.concatenate(inside), path.coordinates[-1])
-
-
 class Landmarks:
     """The search for landmarks on one path, whose friction is ``rubbing`` times the load share of asperities, and viscous."""
 
     def __init__(self, path: SolvedPath, coordinate: Coordinate, rtol: float) -> None:
         self.path, self.coordinate, self.rtol = path, coordinate, rtol
         self.moves = bool(coordinate.groups_at(float(path.coordinates[0])).speed > 0)
-        self.places = places_of(path)
+        self.places = path.places(PARTS)
         self.rows = path.smooth(self.places)
         self.solved: dict[float, RefinedState] = {}
 

@@ -1,4 +1,4 @@
-"""The Stribeck curve of a ball: its states from neighbour to neighbour, its minimum and its transitions on solved states."""
+"""The Stribeck curve of a ball: a function through solved states, with its minimum and its transitions."""
 
 from __future__ import annotations
 
@@ -11,23 +11,26 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.cut_off import log_cut_offs
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE, friction_share
+from stribeck.contacts.regime import friction_share
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress, observed
-from stribeck.curves.landmarks import Landmark, friction_at, places_of
+from stribeck.curves.landmarks import Landmark, friction_at
 from stribeck.curves.regime import Transition, check_transition, excess
-from stribeck.curves.result import StribeckCurve
-from stribeck.equations.point.observables import OBSERVABLES, SMOOTH
+from stribeck.curves.result import SLACK, StribeckCurve
+from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import root_between
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.path.hermite_path import HermitePath, interpolate_to
 from stribeck.solver.path.path import SolvedPath, follow
-from stribeck.solver.point.curve_path import CurveState, PointProblem
+from stribeck.solver.point.curve_path import PointProblem
+from stribeck.solver.point.knots import BallKnots
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
@@ -36,17 +39,9 @@ from stribeck.solver.solve import SolveError, describe
 
 __all__ = ["PointCurve", "point_curve", "point_speeds"]
 
-LOCATION_TOLERANCE = 1e-7
-"""Relative tolerance to which a transition is located; its own error is that of the solved states."""
-
-SOLVED_LOCATION = 1e-2
-"""The same over the tolerance of the states, where each place that is looked at is a state to solve."""
-
-MINIMUM_WIDTH = 0.8
-"""Width of the logarithms around a minimum on which friction is a polynomial."""
-
-MINIMUM_NODES = 7
-"""Solved states on this polynomial."""
+LOCATION_TOLERANCE = 1e-7  # Of the logarithm of the place of a mark, whose own error is that of the curve
+SLOPE_STEP = 1e-4  # Step of the logarithm in central differences of the friction, for its minimum
+PARTS = np.arange(8) / 8  # Places at which marks are searched for, as parts of the interval between two states
 
 SLOWEST, FASTEST = 1e-8, 1e3
 """Smallest and largest speed group of a curve that chooses its own range."""
@@ -61,13 +56,14 @@ part of the friction."""
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PointCurve(StribeckCurve):
-    """Converged states of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`.
-
-    Films that break, fluids that thin, liquid that ends near the contact and contacts at rest: known at their points only.
-    """
+    """States of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`."""
 
     solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
-    _solver: NeighbourSolver = field(kw_only=True, repr=False, compare=False)
+    _function: Any = field(kw_only=True, repr=False, compare=False)  # of Taylor series, or of solved states with their slopes
+
+    def _read(self, places: Array) -> tuple[PointSolution, ...]:
+        """Return the solutions at coordinates, read off the curve."""
+        return tuple(_solutions(self._function, self._path, places))
 
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array."""
@@ -87,8 +83,8 @@ class PointCurve(StribeckCurve):
         def shown(column: list[Any]) -> Any:
             return np.array(column) if np.ndim(value) else column[0]
 
-        states = [_state_at(self._solved_path, each) for each in s.tolist()]
-        solutions = [solution_of(state, self._path.contact_at(each)) for state, each in zip(states, s.tolist(), strict=True)]
+        solutions = self._read(s)
+        states = [one.state for one in solutions]
         friction = [one.friction(self.boundary_friction, self.beta, self.definition) for one in solutions]
         return CurveValues(
             value=value,
@@ -103,39 +99,15 @@ class PointCurve(StribeckCurve):
         )
 
     def _solution_at(self, s: float) -> PointSolution:  # type: ignore[override]
-        path = self._solved_path
-        assert isinstance(path.problem, PointProblem)
-        return finish_point(path.problem.solved_at(path, s), self._path.contact_at(s))
+        return finish_point(self._function.problem.solved_at(self._function, s), self._path.contact_at(s))
 
-    def _along(self, path: SolvedPath, values: Array, requested: int) -> PointCurve:
+    def _along(self, path: SolvedPath | HermitePath, values: Array, requested: int) -> PointCurve:
         solutions = tuple(_solutions(path, self._path, np.log(values)))
         return replace(self, values=values, solutions=solutions, outcome=path.outcome, requested=requested, _function=path)
-
-    def _solved_at(self, values: Array, on_point: Callable[[int, int], object] | None) -> PointCurve:
-        solutions, where, _, outcome, failed = _point_by_point(self._path, values, self._solver, on_point)
-        if not solutions and failed is not None:
-            finish_point(failed, self.contact)
-        return replace(self, values=where, solutions=solutions, outcome=outcome, requested=len(values))
 
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
         found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
-
-    def _at(self, s: float) -> tuple[PointSolution, Friction]:
-        """Return the solution at a coordinate, read off the function if there is one, else solved, and its friction."""
-        contact = self._path.contact_at(s)
-        known = None if self._function is None else _state_at(self._function, s)
-        solution = finish_point(self._solver(s), contact) if known is None else solution_of(known, contact)
-        return solution, solution.friction(self.boundary_friction, self.beta, self.definition)
-
-    def _mark(self, name: Transition, s: float) -> Landmark:
-        solution, friction = self._at(s)
-        return Landmark(name, math.exp(s), friction_at(friction), solution)  # type: ignore[arg-type]
-
-    @property
-    def _ended_early(self) -> bool:
-        """Whether Ctrl-C ended a curve whose marks are found by solving more states."""
-        return self._function is None and self.outcome is Outcome.INTERRUPTED
 
     @cached_property
     def _at_unit(self) -> tuple[Groups, dict[str, Any], float]:
@@ -147,9 +119,15 @@ class PointCurve(StribeckCurve):
         return start, inputs, self.boundary_friction * float(rule.sliding_factor(start, inputs))
 
     def _parts_at(self, s: Array) -> tuple[Array, Array, Array]:
-        """Return the load share of the fluid and both parts of the friction at real or complex coordinates."""
-        rule, (start, known, rubbing) = RULES["point"], self._at_unit
-        rows = dict(zip(SMOOTH, self._solved_path.smooth(s).T, strict=True))
+        """Return the load share of the fluid and both parts of the friction at coordinates."""
+        rule, path = RULES["point"], self._function
+        if isinstance(path, HermitePath):
+            solutions = self._read(s)
+            friction = [one.friction(self.boundary_friction, self.beta, self.definition) for one in solutions]
+            fluid = np.array([one.fluid_load_share for one in solutions])
+            return fluid, np.array([each.contact for each in friction]), np.array([each.viscous for each in friction])
+        start, known, rubbing = self._at_unit
+        rows = dict(zip(path.problem.names, path.smooth(s).T, strict=True))
         rates = dict(zip(GROUPS, self._path.direction.tolist(), strict=True))
         speed, load = (float(getattr(start, name)) * np.exp(rates[name] * s) for name in ("speed", "load"))
         inputs = dict(known)
@@ -159,139 +137,74 @@ class PointCurve(StribeckCurve):
         return rows["fluid_load_share"], rubbing * rows["contact_load_share"], viscous
 
     @cached_property
+    def _searched(self) -> tuple[Array, Array, Array, Array]:
+        """Coordinates at which marks are searched for; there the fluid's load share and both parts of the friction."""
+        places = self._function.places(PARTS)
+        return places, *self._parts_at(places)
+
+    @cached_property
     def minimum(self) -> Landmark | None:
-        """The minimum of the size of the friction; None where the curve has none inside, or where it would be solved for."""
-        if self._ended_early or not bool(np.all(np.asarray(self.groups.speed) > 0)):
+        """The minimum of the size of the friction; None where the curve has none inside."""
+        if not bool(np.all(np.asarray(self.groups.speed) > 0)):
             return None
-        if self._function is None:
-            places, total = np.log(self.values), np.asarray(self.friction)
-        else:
-            places = places_of(self._solved_path)
-            total = np.add(*self._parts_at(places)[1:])
+        places, _, contact, viscous = self._searched
+        total = contact + viscous
         # Friction that changes its sign is least, by its size, where it vanishes.
-        crossing = self._crossing(Transition.MINIMUM, places, total)
-        if crossing is not None:
+        crossing = self._zero(Transition.MINIMUM, places, total, lambda s: float(np.add(*self._parts_at(s)[1:])[0]))
+        size = np.abs(total)
+        i = int(np.argmin(size))
+        if crossing is not None or not 0 < i < len(places) - 1 or np.ptp(size) <= self.rtol * size.max():
             return crossing
-        return self._lowest_of_points() if self._function is None else self._lowest_of_function(places, np.abs(total))
 
-    def _lowest_of_function(self, places: Array, size: Array) -> Landmark | None:
-        i = int(np.argmin(size))
-        if not 0 < i < len(places) - 1 or np.ptp(size) <= self.rtol * size.max():
-            return None
+        def slope(s: Array) -> float:
+            ahead, behind = (float(np.add(*self._parts_at(s + step)[1:])[0]) for step in (SLOPE_STEP, -SLOPE_STEP))
+            return ahead - behind
 
-        def slope(s: float) -> float:
-            return float(np.add(*self._parts_at(np.array([s + COMPLEX_STEP * 1j]))[1:])[0].imag / COMPLEX_STEP)
-
-        place = root_between(slope, float(places[i - 1]), float(places[i + 1]), LOCATION_TOLERANCE)
-        return None if place is None else self._mark(Transition.MINIMUM, place)
-
-    def _lowest_of_points(self) -> Landmark | None:
-        """Return the minimum on a polynomial through solved states around it."""
-        try:
-            around = self._around_the_lowest()
-            if around is None:
-                return None
-            low, middle, high = around
-            while high - low > MINIMUM_WIDTH:
-                new = 0.5 * (low + middle) if middle - low > high - middle else 0.5 * (middle + high)
-                first, second = sorted((middle, new))
-                if abs(self._at(first)[1]) < abs(self._at(second)[1]):
-                    low, middle, high = low, first, second
-                else:
-                    low, middle, high = first, second, high
-            nodes = np.cos(np.pi * (np.arange(MINIMUM_NODES) + 0.5) / MINIMUM_NODES)
-            centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            values = [math.log(abs(self._at(centre + half * node)[1])) for node in nodes.tolist()]
-            polynomial = np.polynomial.Chebyshev.fit(nodes, values, MINIMUM_NODES - 1, domain=[-1, 1])
-            roots = [root.real for root in polynomial.deriv().roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 1]
-            if not roots:
-                return None
-            lowest = float(min(roots, key=lambda root: float(polynomial(root))))
-            return self._mark(Transition.MINIMUM, centre + half * lowest)
-        except SolveError:
-            return None
-
-    def _around_the_lowest(self) -> tuple[float, float, float] | None:
-        """Return three places of which the middle one has the least friction.
-
-        Where the fluid causes the friction of the lowest point, and that is the last, the minimum may hide before it.
-        """
-        size, places = np.abs(self.friction.total), np.log(self.values).tolist()
-        i = int(np.argmin(size))
-        if 0 < i < len(self) - 1:
-            return places[i - 1], places[i], places[i + 1]
-        if len(self) < 2 or abs(self.friction_contact[i]) > HYDRODYNAMIC_CONTACT_SHARE * float(size[i]):
-            return None
-        end, inner = places[i], places[1 if i == 0 else -2]
-        while abs(end - inner) > MINIMUM_WIDTH:
-            middle = 0.5 * (inner + end)
-            if abs(self._at(middle)[1]) < size[i]:
-                return min(inner, end), middle, max(inner, end)
-            inner = middle
-        return None
+        around = places[i - 1 : i + 2]
+        return self._zero(Transition.MINIMUM, around, np.array([slope(s) for s in around[:, None]]), slope)
 
     def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
         """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
         mark = check_transition(name)
         if mark is Transition.MINIMUM:
             return self.minimum
-        if self._ended_early:
+        places, fluid, contact, viscous = self._searched
+
+        def above(s: Array) -> float:
+            fluid, contact, viscous = self._parts_at(s)
+            return float(excess(mark, fluid, friction_share(contact, viscous))[0])
+
+        return self._zero(mark, places, excess(mark, fluid, friction_share(contact, viscous)), above)
+
+    def _zero(self, mark: Transition, places: Array, values: Array, function: Callable[[Array], float]) -> Landmark | None:
+        """Return the first zero of a function between places where it is known, as a mark; None where it has none."""
+        changes = np.nonzero(np.diff(np.sign(values)))[0]
+        if not len(changes):
             return None
-        places, fluid, share = self._shares
-        return self._crossing(mark, places, excess(mark, fluid, share))
-
-    @cached_property
-    def _shares(self) -> tuple[Array, Array, Array]:
-        """Coordinates, and there the share of the fluid in the load and that of asperities in the friction."""
-        if self._function is None:
-            fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
-            places, share = np.log(self.values), friction_share(contact, total - contact)
-        else:
-            places = places_of(self._solved_path)
-            fluid, share = self._shares_at(places)
-        return places, fluid, share
-
-    def _shares_at(self, s: Array) -> tuple[Array, Array]:
-        """Return the load share of the fluid, and that of asperities in friction, at coordinates of a function."""
-        fluid, contact, viscous = self._parts_at(s)
-        return fluid, friction_share(contact, viscous)
-
-    def _excess(self, name: Transition, s: float) -> float:
-        """Return by how much the criterion of a transition exceeds its threshold; the friction, for where it vanishes."""
-        if name is Transition.MINIMUM:
-            at = np.array([s])
-            return self._at(s)[1].total if self._function is None else float(np.add(*self._parts_at(at)[1:])[0])
-        if self._function is not None:
-            fluid, share = self._shares_at(np.array([s]))
-            return float(excess(name, fluid, share)[0])
-        solution, friction = self._at(s)
-        return excess(name, solution.fluid_load_share, friction.contact_share)
-
-    def _crossing(self, name: Transition, places: Array, above: Array) -> Landmark | None:
-        """Return the first transition of this name between the given coordinates, or None."""
-        crossings = np.nonzero(np.diff(np.sign(above)))[0]
-        if not len(crossings):
+        low, high = places[changes[0] : changes[0] + 2].tolist()
+        place = root_between(lambda s: function(np.array([s])), low, high, LOCATION_TOLERANCE)
+        if place is None:
             return None
-        low, high = places[crossings[0] : crossings[0] + 2].tolist()
         try:
-            near = LOCATION_TOLERANCE if self.is_function else max(LOCATION_TOLERANCE, SOLVED_LOCATION * self.rtol)
-            place = root_between(lambda s: self._excess(name, s), low, high, near)
-            return None if place is None else self._mark(name, place)
+            [solution] = self._read(np.array([place]))
         except SolveError:
             return None
+        friction = solution.friction(self.boundary_friction, self.beta, self.definition)
+        return Landmark(mark, math.exp(place), friction_at(friction), solution)  # type: ignore[arg-type]
 
 
-def _state_at(path: SolvedPath, s: float) -> PointState:
-    """Return the state of a path at a coordinate: read off the function, or solved where its error exceeds the tolerance."""
+def _solutions(path: SolvedPath | HermitePath, coordinate: Coordinate, places: Array) -> Iterator[PointSolution]:
     problem = path.problem
-    assert isinstance(problem, PointProblem)
-    row, errors = (each[0] for each in path.at(np.array([s])))
-    return CurveState(problem, path, s, row, errors) if (errors <= problem.allowed).all() else problem.solved_at(path, s)
+    assert isinstance(problem, PointProblem | BallKnots)
+    for s, state in zip(places.tolist(), problem.states_at(path, places), strict=True):  # type: ignore[arg-type]
+        yield solution_of(state, coordinate.contact_at(s))
 
 
-def _solutions(path: SolvedPath, coordinate: Coordinate, places: Array) -> Iterator[PointSolution]:
-    for s in places.tolist():
-        yield finish_point(_state_at(path, s), coordinate.contact_at(s))
+def _has_closed_friction(coordinate: Coordinate, ends: Array) -> bool:
+    """Return whether the friction follows from the observables alone: the far film has a closed form up to where it ends."""
+    rule = RULES["point"]
+    inputs = [rule.of_contact(coordinate.contact_at(math.log(end))) for end in ends]
+    return rule.is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
 
 
 def point_curve(
@@ -301,82 +214,66 @@ def point_curve(
     on_point: Callable[[int, int], object] | None,
     **settings: Any,
 ) -> PointCurve:
-    """Return the curve of a ball."""
-    start, rule = coordinate.groups_at(math.log(values[-1])), RULES["point"]
-    is_function = (
-        start.speed > 0
-        and start.model.cavitation is Cavitation.NONE
-        and rule.is_enough(start.model, [rule.of_contact(coordinate.contact_at(math.log(end))) for end in values[[0, -1]]])
-        and coordinate.is_uniform(values)
-    )
-    trace = _followed if is_function else _point_by_point
-    solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]))
-    solutions, where, path, outcome, failed = trace(coordinate, values, solver, on_point)
+    """Return the curve of a ball, from fast to slow, as the film is smooth at high speed."""
+    start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
+    is_closed = _has_closed_friction(coordinate, values[[0, -1]])
+    has_series = start.speed > 0 and start.model.cavitation is Cavitation.NONE and is_closed and coordinate.is_uniform(values)
+    progress = Progress(places, on_point)
+    problem: PointProblem | BallKnots
+    path: SolvedPath | HermitePath
+    if has_series:
+        problem = PointProblem(coordinate.groups_at, rtol_of_states)
+        path = follow(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
+    else:
+        cut_offs = None if is_closed else CutOffs(coordinate, settings["beta"])
+        problem = BallKnots(coordinate.groups_at, rtol_of_states, cut_offs)
+        path = interpolate_to(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
+    problem.release()
     contact = coordinate.base if isinstance(coordinate.base, Contact) else None
-    if not solutions:
-        if failed is not None:
-            finish_point(failed, contact)
-        raise SolveError(outcome, None, f"{describe(start)}: {outcome.value}")
+    if not len(path.coordinates):
+        if problem.failure is not None:
+            finish_point(problem.failure, contact)
+        raise SolveError(path.outcome, None, f"{describe(start)}: {path.outcome.value}")
+    low, high = path.coordinates[[0, -1]]
+    asked = values[(places >= low - SLACK) & (places <= high + SLACK)]
+    found: dict[float, PointSolution] = {}
+    try:
+        for value, solution in zip(asked[::-1].tolist(), _solutions(path, coordinate, np.log(asked[::-1])), strict=True):
+            if solution.outcome.ok:
+                found[value] = solution
+            else:
+                path = replace(path, outcome=solution.outcome)
+    except KeyboardInterrupt:
+        path = replace(path, outcome=Outcome.INTERRUPTED)
+    if not found:
+        raise SolveError(path.outcome, None, f"{describe(start)}: {path.outcome.value}")
+    where = sorted(found)
     return PointCurve(
         over=coordinate.over,
-        values=where,
-        solutions=solutions,
+        values=np.array(where),
+        solutions=tuple(found[value] for value in where),
         contact=contact,
         rtol=rtol,
-        outcome=outcome,
+        outcome=path.outcome,
         requested=len(values),
         _path=coordinate,
         _function=path,
-        _solver=solver,
         **settings,
     )
 
 
-_Traced = tuple[tuple[PointSolution, ...], Array, SolvedPath | None, Outcome, PointState | None]
+@dataclass(frozen=True)
+class CutOffs:
+    """The logarithms of the radii up to which friction by shear and by pressure counts, along a curve."""
 
+    coordinate: Coordinate
+    beta: float
 
-def _followed(
-    coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
-) -> _Traced:
-    """Return the points of a curve, read off its function, from fast to slow, as the film is smooth at high speed."""
-    problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
-    path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, Progress(places, on_point))
-    problem.release()
-    known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
-    solutions: tuple[PointSolution, ...] = ()
-    try:
-        for solution in _solutions(path, coordinate, np.log(known)[::-1]):
-            solutions = solution, *solutions
-    except KeyboardInterrupt:
-        path = replace(path, outcome=Outcome.INTERRUPTED)
-        known = known[len(known) - len(solutions) :]
-    return solutions, known, path, path.outcome, problem.failure
-
-
-def _point_by_point(
-    coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
-) -> _Traced:
-    """Return the points of a curve, each solved from its neighbour, from fast to slow or from where states are known."""
-    found: dict[float, PointSolution] = {}
-    outcome, failed = Outcome.CONVERGED, None
-    slow, fast = (min((abs(s - math.log(end)) for s in solver.states), default=0.0) for end in values[[0, -1]])
-    try:
-        for done, value in enumerate(values.tolist() if slow < fast else values[::-1].tolist(), 1):
-            s = math.log(value)
-            state = solver(s)
-            solution = solution_of(solver.states[s], coordinate.contact_at(s)) if state.outcome.ok else None
-            if solution is not None and solution.outcome.ok:
-                found[value] = solution
-            elif solution is not None:
-                outcome = solution.outcome
-            else:
-                outcome, failed = state.outcome, state
-            if on_point is not None:
-                on_point(done, len(values))
-    except KeyboardInterrupt:
-        outcome = Outcome.INTERRUPTED
-    where = sorted(found)
-    return tuple(found[value] for value in where), np.array(where), None, outcome, failed
+    def __call__(self, s: float) -> tuple[float, float]:
+        """Return both at a coordinate."""
+        wetted = float(RULES["point"].of_contact(self.coordinate.contact_at(s))["wetted_radius"])
+        by_shear, by_pressure = log_cut_offs(float(self.coordinate.groups_at(s).slope(self.beta)), wetted)
+        return float(by_shear), float(by_pressure)
 
 
 def point_speeds(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:

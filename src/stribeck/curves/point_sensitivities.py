@@ -14,7 +14,7 @@ from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
-from stribeck.equations.point.observables import FrictionWithin, observables
+from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
 from stribeck.equations.point.sensitivity import STEP
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.quantities.part_inputs import part_names
@@ -27,9 +27,6 @@ __all__ = ["point_sensitivities"]
 
 SMALL = 1e-4
 """Step of the logarithms in finite differences of closed forms."""
-
-WITHIN = ("within_couette", "within_poiseuille", "within_edge")
-"""What a fluid that thins has in the friction up to where the liquid ends, by the name of its derivatives."""
 
 WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
 """Exponents of the inputs in the Hertz radius, the unit of a wetted radius."""

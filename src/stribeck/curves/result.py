@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -78,7 +77,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     outcome: Outcome
     requested: int
     _path: Coordinate = field(repr=False, compare=False)
-    _function: SolvedPath | None = field(repr=False, compare=False, default=None)
+    _function: SolvedPath = field(repr=False, compare=False)
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -87,38 +86,19 @@ class StribeckCurve(Exported, Shown, ByValue):
     @cached_property
     def _rows(self) -> tuple[Array, Array]:
         """Observables of the points and their errors."""
-        return rows_of(self._solved_path, np.log(self.values), self.rtol)
+        return rows_of(self._function, np.log(self.values), self.rtol)
 
     @cached_property
     def solutions(self) -> tuple[Solution, ...]:
         """The state of each point: its numbers come from the curve, its fields are solved on first use."""
-        path = self._solved_path
+        path = self._function
         rows = zip(np.log(self.values).tolist(), *self._rows, strict=True)
         return tuple(CurvePoint(self._path, path, s, row, errors, self.rtol) for s, row, errors in rows)
 
     @property
-    def _solved_path(self) -> SolvedPath:
-        if self._function is None:
-            raise InputError(
-                "this curve is known at its points only. That is so for a ball at rest, for one whose film breaks, whose "
-                "fluid thins or whose liquid ends near the contact, and where the numbers of a fluid or a layer in Hertz "
-                "units vary along the curve, as over the load; ask for a curve with the values you want as an array."
-            )
-        return self._function
-
-    @property
-    def is_function(self) -> bool:
-        """Whether the curve is known between its points too."""
-        return self._function is not None
-
-    def _solved_at(self, values: Array, on_point: Callable[[int, int], object] | None) -> StribeckCurve:
-        """Return the curve at other values, solved from its states, where it is known at its points only."""
-        raise NotImplementedError
-
-    @property
     def states(self) -> int:
         """How many states were solved and expanded for the curve."""
-        return len(self._solved_path.expansions)
+        return len(self._function.expansions)
 
     @property
     def groups(self) -> Groups:
@@ -148,7 +128,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         InputError
             If a solution has no number of this name.
         """
-        if self._function is not None and name in COLUMNS:
+        if name in COLUMNS:
             return np.array(self._rows[0][:, COLUMNS.index(name)])
         return observed(self.solutions, name)
 
@@ -180,7 +160,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         (``test_curve_function.py``).
         """
         values = given_values(self.over, value, self.contact)
-        path = self._solved_path
+        path = self._function
         low, high = (float(end) for end in np.exp(path.coordinates[[0, -1]]))
         if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
             raise InputError(
@@ -191,7 +171,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     def _values(self, value: Any, s: Array) -> CurveValues:
         """Return the values of the curve at coordinates."""
-        plain = CurveValues.of(value, *self._solved_path.at(s), self._sliding, self._least_error)
+        plain = CurveValues.of(value, *self._function.at(s), self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
     def sampled(self, points: int) -> StribeckCurve:
@@ -210,10 +190,10 @@ class StribeckCurve(Exported, Shown, ByValue):
         Raises
         ------
         InputError
-            For a number that is none, or if the curve is known at its points only.
+            For a number that is none.
         """
         check_points(points)
-        return self._along(self._solved_path, np.geomspace(self.values[0], self.values[-1], points), points)
+        return self._along(self._function, np.geomspace(self.values[0], self.values[-1], points), points)
 
     def solve_at(self, value: Any) -> Solution:
         """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
@@ -241,7 +221,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         return self._solution_at(math.log(found.value))
 
     def _solution_at(self, s: float) -> Solution:
-        point = solved_at(self._solved_path, s)
+        point = solved_at(self._function, s)
         return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
 
     def _along(self, path: SolvedPath, values: Array, requested: int) -> StribeckCurve:
@@ -370,7 +350,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @cached_property
     def _landmarks(self) -> Landmarks:
-        return Landmarks(self._solved_path, self._path, self.rtol)
+        return Landmarks(self._function, self._path, self.rtol)
 
     @property
     def minimum(self) -> Landmark | None:

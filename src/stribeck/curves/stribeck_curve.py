@@ -26,7 +26,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.reforming_line import line_problem
-from stribeck.solver.path.path import Expansion, follow
+from stribeck.solver.path.path import follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
@@ -213,27 +213,17 @@ def continued(
     end: float,
     points: int,
     on_point: Callable[[int, int], object] | None = None,
-    begin: float | None = None,
     span: float = math.inf,
 ) -> StribeckCurve:
     """Continue a curve from its nearer end towards ``end``, without a cold start."""
-    if not curve.is_function:
-        nearer: float = min(curve.values[[0, -1]].tolist(), key=lambda value: abs(math.log(value / end)))
-        low, high = sorted((nearer if begin is None else begin, end))
-        return curve._solved_at(np.geomspace(low, high, points), on_point)
-    known = curve._solved_path
-    s = math.log(end)
-    here = min(known.expansions[0], known.expansions[-1], key=lambda one: abs(one.coordinate - s))
 
     def report(low: float, high: float) -> None:
         if on_point is not None:
             on_point(0, points)
 
-    def is_far(one: Expansion) -> bool:
-        return abs(one.coordinate - here.coordinate) >= math.log(span)
-
-    path = follow(known.problem, here, s, curve.rtol, report, until=is_far)
-    low, high = np.exp(path.coordinates[[0, -1]]) if path.outcome.ok else sorted((math.exp(here.coordinate), end))
+    path = curve._function.continued(math.log(end), curve.rtol, report, math.log(span))
+    begin = math.exp(path.coordinates[0 if end > curve.values[0] else -1])
+    low, high = np.exp(path.coordinates[[0, -1]]) if path.outcome.ok else sorted((begin, end))
     values = np.geomspace(low, high, points)
     reached = np.exp(path.coordinates[[0, -1]]) * (1 - SLACK, 1 + SLACK)
     inside = values[(values >= reached[0]) & (values <= reached[1])]

@@ -217,7 +217,7 @@ def solved_curve(
     )
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
-    if found.is_function and len(found) < POINTS:
+    if len(found) < POINTS:
         found = found.sampled(POINTS)
     speed = np.asarray(found.values)
     doubtful = found.law_in_doubt
@@ -225,13 +225,6 @@ def solved_curve(
     contact_part = np.asarray(friction[definition].contact)
     totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}
     source = f"solved; estimated error {_power(found.error_estimate)}"
-    if not found.is_function:
-        source += f"; at {len(speed)} speeds, smooth in between"
-        dense = np.unique(np.concatenate([np.geomspace(speed[0], speed[-1], POINTS), speed]))
-        viscous = {kind: _between(speed, np.asarray(friction[kind].viscous), dense) for kind in DEFINITIONS}
-        doubtful = doubtful[np.abs(np.log(dense[:, None] / speed)).argmin(axis=1)]
-        contact_part, speed = _between(speed, contact_part, dense), dense
-        totals = {kind: contact_part + part for kind, part in viscous.items()}
     return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found, doubtful=doubtful)
 
 

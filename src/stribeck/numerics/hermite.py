@@ -26,6 +26,7 @@ __all__ = [
     "hermite_form",
     "hermite_weights",
     "missed_by",
+    "weights_through",
 ]
 
 
@@ -112,3 +113,14 @@ def chebyshev_basis(tau: Array, count: int) -> Array:
             row.append(2.0 * each * row[-1] - row[-2])
         found.append(row[:count])
     return np.array(found)
+
+
+def weights_through(nodes: Array, x: Array) -> tuple[Array, Array]:
+    """Return the weights of values and slopes at several nodes in the polynomial through them, shape (len(x), len(nodes))."""
+    apart = nodes[:, None] - nodes
+    np.fill_diagonal(apart, 1.0)
+    steps = x[:, None] - nodes
+    others = [np.delete(np.arange(len(nodes)), j) for j in range(len(nodes))]
+    basis = np.stack([np.prod(steps[:, k] / apart[j, k], axis=1) for j, k in enumerate(others)], axis=1)
+    bend = np.array([np.sum(1.0 / apart[j, k]) for j, k in enumerate(others)])  # slope of each basis at its own node
+    return np.asarray((1.0 - 2.0 * bend * steps) * basis**2), np.asarray(steps * basis**2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -176,9 +176,7 @@ class Scan:
         else:
             try:
                 if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
-                    known = self.known[near]
-                    goal = end if known.is_function else far
-                    curve = continued(known, goal, points, self._report, near, math.exp(DECADE))
+                    curve = continued(self.known[near], end, points, self._report, math.exp(DECADE))
                 else:
                     ends: Any = {name: (low, high)}
                     settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
@@ -189,24 +187,23 @@ class Scan:
             raise KeyboardInterrupt
         if not curve.outcome.ok:
             return None
-        self.known |= dict.fromkeys(curve.values[[0, -1]].tolist() if curve.is_function else curve.values.tolist(), curve)
+        self.known |= dict.fromkeys(curve.values[[0, -1]].tolist(), curve)
         return curve
 
     def _part_known(self, name: Over, near: float, low: float, high: float, points: int) -> StribeckCurve | None:
         """Return the states between two values as far as the curve that is solved already gives them."""
         whole, contact = self.whole, self.contact
-        if whole is None or not whole.is_function or whole.over != name or not whole.rtol <= self.rtol:
+        if whole is None or whole.over != name or not whole.rtol <= self.rtol:
             return None
         of_friction = (whole.definition, whole.boundary_friction, whole.beta)
         if of_friction != (self.definition, contact.boundary_friction, contact.beta):
             return None
-        path = whole._solved_path
+        path = whole._function
         first, last = np.clip(np.log([low, high]), *path.coordinates[[0, -1]]).tolist()
         if last - first <= ROUNDING or not first - ROUNDING <= math.log(near) <= last + ROUNDING:
             return None
-        inside = (one for one in path.intervals if one.right.coordinate > first and one.left.coordinate < last)
         values = np.clip(np.geomspace(math.exp(first), math.exp(last), points), low, high)
-        return whole._along(replace(path, intervals=tuple(inside)), values, points)
+        return whole._along(path.between(first, last), values, points)
 
     def _report(self, done: int, points: int) -> None:
         if self.on_point is not None:
@@ -228,11 +225,6 @@ class Scan:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
             return regime, near
-        if not curve.is_function:
-            finer = self._curve(start, name, near, far, FINER)
-            if finer is None:
-                return regime, math.sqrt(near * far)
-            curve = finer
         regime, near, far = self._first_change(curve, outward) or (regime, near, far)
         wanted = Transition.HYDRODYNAMIC_START if "hydrodynamic" in (regime, self.present) else Transition.BOUNDARY_END
         low, high = sorted((near, far))

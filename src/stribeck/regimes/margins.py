@@ -81,7 +81,7 @@ def regime_margins(
     if not isinstance(contact, Contact):
         raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")
     rtol = scanned_rtol(contact, rtol)
-    is_known = curve is not None and curve.is_function and curve.values[0] <= contact.speed <= curve.values[-1]
+    is_known = curve is not None and curve.values[0] <= contact.speed <= curve.values[-1]
     there = curve.solve_at(contact.speed) if curve is not None and is_known else solve(contact, rtol=rtol)
     present = _regime(there, definition)
     scan = Scan(contact, present, rtol, definition, on_point, curve)

@@ -59,6 +59,9 @@ MINIMA = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis
 SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)
 """All others, which have a series."""
 
+# Friction integrals of FrictionWithin by name: what a film has up to where the liquid ends.
+WITHIN = ("within_couette", "within_poiseuille", "within_edge")
+
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
     """Return the value of a nodal field at the centre: that of its axisymmetric mode, the others vanish there."""

@@ -22,7 +22,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
 
-__all__ = ["STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
+__all__ = ["FINEST", "STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
@@ -48,6 +48,7 @@ def log_derivatives(
     preconditioner: Callable[[Linear, Any], Apply],
     kept: Any = None,
     measure: Measure = observables,
+    tolerance: float = FINEST,
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions."""
     linear = equations.linear(y)
@@ -60,10 +61,10 @@ def log_derivatives(
         change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * STEP))
         lift = (near[0].least - near[1].least) / (2 * STEP) if math.isfinite(equations.least) else 0.0
         right = linear.sources(change, lift)
-        x = solved(linear, precondition, right)
+        x = solved(linear, precondition, right, tolerance)
         if x is None and kept is not None:
             precondition, kept = preconditioner(linear, None), None
-            x = solved(linear, precondition, right)
+            x = solved(linear, precondition, right, tolerance)
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])

@@ -286,6 +286,24 @@ class SolvedPath:
     def _pieces(self) -> _Pieces:
         return _Pieces(self.intervals)
 
+    def continued(
+        self, end: float, rtol: float, on_interval: Callable[[float, float], object], span: float = math.inf
+    ) -> SolvedPath:
+        """Return the path from the nearer end of this one to ``end``, or as far as ``span``."""
+        here = min(self.expansions[0], self.expansions[-1], key=lambda one: abs(one.coordinate - end))
+        is_far = lambda one: abs(one.coordinate - here.coordinate) >= span  # noqa: E731
+        return follow(self.problem, here, end, rtol, on_interval, until=is_far)
+
+    def places(self, parts: Array) -> Array:
+        """Return coordinates at parts of all intervals, and the last one."""
+        inside = [interval.left.coordinate + parts * interval.length for interval in self.intervals]
+        return np.append(np.concatenate(inside), self.coordinates[-1])
+
+    def between(self, first: float, last: float) -> SolvedPath:
+        """Return the intervals between two coordinates."""
+        inside = (one for one in self.intervals if one.right.coordinate > first and one.left.coordinate < last)
+        return SolvedPath(self.problem, tuple(inside), self.outcome)
+
     def interval_of(self, s: Array) -> Array:
         """Return the number of the interval of each coordinate."""
         return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)

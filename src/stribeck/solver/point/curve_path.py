@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -19,9 +19,7 @@ from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.series import beyond, radius
-from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.path.path import (
     BETWEEN_RTOL_FRACTION,
     MAX_EXPANSIONS,
@@ -33,7 +31,7 @@ from stribeck.solver.path.path import (
 from stribeck.solver.point.level import Level, band_for
 from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.refinement import Pair
-from stribeck.solver.point.state import PointState
+from stribeck.solver.point.state import PointState, ReadState
 
 __all__ = ["CurveState", "PointProblem"]
 
@@ -77,6 +75,8 @@ class PointProblem:
         self.failure: PointState | None = None
         self._last: tuple[float, PointState] | None = None
         self._on_others: dict[tuple[float, float], Array] = {}
+
+    names = SMOOTH
 
     @property
     def controlled(self) -> Flags:
@@ -240,6 +240,11 @@ class PointProblem:
         """Drop the factors of the last state, which fill the memory."""
         self._last = None
 
+    def states_at(self, path: SolvedPath, places: Array) -> Iterator[PointState]:
+        """Yield the states at coordinates: read off the path, or solved where its error exceeds the tolerance."""
+        for s, row, errors in zip(places.tolist(), *path.at(places), strict=True):
+            yield CurveState(self, path, s, row, errors) if (errors <= self.allowed).all() else self.solved_at(path, s)
+
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved to the given tolerance."""
         left, right = ends_of(path, s)
@@ -264,11 +269,8 @@ def ends_of(path: SolvedPath, s: float) -> tuple[Expansion, Expansion]:
     return interval.left, interval.right
 
 
-class CurveState(ByValue, PointState):
-    """A state on a path, with numbers of the path and fields of a state solved on first use."""
-
-    _place: tuple[PointProblem, SolvedPath, float]
-    _lowest: float
+class CurveState(ReadState):
+    """A state read off Taylor series on both sides."""
 
     def __init__(self, problem: PointProblem, path: SolvedPath, s: float, row: Array, errors: Array) -> None:
         left, right = ends_of(path, s)
@@ -283,38 +285,8 @@ class CurveState(ByValue, PointState):
             scales[name] = values[name] if name.startswith("minimum_gap") else 1.0
             own = MINIMUM_SAFETY * (max(state.errors[name] for state in known) + unsure) + float(errors.max())
             absolute[name] = own * scales[name]
-        vars(self).update(
-            groups=groups,
-            rtol=problem.allowed,
-            outcome=Outcome.CONVERGED,
-            values=values,
-            absolute_errors=absolute,
-            scales=scales,
-            identity_error=identity_error(values, float(groups.speed)),
-            load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
-            _lowest=float(guess.fluid.min()),
-            _place=(problem, path, s),
-        )
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether groups, values and errors are equal."""
-        if type(other) is not type(self):
-            return NotImplemented
-        return all(equal_values(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
-
-    __hash__ = ByValue.__hash__
-
-    @cached_property
-    def _solved(self) -> PointState:
-        problem, path, s = self._place
-        return problem.solved_at(path, s)
+        identity = identity_error(values, float(groups.speed))
+        self.read(groups, problem.allowed, values, absolute, scales, identity, (problem, path, s))
+        vars(self)["_lowest"] = float(guess.fluid.min())
 
     lowest_pressure = property(lambda self: self._lowest)
-    mesh = property(lambda self: self._solved.mesh)
-    nodal_gap = property(lambda self: self._solved.nodal_gap)
-    nodal_contact_pressure = property(lambda self: self._solved.nodal_contact_pressure)
-    nodal_fluid_pressure = property(lambda self: self._solved.nodal_fluid_pressure)
-    fields = property(lambda self: self._solved.fields)
-    newton_steps = property(lambda self: self._solved.newton_steps)
-    krylov_steps = property(lambda self: self._solved.krylov_steps)
-    work = property(lambda self: self._solved.work)

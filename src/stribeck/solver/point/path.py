@@ -63,6 +63,10 @@ class NeighbourSolver:
             self.states[s] = without_factors(state)
         return state
 
+    def release(self) -> None:
+        """Forget the factors of the last state, which fill the memory."""
+        self._last = None
+
     def _start(self, s: float) -> PointState | None:
         """Return the nearest solved state, preferably the last one with its factors, or None."""
         near = [(abs(c - s), state) for c, state in self.states.items() if abs(c - s) <= MAX_LOG_DISTANCE]

@@ -18,7 +18,9 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.point import PointContact
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.point.refinement import Pair
 
 WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
@@ -82,6 +84,14 @@ class PointState:
         """Lowest film pressure at the nodes [p_Hz]."""
         return float(self.nodal_fluid_pressure.min())
 
+    @cached_property
+    def within(self) -> Callable[[int, float], float] | None:
+        """Friction integrals up to a radius, see :class:`FrictionWithin`; None at rest."""
+        if not (isinstance(self.work, Pair) and self.groups.speed > 0):
+            return None
+        fine = self.work.fine
+        return FrictionWithin.of(fine.equations, fine.unknowns, self.values)
+
     @property
     def minimum_gap_error(self) -> float:
         """Estimated relative error of the minimum film."""
@@ -91,6 +101,58 @@ class PointState:
     def effort(self) -> float:
         """Measure by which :func:`stribeck.numerics.continuation.march` chooses its steps."""
         return float(self.newton_steps)
+
+
+class ReadState(ByValue, PointState):
+    """A state of a path, with numbers read off the path and fields of a state that is solved on first use."""
+
+    _place: tuple[Any, Any, float]
+
+    def read(
+        self,
+        groups: Groups,
+        rtol: float,
+        values: Mapping[str, float],
+        absolute_errors: Mapping[str, float],
+        scales: Mapping[str, float],
+        identity_error: float,
+        place: tuple[Any, Any, float],
+    ) -> None:
+        """Take over the numbers of a path: ``place`` is its problem, itself and the coordinate."""
+        vars(self).update(
+            groups=groups,
+            rtol=rtol,
+            outcome=Outcome.CONVERGED,
+            values=values,
+            absolute_errors=absolute_errors,
+            scales=scales,
+            identity_error=identity_error,
+            load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
+            _place=place,
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether groups, values and errors are equal."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(equal_values(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
+
+    __hash__ = ByValue.__hash__
+
+    @cached_property
+    def _solved(self) -> PointState:
+        problem, path, s = self._place
+        state: PointState = problem.solved_at(path, s)
+        return state
+
+    mesh = property(lambda self: self._solved.mesh)
+    nodal_gap = property(lambda self: self._solved.nodal_gap)
+    nodal_contact_pressure = property(lambda self: self._solved.nodal_contact_pressure)
+    nodal_fluid_pressure = property(lambda self: self._solved.nodal_fluid_pressure)
+    fields = property(lambda self: self._solved.fields)
+    newton_steps = property(lambda self: self._solved.newton_steps)
+    krylov_steps = property(lambda self: self._solved.krylov_steps)
+    work = property(lambda self: self._solved.work)
 
 
 @dataclass(frozen=True)
@@ -124,10 +186,7 @@ class PointObservables:
         if isinstance(contact, PointContact):
             slide_to_roll = contact.slide_to_roll
             wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
-        within = None
-        if not is_far(state.groups.model, wetted or math.inf) and isinstance(state.work, Pair) and state.groups.speed > 0:
-            fine = state.work.fine
-            within = FrictionWithin.of(fine.equations, fine.unknowns, values)
+        within = None if is_far(state.groups.model, wetted or math.inf) else state.within
         return cls(**values, _groups=state.groups, _slide_to_roll=slide_to_roll, _wetted_radius=wetted, _within=within)
 
     def integral(self, slope: float, definition: Definition = "balanced") -> float:

@@ -1,0 +1,255 @@
+r"""A path of states along one coordinate whose observables are known with their slopes: Hermite interpolation between them.
+
+Between two states each observable is the polynomial through the values and slopes of the six states around: of its logarithm
+if it is positive in all states, of the load shares the logarithm of their ratio.  The error is that of the polynomial through
+the four nearest, which is larger.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.hermite import weights_through
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
+
+__all__ = ["HermitePath", "Knot", "KnotProblem", "interpolate_to"]
+
+WINDOW = 6  # states through which a polynomial goes
+INSIDE = np.array([0.25, 0.5, 0.75])  # where the error is estimated, in parts of an interval
+
+FIRST_STEP = 0.5  # length of the first step: that of the others follows from the errors
+MAX_STEP = 3.0  # beyond, the last state is no start for the next one
+MIN_STEP = 0.02  # below, the path ends where states fail, and an interval keeps its error
+MAX_GROWTH = 1.4  # of one step over the one before
+AIM = 0.5  # of the allowed error, for the next step: an interval beyond it is halved, which costs more than a shorter step
+MAX_STATES = 400  # limit on work
+
+
+@dataclass(frozen=True, eq=False)
+class Knot:
+    """A solved state: its observables, their derivatives by the coordinate, and their errors in units of the scales."""
+
+    coordinate: float
+    values: Array  # over the units of the problem
+    slopes: Array  # of these
+    errors: Array
+    state: Any
+
+
+class KnotProblem(Protocol):
+    """The states of a path."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the observables."""
+
+    @property
+    def shares(self) -> tuple[int, int]:
+        """Columns of the two load shares, whose sum is one."""
+
+    @property
+    def positive(self) -> Flags:
+        """Which observables are never negative."""
+
+    @property
+    def controlled(self) -> Flags:
+        """Which observables the tolerance holds for."""
+
+    def solve(self, s: float) -> Knot | Outcome:
+        """Return the state at a coordinate, or why there is none."""
+
+    def units(self, s: Array) -> Array:
+        """Return what observables are divided by before they are interpolated, shape (len(s), n)."""
+
+    def scales(self, values: Array, s: Array) -> Array:
+        """Return the scales of the errors of observables at coordinates, shape (len(s), n)."""
+
+
+@dataclass(frozen=True, eq=False)
+class HermitePath:
+    """Solved states along a path, ascending, what lies between them, and how the path ended."""
+
+    problem: KnotProblem
+    knots: tuple[Knot, ...]
+    outcome: Outcome
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """Where the solved states are."""
+        return np.array([knot.coordinate for knot in self.knots])
+
+    def _through(self, first: int, last: int, s: Array) -> Array:
+        """Return the observables at places by the polynomials through states ``first`` to ``last``, shape (len(s), n)."""
+        knots = self.knots[first : last + 1]
+        at, slope = weights_through(self.coordinates[first : last + 1], s)
+        values, slopes = (np.stack([getattr(knot, name) for knot in knots]) for name in ("values", "slopes"))
+        found = at @ values + slope @ slopes
+        keeps: Flags = np.logical_and(self.problem.positive, (values > 0).all(axis=0))
+        with np.errstate(all="ignore"):
+            found[:, keeps] = np.exp(at @ np.log(values[:, keeps]) + slope @ (slopes[:, keeps] / values[:, keeps]))
+            one, other = self.problem.shares
+            if keeps[one] and keeps[other]:
+                ratio = at @ np.log(values[:, one] / values[:, other])
+                ratio = ratio + slope @ (slopes[:, one] / values[:, one] - slopes[:, other] / values[:, other])
+                found[:, one], found[:, other] = 1 / (1 + np.exp(-ratio)), 1 / (1 + np.exp(ratio))
+        return np.asarray(found * self.problem.units(s))
+
+    def _window(self, k: int, width: int) -> tuple[int, int]:
+        """Return the first and the last of the states around interval k, so many if there are."""
+        count = len(self.knots)
+        first = min(max(k + 1 - width // 2, 0), max(count - width, 0))
+        return first, min(first + width, count) - 1
+
+    def interpolation_error(self, k: int) -> Array:
+        """Return the error of the interpolation on interval k in units of the scales, over its shape.
+
+        That is the error of the polynomial through two states less, as the whole one shows it.
+        """
+        left, right = self.coordinates[k : k + 2]
+        s = left + INSIDE * (right - left)
+        best = self._through(*self._window(k, WINDOW), s)
+        if len(self.knots) > 2:
+            less = self._through(*self._window(k, max(2, min(WINDOW, len(self.knots)) - 2)), s)
+        else:  # by the slopes alone
+            ends = np.stack([self.knots[k].values, self.knots[k + 1].values])
+            less = (ends[:1] + INSIDE[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
+        with np.errstate(all="ignore"):
+            found = np.abs(best - less) / self.problem.scales(best, s) / _shape(INSIDE)[:, None]
+        return np.asarray(np.nan_to_num(found, nan=math.inf).max(axis=0))
+
+    @cached_property
+    def _errors(self) -> tuple[Array, Array]:
+        """Errors of all intervals: those of the interpolation, and the larger ones of their ends."""
+        count = len(self.knots)
+        if count == 1:
+            return np.zeros((1, len(self.knots[0].values))), self.knots[0].errors[None]
+        ends = np.stack([np.maximum(a.errors, b.errors) for a, b in zip(self.knots, self.knots[1:], strict=False)])
+        return np.stack([self.interpolation_error(k) for k in range(count - 1)]), ends
+
+    def _evaluated(self, s: Array) -> tuple[Array, Indices, Array]:
+        """Return the observables, the interval of each place, and its part of it."""
+        if len(self.knots) == 1:
+            alone = self.knots[0].values * self.problem.units(s)
+            return alone, np.zeros(len(s), dtype=int), np.zeros(len(s))
+        where = np.clip(np.searchsorted(self.coordinates, s.real, side="right") - 1, 0, len(self.knots) - 2)
+        found: Array = np.empty((len(s), len(self.knots[0].values)), dtype=s.dtype)
+        for k in np.unique(where).tolist():
+            mine = where == k
+            found[mine] = self._through(*self._window(k, WINDOW), s[mine])
+        left, right = self.coordinates[where], self.coordinates[where + 1]
+        return found, where, (s.real - left) / (right - left)
+
+    def smooth(self, s: Array) -> Array:
+        """Return the observables at real or complex coordinates, shape (len(s), n)."""
+        return self._evaluated(s)[0]
+
+    def at(self, s: Array) -> tuple[Array, Array]:
+        """Return the observables at coordinates, and their errors in units of the scales."""
+        found, where, parts = self._evaluated(s)
+        between, ends = self._errors
+        return found, ends[where] + _shape(np.clip(parts, 0.0, 1.0))[:, None] * between[where]
+
+    @property
+    def expansions(self) -> tuple[Knot, ...]:
+        """The solved states."""
+        return self.knots
+
+    def continued(
+        self, end: float, rtol: float, on_interval: Callable[[float, float], object], span: float = math.inf
+    ) -> HermitePath:
+        """Return the path from the nearer end of this one to ``end``, or as far as ``span``."""
+        here = min(self.knots[0], self.knots[-1], key=lambda one: abs(one.coordinate - end))
+        goal = here.coordinate + math.copysign(min(span, abs(end - here.coordinate)), end - here.coordinate)
+        return interpolate_to(self.problem, here.coordinate, goal, rtol, on_interval, (here,))
+
+    def places(self, parts: Array) -> Array:
+        """Return coordinates at parts of all intervals, and the last one."""
+        lengths = np.diff(self.coordinates)
+        return np.append((self.coordinates[:-1, None] + parts * lengths[:, None]).ravel(), self.coordinates[-1])
+
+    def between(self, first: float, last: float) -> HermitePath:
+        """Return the path, which holds what lies between two coordinates."""
+        return self
+
+    def nearest(self, s: float) -> Knot:
+        """Return the solved state that is nearest to a coordinate."""
+        return self.knots[int(np.argmin(np.abs(self.coordinates - s)))]
+
+    def excess(self, k: int, rtol: float) -> float:
+        """Return the error of interval k over what is allowed: the tolerance, or the errors of its ends."""
+        between, ends = self.interpolation_error(k), np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
+        return float((between / np.maximum(rtol, ends))[self.problem.controlled].max())
+
+
+def _shape(parts: Array) -> Array:
+    """Return how the error of an interpolation with slopes runs between two states, at most one."""
+    return np.asarray(16.0 * (parts * (1.0 - parts)) ** 2)
+
+
+def interpolate_to(
+    problem: KnotProblem,
+    start: float,
+    end: float,
+    rtol: float,
+    on_interval: Callable[[float, float], object] | None = None,
+    known: Sequence[Knot] = (),
+) -> HermitePath:
+    """Return the path between two coordinates whose interpolation holds ``rtol``; ``known`` are states on it."""
+    knots = {knot.coordinate: knot for knot in known}
+    outcome = Outcome.CONVERGED
+
+    def path() -> HermitePath:
+        return HermitePath(problem, tuple(knots[s] for s in sorted(knots)), outcome)
+
+    try:
+        here, step, sign = start, FIRST_STEP, math.copysign(1.0, end - start)
+        while here not in knots:  # begin at the first state that can be solved
+            first = problem.solve(here)
+            if not isinstance(first, Outcome):
+                knots[here] = first
+            elif abs(end - here) <= FIRST_STEP:
+                return HermitePath(problem, (), first)
+            else:
+                outcome, here = first, here + sign * FIRST_STEP
+        while (left := abs(end - here)) > 0:
+            step = min(step, MAX_STEP, left if left < 1.3 * step else math.inf)
+            there = end if step > 0.99 * left else here + sign * step
+            new = knots.get(there) or problem.solve(there)
+            if isinstance(new, Outcome):
+                step *= 0.5
+                if step < MIN_STEP:
+                    outcome = new
+                    break
+                continue
+            knots[there] = new
+            if on_interval is not None:
+                on_interval(min(here, there), max(here, there))
+            here = there
+            if len(knots) >= WINDOW:
+                now = path()
+                k = len(now.knots) - 3 if sign > 0 else 1  # the last interval with states on both sides
+                growth = (AIM / max(now.excess(k, rtol), 1e-6)) ** (0.5 / (WINDOW - 2))
+                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * min(max(growth, 0.5), MAX_GROWTH)
+        while len(knots) < MAX_STATES:
+            now = path()
+            wide = [k for k in range(len(now.knots) - 1) if now.coordinates[k + 1] - now.coordinates[k] > 2 * MIN_STEP]
+            wrong = [k for k in wide if now.excess(k, rtol) > 1.0]
+            if not wrong:
+                break
+            for k in wrong[:: int(-sign)]:
+                middle = float(0.5 * (now.coordinates[k] + now.coordinates[k + 1]))
+                new = problem.solve(middle)
+                if not isinstance(new, Outcome):
+                    knots[middle] = new
+            if len(knots) == len(now.knots):
+                break
+    except KeyboardInterrupt:
+        outcome = Outcome.INTERRUPTED
+    return path()
