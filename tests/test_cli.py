@@ -810,4 +810,4 @@ def test_progress_is_shown_on_a_terminal_only(tmp_path):
 
 
 def test_the_tolerance_without_a_case_is_that_of_a_case_that_names_none():
-    assert arguments.USUAL_RTOL == sb.Case.rtol
+    assert arguments.DEFAULT_RTOL == sb.Case.rtol

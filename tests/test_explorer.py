@@ -270,7 +270,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         same_contact(shown.contact, case.contact)
         assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
         pin = url.Pin("kept ~ once", START.contact, "published"), url.Pin("law", shown.contact, "balanced", shown.model)
-        assert all(name in shown.model for name in case.tables if name in carried.MODEL)
+        assert all(name in shown.model for name in case.tables if name in carried.MODEL_TABLES)
         opened = reopened(url.encode(shown, pin))
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
@@ -422,7 +422,7 @@ def test_what_many_changes_lead_to_goes_through_link_and_saved_case(start):
         shown = replace(
             first,
             abscissa=random.choice(["speed", "hersey"]).item(),
-            definition=random.choice(sorted(charts.DEFINITIONS)).item(),
+            definition=random.choice(sorted(charts.DEFINITION_LABELS)).item(),
         )
         for _ in range(8):
             name = random.choice([each for each in choices.CHOICES if each != "geometry"]).item()
@@ -1059,14 +1059,14 @@ def test_a_port_in_use_is_refused_and_another_is_found():
             server.listen(taken.getsockname()[1])
     with server.listen(None) as first, server.listen(None) as second:
         assert first.getsockname()[1] < second.getsockname()[1]
-        assert {first.getsockname()[1], second.getsockname()[1]} <= set(server.PORTS)
+        assert {first.getsockname()[1], second.getsockname()[1]} <= set(server.DEFAULT_PORTS)
     with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
         server.listen(70000)
 
 
 def test_what_a_page_would_wait_for_is_prepared_beside_it(monkeypatch):
     units._registry.cache_clear()
-    monkeypatch.setattr(server, "SETTLED", 0.0)
+    monkeypatch.setattr(server, "PREPARE_AFTER_SECONDS", 0.0)
     try:
         server.prepare()
         assert gc.get_freeze_count()

@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 import stribeck as sb
-from stribeck.explorer.serving.guard import LARGEST_REQUEST, Guard, check_host
+from stribeck.explorer.serving.guard import MAX_REQUEST_BYTES, Guard, check_host
 
 pytestmark = pytest.mark.quick
 
@@ -102,13 +102,13 @@ def test_the_token_goes_from_the_address_into_a_cookie():
 
 
 def test_a_request_beyond_the_limit_is_cut_whether_it_says_its_length_or_not():
-    assert status(OWN | {"content-length": str(LARGEST_REQUEST + 1)}) == 413
+    assert status(OWN | {"content-length": str(MAX_REQUEST_BYTES + 1)}) == 413
     assert status(OWN | {"content-length": "9" * 5000}) == 413
     assert status(OWN | {"content-length": "-1"}) == 413
     parts = [b"x" * 1_000_000] * 300
     start, received = ask(OWN, "/upload/x", body=parts)
-    assert start["status"] == 413 and sum(map(len, received)) <= LARGEST_REQUEST
-    assert status(OWN | {"content-length": str(LARGEST_REQUEST)}, body=[b"x" * LARGEST_REQUEST]) == 200
+    assert start["status"] == 413 and sum(map(len, received)) <= MAX_REQUEST_BYTES
+    assert status(OWN | {"content-length": str(MAX_REQUEST_BYTES)}, body=[b"x" * MAX_REQUEST_BYTES]) == 200
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.2", "example.com", "", "127.0.0.1 "])

@@ -159,14 +159,14 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
         start = server.example()
         opened, shown = await opening.opening([], start)
         tasks = []
-        for _ in range(tab.MOST_WAITING + 3):
+        for _ in range(tab.MAX_WAITING_PAGES + 3):
             client = Client(ui.page("/"), request=Request(dict(scope)))
             with client:
                 tasks.append(asyncio.create_task(tab.Tab(opened, start, shown).open()))
             await asyncio.sleep(0)
         await asyncio.gather(*tasks[:3])
-        waiting, left = len(tab.WAITING), sum(not task.done() for task in tasks)
-        for made in list(tab.WAITING):
+        waiting, left = len(tab.WAITING_PAGES), sum(not task.done() for task in tasks)
+        for made in list(tab.WAITING_PAGES):
             made.page.client.delete()
         await asyncio.gather(*tasks)
         return waiting, left

@@ -229,7 +229,7 @@ def test_progress_tells_rate_and_time_left(tmp_path):
 def test_a_batch_job_gets_lines_of_progress(tmp_path, capsys, monkeypatch):
     from stribeck.cli.reports import sweep as report_sweep
 
-    monkeypatch.setattr(report_sweep, "EVERY", 0.0)
+    monkeypatch.setattr(report_sweep, "PROGRESS_INTERVAL", 0.0)
     answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store")
     assert answer.code == 0
     assert re.fullmatch(r"stribeck: 68 of 68 states, [0-9.e+]+ states/s, 0:00:00 left", answer.err.splitlines()[-1])

@@ -17,8 +17,7 @@ from stribeck.quantities.units import InputError, read_number, show, to_si
 Axis = Literal["speed", "load", "roughness"]
 AXES: tuple[Axis, ...] = ("speed", "load", "roughness")
 
-USUAL_RTOL = 1e-6
-"""That of a case which names none; to load cases for it alone takes longer than a state."""
+DEFAULT_RTOL = 1e-6  # Tolerance of a case that names none; to load cases for it alone takes longer than a state.
 
 CaseFile = Annotated[Path | None, Parameter(name="CASE", show_default=False)]
 Word = Annotated[str | None, Parameter(show_default=False)]
@@ -129,7 +128,7 @@ def as_whole(name: str, text: str) -> int:
 def as_rtol(text: str | None, case: sb.Case | None) -> float:
     """Return the relative tolerance: that of the option, else of the case, else the default."""
     given = as_number("rtol", text)
-    return given if given is not None else case.rtol if case else USUAL_RTOL
+    return given if given is not None else case.rtol if case else DEFAULT_RTOL
 
 
 def curve_arguments(

@@ -18,8 +18,10 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
-FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS = 1, 2, 130, 141
-"""Exit codes besides 0; the last two are what a shell gives to processes that end by SIGINT and SIGPIPE."""
+EXIT_FAILED = 1  # Exit code where a state was not found.
+EXIT_BAD_INPUT = 2  # Exit code where an input is refused.
+EXIT_INTERRUPTED = 130  # Exit code that a shell gives to a process that ends by SIGINT.
+EXIT_BROKEN_PIPE = 141  # Exit code that a shell gives to a process that ends by SIGPIPE.
 
 
 def complain(text: str, code: int) -> int:

@@ -13,10 +13,10 @@ from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensEr
 
 import stribeck as sb
 from stribeck.cli.exits import (
-    BAD_INPUT,
-    FAILED,
-    INTERRUPTED,
-    NOBODY_READS,
+    EXIT_BAD_INPUT,
+    EXIT_BROKEN_PIPE,
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
     Interrupted,
     OutputError,
     complain,
@@ -39,11 +39,9 @@ Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted."""
 
 
-NARROWEST = 20
-"""Smallest plausible width of a terminal."""
+MIN_TERMINAL_WIDTH = 20  # Smallest plausible width of a terminal [columns].
 
-MOST_DIGITS = 4
-"""Digits of the largest plausible width."""
+MAX_WIDTH_DIGITS = 4  # Digits of the largest plausible width of a terminal.
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -77,37 +75,37 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         sys.stdout.flush()
         return result if isinstance(result, int) else 0
     except CycloptsError as problem:
-        return complain(f"{_parsing(problem)} See {_command(tokens)} --help.", BAD_INPUT)
+        return complain(f"{_parsing(problem)} See {_command(tokens)} --help.", EXIT_BAD_INPUT)
     except InputError as problem:
-        return complain(str(problem), BAD_INPUT)
+        return complain(str(problem), EXIT_BAD_INPUT)
     except KeyboardInterrupt:
-        return complain("Interrupted; nothing was written.", INTERRUPTED)
+        return complain("Interrupted; nothing was written.", EXIT_INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
         silence(sys.stdout)
-        return NOBODY_READS
+        return EXIT_BROKEN_PIPE
     except OutputError as problem:
         silence(sys.stdout)
-        return complain(f"The output could not be printed ({problem}); the requested files were written.", FAILED)
+        return complain(f"The output could not be printed ({problem}); the requested files were written.", EXIT_FAILED)
     except MemoryError:
-        return complain("Out of memory; ask for fewer points or a larger rtol.", FAILED)
+        return complain("Out of memory; ask for fewer points or a larger rtol.", EXIT_FAILED)
     except OSError as problem:  # a name of 300 letters, no file handles, a full disk
         where = f" of {show(os.fsdecode(problem.filename))}" if isinstance(problem.filename, str | bytes) else ""
-        return complain(f"The system refused the use{where}: {reason_of(problem)}.", FAILED)
+        return complain(f"The system refused the use{where}: {reason_of(problem)}.", EXIT_FAILED)
     except sb.SolveError as problem:
         if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
-            return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
-        return complain(str(problem), FAILED)
+            return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", EXIT_BAD_INPUT)
+        return complain(str(problem), EXIT_FAILED)
     except sb.SweepError as problem:
-        return complain(str(problem), FAILED)
+        return complain(str(problem), EXIT_FAILED)
     except Exception as problem:
         if interrupted.pressed:
-            return complain("Interrupted; nothing was written.", INTERRUPTED)
+            return complain("Interrupted; nothing was written.", EXIT_INTERRUPTED)
         if os.environ.get("STRIBECK_DEBUG"):
             raise
         return complain(
             f"Internal error ({type(problem).__name__}: {_line(problem)}) "
             "Please report it, with the output after setting STRIBECK_DEBUG=1 in the environment.",
-            FAILED,
+            EXIT_FAILED,
         )
 
 
@@ -173,7 +171,7 @@ def _adapt_process() -> None:
     """Set what belongs to a process of our own: letters that any terminal takes, warnings only on demand."""
     prepare_streams()
     columns = os.environ.get("COLUMNS", "80")
-    if not (columns.isdecimal() and len(columns) <= MOST_DIGITS and int(columns) >= NARROWEST):
+    if not (columns.isdecimal() and len(columns) <= MAX_WIDTH_DIGITS and int(columns) >= MIN_TERMINAL_WIDTH):
         del os.environ["COLUMNS"]  # in no columns nothing is shown, and the help never ends; in 1e9 it fills the memory
     os.environ["MPLBACKEND"] = (
         "agg"  # pictures need no display; matplotlib refuses to be imported with a name that it does not know

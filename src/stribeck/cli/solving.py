@@ -37,7 +37,7 @@ from stribeck.cli.arguments import (
     read_case,
     read_duration,
 )
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, attempted, complain, say, stdout_console
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, attempted, complain, say, stdout_console
 from stribeck.cli.progress import Progress, interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
@@ -177,7 +177,7 @@ def curve_command(
         report.print_curve(console, curve, title, written, judged.checks, judged.errors, verdict)
         print_conversions(console, loaded)
     if problems:
-        return complain("\n".join(problems), BAD_INPUT)
+        return complain("\n".join(problems), EXIT_BAD_INPUT)
     stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"
     if judged.problem:
         complain(judged.problem, 0)
@@ -185,12 +185,12 @@ def curve_command(
         kept = (
             f"{' and '.join(written)} contain the points so far, marked as incomplete" if written else "no file was asked for"
         )
-        return complain(f"{stopped} after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
+        return complain(f"{stopped} after {len(curve)} of {curve.requested} points; {kept}.", EXIT_INTERRUPTED)
     if not curve.outcome.ok:
-        return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
+        return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", EXIT_FAILED)
     if judged.is_stopped:
         left_out = "a picture has no verdict, and errors of inputs are not propagated"
-        return complain(f"{stopped} after the curve was solved; {left_out}.", INTERRUPTED)
+        return complain(f"{stopped} after the curve was solved; {left_out}.", EXIT_INTERRUPTED)
     return 0
 
 
@@ -258,7 +258,7 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         print(report_json.dump(content | conversions_json(loaded)))
     else:
         print_words(stdout_console(), found, loaded)
-    return 0 if found.curve.outcome.ok else complain(found.curve.outcome.value, FAILED)
+    return 0 if found.curve.outcome.ok else complain(found.curve.outcome.value, EXIT_FAILED)
 
 
 def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
@@ -325,13 +325,13 @@ def figures_command(
             say(console, f"Figure {each.name}{kept}: {names_of_files}")
     for each in made:
         if each.outcome in ("failed", "unwritten"):
-            complain(each.message, FAILED)
+            complain(each.message, EXIT_FAILED)
     outcomes = {each.outcome for each in made}
     if "interrupted" in outcomes:
         finished = ", ".join(each.name for each in made if each.files)
         kept = f"finished and kept in {out}: {finished}" if finished else "none was finished"
-        return complain(f"{made[-1].message.rstrip('.')}; {kept}.", INTERRUPTED)
-    return FAILED if "failed" in outcomes else BAD_INPUT if "unwritten" in outcomes else 0
+        return complain(f"{made[-1].message.rstrip('.')}; {kept}.", EXIT_INTERRUPTED)
+    return EXIT_FAILED if "failed" in outcomes else EXIT_BAD_INPUT if "unwritten" in outcomes else 0
 
 
 def _write(

@@ -23,7 +23,7 @@ from stribeck.cli.arguments import (
     data_and_case,
     need_extra,
 )
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, attempted, complain, stdout_console
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, attempted, complain, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 from stribeck.quantities.units import InputError
@@ -92,9 +92,11 @@ def sweep_command(
         report_sweep.print_sweep(stdout_console(), found, written)
     if found.interrupted:
         kept = f"they are stored in {out}; run the same command again to resume"
-        return complain(f"Interrupted after {found.finished} of {len(found)} states; {kept}.", INTERRUPTED)
+        return complain(f"Interrupted after {found.finished} of {len(found)} states; {kept}.", EXIT_INTERRUPTED)
     if found.failed:
-        return complain(f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", FAILED)
+        return complain(
+            f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", EXIT_FAILED
+        )
     return 0
 
 
@@ -169,9 +171,9 @@ def fit_command(
     else:
         report_fit.print_fit(stdout_console(), found, loaded.title, written, drawn)
     if problems:
-        return complain("\n".join(problems), BAD_INPUT)
+        return complain("\n".join(problems), EXIT_BAD_INPUT)
     if not found.converged:
-        return complain(found.outcome.value, FAILED)
+        return complain(found.outcome.value, EXIT_FAILED)
     return 0
 
 

@@ -57,19 +57,18 @@ from stribeck.uncertainty.result import Uncertainty
 
 __all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down", "round_up", "asymptotic_fields"]
 
-RTOL = 1e-6
-PIN_RTOL = 1e-4
-MOST_KEPT = 64
-ABSENT = 0.01
-"""Share of the load below which asperities, or the fluid, count as absent when formulas are chosen."""
+STATE_RTOL = 1e-6  # Relative tolerance of the state that the page shows.
+PIN_RTOL = 1e-4  # Relative tolerance of the curve of a pinned contact.
+MAX_CACHED_ANSWERS = 64  # Answers that are kept for inputs that come back.
+NEGLIGIBLE_SHARE = 0.01  # Load share below which asperities, or the fluid, count as absent when formulas are chosen.
 
 FIELDS_DRAWN = ("gap", "pressure", "contact_pressure", "fluid_pressure")
 
-PLANE_REACH, PLANE_POINTS = 1.6, 49
-"""Half the side of the map of a ball [a], and points along it."""
+MAP_HALF_SIDE = 1.6  # Half the side of the map of a ball [a].
+MAP_POINTS = 49  # Points along a side of that map.
 
-STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
-"""Ends of axes, times powers of ten: few, so that axes stay still while a slider moves."""
+# Ends of axes, times powers of ten: few, so that axes stay still while a slider moves.
+AXIS_ENDS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 
 T = TypeVar("T")
 
@@ -108,7 +107,7 @@ class Answerer:
     """Answers to the inputs of one tab, one after another; ``known`` is one that need not be found again."""
 
     def __init__(self, known: Answer | None = None) -> None:
-        self._solve = WarmStartSolver(RTOL)
+        self._solve = WarmStartSolver(STATE_RTOL)
         self._last: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
         self._last_curves: dict[str, Curve] = {}
@@ -134,8 +133,8 @@ class Answerer:
         x = np.unique(np.concatenate([x, nodes[:: 1 + len(nodes) // 150]]))
         plane = None
         if isinstance(solution, PointSolution):
-            side = np.linspace(-PLANE_REACH, PLANE_REACH, PLANE_POINTS)
-            plane = solution.field(side, side[PLANE_POINTS // 2 :, None])
+            side = np.linspace(-MAP_HALF_SIDE, MAP_HALF_SIDE, MAP_POINTS)
+            plane = solution.field(side, side[MAP_POINTS // 2 :, None])
         return Answer(
             inputs=inputs,
             solution=solution,
@@ -317,7 +316,7 @@ class Answerer:
 
     def _keep(self, key: Any, make: Callable[[], T]) -> T:
         if key not in self._kept:
-            while len(self._kept) >= MOST_KEPT:
+            while len(self._kept) >= MAX_CACHED_ANSWERS:
                 del self._kept[next(iter(self._kept))]
             self._kept[key] = make()
         found: T = self._kept[key]
@@ -342,13 +341,13 @@ def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, 
 def round_up(value: float) -> float:
     """Return the next larger end of an axis."""
     power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{next(step for step in STEPS if step * power >= value * (1 - 1e-9)) * power:.6g}")
+    return float(f"{next(step for step in AXIS_ENDS if step * power >= value * (1 - 1e-9)) * power:.6g}")
 
 
 def round_down(value: float) -> float:
     """Return the next smaller end of an axis."""
     power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{next(step for step in STEPS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
+    return float(f"{next(step for step in AXIS_ENDS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
 
 
 def profile_reach(solution: BaseSolution) -> float:
@@ -369,7 +368,7 @@ def asymptotic_fields(solution: BaseSolution, reach: float) -> list[AsymptoticFi
     absent = {"smooth": solution.contact_load_share, "rest": solution.fluid_load_share, "mixed": 0.0}
     found = []
     for formula in FORMULAS:
-        if formula.predicts not in FIELDS_DRAWN or formula.interval is None or absent[formula.plane] >= ABSENT:
+        if formula.predicts not in FIELDS_DRAWN or formula.interval is None or absent[formula.plane] >= NEGLIGIBLE_SHARE:
             continue
         if not bool(formula.valid(groups)):
             continue

@@ -28,7 +28,7 @@ from stribeck.solver.base_solution import BaseSolution
 
 __all__ = ["KINDS", "View", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
 
-LONGEST_NAME = 80
+MAX_NAME_LENGTH = 80  # Letters of the name of a downloaded file.
 
 KINDS = {
     "Picture of the curve (PNG)": "curve.png",
@@ -84,7 +84,7 @@ def shown_name(name: str) -> str:
     last = name.replace("\\", "/").rstrip("/").rpartition("/")[2]
     plain = "".join(sign if sign.isprintable() else "_" for sign in last).strip()
     plain = "file" if plain in ("", ".", "..") else plain
-    return plain if len(plain) <= LONGEST_NAME else f"{plain[: LONGEST_NAME - 20]}...{plain[-17:]}"
+    return plain if len(plain) <= MAX_NAME_LENGTH else f"{plain[: MAX_NAME_LENGTH - 20]}...{plain[-17:]}"
 
 
 def name_of(kind: str, title: str) -> str:

@@ -23,7 +23,7 @@ from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.explorer.opening import curves_of
-from stribeck.explorer.page import UPDATING, Page
+from stribeck.explorer.page import UPDATING_TEXT, Page
 from stribeck.explorer.serving.pools import Threads, run
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_intervals import with_intervals
@@ -32,14 +32,12 @@ from stribeck.solver.solve import SolveError
 
 __all__ = ["Following", "Superseded", "without_rtol"]
 
-MOMENT = 0.15
-"""Seconds of waiting for an answer after which the old one is marked."""
+MARK_AFTER_SECONDS = 0.15  # Wait for an answer after which the old one is marked as old [s].
 
-LONG = 1.0
-"""Seconds from which an answer on its way is ended when other inputs are asked for; quicker ones are shown on the way."""
+# Age at which an unfinished answer is ended when the inputs change; a younger one is still shown [s].
+CANCEL_AFTER_SECONDS = 1.0
 
-REST = 0.4
-"""Seconds after the last change from which what takes longer is done."""
+IDLE_SECONDS = 0.4  # Pause after the last change before slow work begins [s].
 
 
 def without_rtol(sentence: str) -> str:
@@ -135,12 +133,12 @@ class Following:
         began = time.monotonic()
 
         def watch() -> None:
-            if self.closed or (self.changes != changes and time.monotonic() - began > LONG):
+            if self.closed or (self.changes != changes and time.monotonic() - began > CANCEL_AFTER_SECONDS):
                 raise Superseded
 
         arguments = now, tuple(self.pins), speeds_of(self.measured, now)
         work = asyncio.ensure_future(run(self.threads.live, self.compute, *arguments, watch=watch))
-        done, _ = await asyncio.wait({work}, timeout=MOMENT)
+        done, _ = await asyncio.wait({work}, timeout=MARK_AFTER_SECONDS)
         if not done:
             self.page.show_working(now)
         self.answer, self.pinned, self.states = await work
@@ -185,7 +183,7 @@ class Following:
 
         def report(part: float) -> None:
             go_on()
-            self.page.progress = f"{UPDATING} {100 * part:.0f} %"
+            self.page.progress = f"{UPDATING_TEXT} {100 * part:.0f} %"
 
         async def tried(part: Callable[..., Any]) -> None:
             try:
@@ -202,10 +200,10 @@ class Following:
                 curve = asyncio.ensure_future(run(slow, self.model.settle, now, report, watch=go_on))
                 curve.add_done_callback(lambda task: task.cancelled() or task.exception())
                 began = asyncio.get_running_loop().time()
-                done, _ = await asyncio.wait({curve}, timeout=REST)
+                done, _ = await asyncio.wait({curve}, timeout=IDLE_SECONDS)
                 if done and not curve.exception() and curve.result():
                     await self.refresh(now)
-                await asyncio.sleep(max(0.0, began + REST - asyncio.get_running_loop().time()))
+                await asyncio.sleep(max(0.0, began + IDLE_SECONDS - asyncio.get_running_loop().time()))
                 self.page.show_address(f"?{url.encode(now, self.pins)}")
                 self.history.rest(now)
                 self.page.show_ways(self.history.ways)
@@ -213,7 +211,7 @@ class Following:
                     while not curve.done():
                         if self.page.progress:  # it is being solved, and does not only wait for another page
                             self.page.show_progress()
-                        await asyncio.wait({curve}, timeout=REST)
+                        await asyncio.wait({curve}, timeout=IDLE_SECONDS)
                     if not curve.exception() and curve.result():
                         await self.refresh(now)
                 try:

@@ -17,10 +17,9 @@ from stribeck.solver.solve import SolveError
 
 __all__ = ["curves_of", "opening"]
 
-MOST_OPENED = 4
-OPENED: dict[str, Answer] = {}
+MAX_OPENED = 4  # Answers that are kept for inputs with which pages open.
+OPENED: dict[str, Answer] = {}  # Answers to the last inputs with which pages opened.
 OPENED_LOCK = threading.Lock()
-"""Answers to the last inputs with which pages opened."""
 
 
 def answer_of(now: Inputs) -> Answer:
@@ -30,7 +29,7 @@ def answer_of(now: Inputs) -> Answer:
         found = OPENED.get(key)
         if found is None:
             found = OPENED[key] = Answerer()(now)
-            while len(OPENED) > MOST_OPENED:
+            while len(OPENED) > MAX_OPENED:
                 del OPENED[next(iter(OPENED))]
         return found
 

@@ -28,16 +28,14 @@ from stribeck.explorer.inputs.choices import CHOICES
 from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured
-from stribeck.explorer.scans import ENDINGS
+from stribeck.explorer.scans import SCAN_ENDINGS
 from stribeck.regimes.margins import RegimeMargins
 
-__all__ = ["UPDATING", "Page"]
+__all__ = ["UPDATING_TEXT", "Page"]
 
-UPDATING = "Updating ..."
-"""Text while something is still being computed."""
+UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 
-PATIENCE = 2.0
-"""Seconds after which a browser that does not answer gets the next picture nevertheless."""
+FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the next picture nevertheless [s].
 
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
@@ -150,7 +148,7 @@ class Page:
                     self.ways_out.set_visibility(False)
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
-                    head = f"Margins to the next regimes <span class='caption waits'>{UPDATING}</span>"
+                    head = f"Margins to the next regimes <span class='caption waits'>{UPDATING_TEXT}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
                     self.margins = ui.html("", sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
@@ -160,7 +158,7 @@ class Page:
 
     def build_bar(self, now: Inputs) -> None:
         """Make the line of title and buttons."""
-        endings = ",".join((".toml", ".csv", ".txt", ".tsv", ".dat", *ENDINGS))
+        endings = ",".join((".toml", ".csv", ".txt", ".tsv", ".dat", *SCAN_ENDINGS))
         with ui.element("header").classes("bar"):
             self.title = ui.html("", sanitize=False, tag="h1")
             self.upload = (
@@ -208,7 +206,7 @@ class Page:
             ui.html("<h2>Stribeck curve</h2>", sanitize=False)
             self.source = ui.html("", sanitize=False).classes("caption")
             with ui.element("div").classes("choice"):
-                for options, name in ((charts.DEFINITIONS, "definition"), (ABSCISSAS, "abscissa")):
+                for options, name in ((charts.DEFINITION_LABELS, "definition"), (ABSCISSAS, "abscissa")):
                     toggle = ui.toggle(options, value=getattr(now, name))
                     toggle.props(f'no-caps unelevated dense aria-label="{name}"')
                     self.toggles[name] = toggle
@@ -306,7 +304,7 @@ class Page:
         """Return the numbers, and the lines that go with the charts."""
         answer = seen.answer
         waits = answer.curve is None or answer.curve.stale
-        source = (self.progress or UPDATING) if waits or answer.curve is None else answer.curve.source
+        source = (self.progress or UPDATING_TEXT) if waits or answer.curve is None else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
         margins = self.ways if not self.ways_words(answer.inputs) else None
         return [
@@ -336,7 +334,7 @@ class Page:
         same = shown is not None and all(
             getattr(shown, name) == getattr(now, name) for name in ("contact", "definition", "model", "rest")
         )
-        return "" if same else UPDATING
+        return "" if same else UPDATING_TEXT
 
     def show_working(self, now: Inputs) -> None:
         """Mark what is shown as that of the contact before, while the next one is being solved; the fields are its own."""
@@ -352,7 +350,7 @@ class Page:
 
     def show_progress(self) -> None:
         """Show the progress of the curve."""
-        words = self.shown[self.source.html_id] = escape(self.progress or UPDATING)
+        words = self.shown[self.source.html_id] = escape(self.progress or UPDATING_TEXT)
         self.client.run_javascript(f"document.getElementById({dumps(self.source.html_id)}).innerHTML = {dumps(words)}")
 
     def show_fit(self, there: bool) -> None:
@@ -374,7 +372,7 @@ class Page:
                 self.drawn[name] = chart
                 frame["charts"].append([self.charts[name].id, chart])
         try:
-            await self.client.run_javascript(f"explorerFrame({dumps(frame)})", timeout=PATIENCE)
+            await self.client.run_javascript(f"explorerFrame({dumps(frame)})", timeout=FRAME_TIMEOUT)
         except TimeoutError:  # a tab in the background answers when it is looked at
             pass
 
@@ -383,7 +381,7 @@ def _rows_words(answer: Answer) -> str:
     """Return how much of the diagram is solved."""
     diagram = answer.diagram
     if diagram is None or diagram.stale:
-        return f": {UPDATING}"
+        return f": {UPDATING_TEXT}"
     if diagram.part < 1:
         return f": {100 * diagram.part:.0f} % solved"
     if not np.isnan(diagram.boundary).any():

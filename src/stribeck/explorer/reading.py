@@ -21,18 +21,16 @@ from stribeck.explorer.measured import read_measured
 from stribeck.explorer.scans import read_scan
 from stribeck.quantities.units import InputError
 
-__all__ = ["LONGEST_TIME", "read_file"]
+__all__ = ["MAX_READ_SECONDS", "read_file"]
 
 Kind = Literal["case", "measured", "scan"]
 
-LONGEST_TIME = 20.0
-"""Seconds after which a file is given up."""
+MAX_READ_SECONDS = 20.0  # Time after which a file is given up [s].
 
-MOST_MEMORY = 4_000_000_000
-"""Bytes that the program may address, where the system can limit it."""
+MAX_READ_BYTES = 4_000_000_000  # Bytes that the reader of a file may address, where the system can limit it.
 
 
-def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: float = LONGEST_TIME) -> Any:
+def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: float = MAX_READ_SECONDS) -> Any:
     """Return what a file holds."""
     # Of the contact only what measured curves need: not every law can be sent.
     task = pickle.dumps((kind, name, content, contact.replace(law=None), seconds))
@@ -98,7 +96,7 @@ def _limit_memory() -> None:
     except ImportError:  # Windows
         return
     _, most = resource.getrlimit(resource.RLIMIT_AS)
-    limit = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
+    limit = MAX_READ_BYTES if most == resource.RLIM_INFINITY else min(MAX_READ_BYTES, most)
     try:
         resource.setrlimit(resource.RLIMIT_AS, (limit, most))
     except (OSError, ValueError):  # macOS has the name and not the limit

@@ -17,7 +17,7 @@ from stribeck.cases.reading import load_case
 from stribeck.contacts.line import LineContact
 from stribeck.explorer.downloads import KINDS, name_of, shown_name
 from stribeck.explorer.inputs.inputs import Inputs, from_case, units_of
-from stribeck.explorer.inputs.url import LONGEST, check_length
+from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length
 from stribeck.explorer.serving.guard import Guard, check_host
 from stribeck.explorer.serving.tidy import set_aside
 from stribeck.files.writing import MissingExtraError
@@ -29,20 +29,16 @@ if TYPE_CHECKING:
 __all__ = ["serve"]
 
 HOST = "127.0.0.1"
-PORTS = range(8765, 8815)
-"""Ports that are tried where none is asked for."""
+DEFAULT_PORTS = range(8765, 8815)  # Ports that are tried where none is asked for.
 
-OPENING = 120.0
-"""Seconds that a page may wait for its first answer, behind those of other pages."""
+OPENING_TIMEOUT = 120.0  # Time that a page may wait for its first answer, behind those of other pages [s].
 
-RECONNECT = 30.0
-"""Seconds after which a page without browser is forgotten."""
+RECONNECT_TIMEOUT = 30.0  # Time after which a page without browser is forgotten [s].
 
-SETTLED = 5.0
-"""Seconds after the start, when the first page stands, in which what no page shall wait for is prepared."""
+PREPARE_AFTER_SECONDS = 5.0  # Time after the start, when the first page stands, at which slow preparations begin [s].
 
-MOST_RESENT = 20
-"""Messages that are kept for a browser whose connection was interrupted; each may hold all charts."""
+# Messages kept for a browser whose connection was interrupted; each may hold all charts.
+MAX_RESENT_MESSAGES = 20
 
 ICON = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><rect width="32" height="32" rx="7" fill="#0072b2"/>
 <path d="M5 9h6c6 0 6 13 10 13 3 0 4-5 6-10" fill="none" stroke="#fff" stroke-width="2.6" stroke-linecap="round"/></svg>"""
@@ -81,9 +77,9 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
         favicon=ICON,
         title="stribeck explorer",
         show_welcome_message=False,
-        reconnect_timeout=RECONNECT,
-        message_history_length=MOST_RESENT,
-        h11_max_incomplete_event_size=4 * LONGEST,
+        reconnect_timeout=RECONNECT_TIMEOUT,
+        message_history_length=MAX_RESENT_MESSAGES,
+        h11_max_incomplete_event_size=4 * MAX_URL_LENGTH,
         ws_max_size=1_000_000,
         ws_per_message_deflate=False,  # nothing leaves this machine
     )
@@ -100,7 +96,7 @@ def _end(server: Server, number: int, frame: FrameType | None) -> None:
 def prepare() -> None:
     """Prepare what a page would wait for: in the background all units, of which the first odd one takes pint half a second."""
     set_aside()
-    units = threading.Timer(SETTLED, to_si, ("1 inch", "length", "unit"))
+    units = threading.Timer(PREPARE_AFTER_SECONDS, to_si, ("1 inch", "length", "unit"))
     units.daemon = True
     units.start()
 
@@ -117,7 +113,7 @@ def build(start: Inputs, port: int, token: str) -> None:
     app.add_middleware(Guard, token=token, port=port)
     style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
 
-    @ui.page("/", title="stribeck explorer", response_timeout=OPENING)
+    @ui.page("/", title="stribeck explorer", response_timeout=OPENING_TIMEOUT)
     async def index() -> None:
         request = ui.context.client.request
         opened, shown = await opening(request.query_params.multi_items(), start)
@@ -167,7 +163,7 @@ def listen(wanted: int | None, host: str = HOST) -> socket.socket:
     """Return a socket that listens on a port of this machine on which nobody else did."""
     if wanted is not None and not 1 <= wanted <= 65535:
         raise InputError(f"port = {wanted} must be a whole number from 1 to 65535.")
-    for port in PORTS if wanted is None else (wanted,):
+    for port in DEFAULT_PORTS if wanted is None else (wanted,):
         found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
         if sys.platform != "win32":
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -178,5 +174,5 @@ def listen(wanted: int | None, host: str = HOST) -> socket.socket:
             found.close()
             continue
         return found
-    which = f"port = {wanted} is" if wanted is not None else f"ports {PORTS[0]} to {PORTS[-1]} are"
+    which = f"port = {wanted} is" if wanted is not None else f"ports {DEFAULT_PORTS[0]} to {DEFAULT_PORTS[-1]} are"
     raise InputError(f"{which} not free or not allowed; choose another with --port.")

@@ -20,7 +20,7 @@ from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.reading import read_file
-from stribeck.explorer.scans import ENDINGS, Scan, with_scan
+from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
 from stribeck.explorer.serving.pools import FILES, run
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.files.writing import MissingExtraError
@@ -28,14 +28,13 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["TABS", "Tab"]
 
-MOST_WAITING = 50
-WAITING: list[Tab] = []
-"""Pages that were sent and whose browser did not answer yet; of more than so many the oldest is given up."""
+MAX_WAITING_PAGES = 50  # Pages that wait for their browser's first answer; of more the oldest is given up.
+WAITING_PAGES: list[Tab] = []  # Pages that were sent and whose browser did not answer yet.
 
+# Open pages, by the names of their clients; a page that is closed drops out.
 TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
-"""Open pages, by the names of their clients; a page that is closed drops out."""
 
-MOST_MEASURED = 3
+MAX_MEASURED = 3  # Files of measured curves that a page shows.
 
 
 class Tab(Following):
@@ -157,8 +156,8 @@ class Tab(Following):
 
     def pin(self) -> None:
         """Keep the present curve."""
-        if len(self.pins) >= url.MOST_PINS:
-            ui.notify(f"Up to {url.MOST_PINS} curves can be pinned; remove one first.")
+        if len(self.pins) >= url.MAX_PINS:
+            ui.notify(f"Up to {url.MAX_PINS} curves can be pinned; remove one first.")
             return
         name = files.pin_name(self.inputs, self.start, [pin.name for pin in self.pins])
         self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.model))
@@ -195,7 +194,7 @@ class Tab(Following):
 
     async def take_file(self, name: str, content: bytes) -> None:
         """Take a case, a measured curve or a surface that the browser sent."""
-        kinds = {".toml": "case"} | dict.fromkeys(ENDINGS, "scan")
+        kinds = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         self.page.say(f"Reading {name} ...")
         try:
@@ -211,7 +210,7 @@ class Tab(Following):
             elif isinstance(found, Scan):
                 self.take_scan(found)
             else:
-                self.measured = [*self.measured, *found][-MOST_MEASURED:]
+                self.measured = [*self.measured, *found][-MAX_MEASURED:]
                 self.show_chips()
                 self.ask()
 
@@ -272,17 +271,17 @@ class Tab(Following):
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""
-        WAITING.append(self)
-        while len(WAITING) > MOST_WAITING:
-            WAITING.pop(0).page.client.delete()
+        WAITING_PAGES.append(self)
+        while len(WAITING_PAGES) > MAX_WAITING_PAGES:
+            WAITING_PAGES.pop(0).page.client.delete()
         try:
             await self.page.client.connected(timeout=30)
         except TimeoutError:  # the browser went away at once
             if not self.closed:
                 self.page.client.delete()
         finally:
-            if self in WAITING:
-                WAITING.remove(self)
+            if self in WAITING_PAGES:
+                WAITING_PAGES.remove(self)
         if self.closed:
             return
         with self.page.client:

@@ -22,7 +22,7 @@ from stribeck.solver.base_solution import BaseSolution
 
 __all__ = ["Row", "comparison_html", "curve_notes_html", "margins_html", "numbers", "numbers_html", "verdict_html"]
 
-MOST_DIGITS = 4
+MAX_DIGITS = 4  # Digits of a number in the table.
 
 
 @dataclass(frozen=True)
@@ -163,12 +163,12 @@ def _row(key: str, label: str, value: float, error: float, dimension: str = "num
 
 
 def _count(value: float, error: float) -> int:
-    """Return how many digits of a value its error leaves, at most :data:`MOST_DIGITS`."""
+    """Return how many digits of a value its error leaves, at most :data:`MAX_DIGITS`."""
     if math.isnan(error):
         return 3
     if error <= 0 or value == 0:
         return 5
-    return max(1, min(MOST_DIGITS, math.floor(math.log10(abs(value) / error)) + 1))
+    return max(1, min(MAX_DIGITS, math.floor(math.log10(abs(value) / error)) + 1))
 
 
 def _small(error: float) -> str:

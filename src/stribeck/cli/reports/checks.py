@@ -13,19 +13,20 @@ if TYPE_CHECKING:
 
 __all__ = ["print_checks"]
 
-STYLES = {"fine": "green", "doubtful": "yellow", "outside": "bold red"}
-"""Colours of the verdicts."""
+VERDICT_STYLES = {"fine": "green", "doubtful": "yellow", "outside": "bold red"}  # Colours of the verdicts.
 
 
 def print_checks(console: Console, checks: Checks, title: str) -> None:
     """Print whether the model applies and why."""
-    say(console, checks.headline, STYLES[checks.verdict])
+    say(console, checks.headline, VERDICT_STYLES[checks.verdict])
     if title:
         say(console, title, "bold")
     table = table_of("check", "value", "fine", "verdict", right=(1, 2))
     for each in checks:
         value, limit = each.texts
-        table.add_row(each.name, value, limit, each.verdict, style=None if each.verdict == "fine" else STYLES[each.verdict])
+        table.add_row(
+            each.name, value, limit, each.verdict, style=None if each.verdict == "fine" else VERDICT_STYLES[each.verdict]
+        )
     print_table(console, table)
     for each in checks.said:
         say(console, f"{each.word}: {each.sentence}")

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Explanation", "Regimes", "explain", "print_words", "regimes_of"]
 
-POINTS = 41
-"""Points of the curve on which transitions are looked for, which are then located exactly."""
+CURVE_POINTS = 41  # Points of the curve on which transitions are looked for, which are then located exactly.
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
     contact, rtol, definition = case.contact, case.rtol, case.definition
     solution, sensitivities, reason = sensitivities_if_known(contact, rtol=rtol, definition=definition)
     coarse = scanned_rtol(contact, rtol)
-    curve = sb.stribeck_curve(contact, points=POINTS, rtol=coarse, definition=definition, on_point=on_point)
+    curve = sb.stribeck_curve(contact, points=CURVE_POINTS, rtol=coarse, definition=definition, on_point=on_point)
     _ = curve.transitions
     if curve.outcome is sb.Outcome.INTERRUPTED:
         raise KeyboardInterrupt

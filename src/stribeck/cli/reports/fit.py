@@ -18,8 +18,7 @@ from stribeck.quantities.part_inputs import fitted_rows
 if TYPE_CHECKING:
     from rich.console import Console
 
-TABLE = 140
-"""Width that the table may take [letters]."""
+TABLE_WIDTH = 140  # Width that the table may take [letters].
 
 __all__ = ["fit_json", "print_fit"]
 
@@ -53,7 +52,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
             row.append(f"{format_value(each, low)} to {format_value(each, high)}")
         table.add_row(*row)
     # Wider than a narrow terminal rather than cut: an end of an interval without its digits is none.
-    Console(file=console.file, width=max(TABLE, console.width)).print(table)
+    Console(file=console.file, width=max(TABLE_WIDTH, console.width)).print(table)
     if fit.held:
         tell(_held(fit))
     tell(_noise(fit))

@@ -36,8 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["print_curve", "print_solution"]
 
-LEAST_KNOWN = 1e-3
-"""Relative error with which numbers are printed that state none."""
+DEFAULT_PRINT_ERROR = 1e-3  # Relative error with which numbers are printed that state none.
 
 
 def print_solution(
@@ -79,7 +78,7 @@ def _solution_rows(
             yield "  on the cylinder", part(f.upper, f.error), "", ""
     lost = hysteresis_coefficient(solution, beta)
     if lost is not None:
-        yield "hysteresis friction, apart", digits(lost, LEAST_KNOWN), "", ""
+        yield "hysteresis friction, apart", digits(lost, DEFAULT_PRINT_ERROR), "", ""
     rows = solution.outputs.rows
     for row in (row for row in rows if row.error == "absolute"):
         yield row.label, part(getattr(solution, row.name), errors[row.name]), "", error_text(errors[row.name])

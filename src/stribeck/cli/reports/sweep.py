@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ProgressLines", "print_sweep", "progress_text", "sweep_json"]
 
-EVERY = 30.0
-"""Time between two lines of progress where there is no terminal, as in the log of a batch job [s]."""
+PROGRESS_INTERVAL = 30.0  # Time between two lines of progress without a terminal, as in the log of a batch job [s].
 
 
 class ProgressLines:
@@ -33,7 +32,7 @@ class ProgressLines:
     def __call__(self, progress: SweepProgress) -> None:
         """Write the line if it is time for it."""
         now = time.monotonic()
-        if self.stream is None or now - self.last < EVERY:
+        if self.stream is None or now - self.last < PROGRESS_INTERVAL:
             return
         self.last = now
         text = f"stribeck: {progress.done} of {progress.total} states, {progress_text(progress)}, {_time_left(progress)}"

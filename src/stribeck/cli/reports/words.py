@@ -28,11 +28,10 @@ if TYPE_CHECKING:
     from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
 
-HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
-"""Inputs that a designer can change; alpha and beta follow from the surface."""
+# Inputs that a designer can change; alpha and beta follow from the surface.
+DESIGN_INPUTS = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 
-WIDTH = 100
-"""Smallest width of a table, in columns."""
+MIN_TABLE_WIDTH = 100  # Smallest width of a table [columns].
 
 Sensitivities = dict[str, float]
 
@@ -51,7 +50,7 @@ def hersey_of(solution: BaseSolution, beta: float | None) -> float:
 
 def strongest(sensitivities: Sensitivities) -> str | None:
     """Return the input to which friction is most sensitive; None if there is none."""
-    found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(sensitivities[name])))
+    found = max(DESIGN_INPUTS, key=lambda name: abs(np.nan_to_num(sensitivities[name])))
     return found if abs(np.nan_to_num(sensitivities[found])) > 0 else None
 
 
@@ -186,4 +185,4 @@ def print_table(console: Console, table: Any) -> None:
     """Print a table; in a narrow terminal it is wide rather than cut."""
     from rich.console import Console as Wide
 
-    Wide(file=console.file, width=max(WIDTH, console.width)).print(table)
+    Wide(file=console.file, width=max(MIN_TABLE_WIDTH, console.width)).print(table)

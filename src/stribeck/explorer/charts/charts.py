@@ -19,10 +19,10 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.point.solution import Field
 
-__all__ = ["DEFINITIONS", "all_charts"]
+__all__ = ["DEFINITION_LABELS", "all_charts"]
 
-DEFINITIONS: dict[Definition, str] = {"balanced": "balanced", "published": "as published"}
-"""Words for the definitions of friction."""
+# Labels of the definitions of friction.
+DEFINITION_LABELS: dict[Definition, str] = {"balanced": "balanced", "published": "as published"}
 
 
 def all_charts(
@@ -59,7 +59,7 @@ def friction_chart(
     ends = ends[0] * scale, ends[1] * scale
     chosen = inputs.definition
     other: Definition = "balanced" if chosen == "published" else "published"
-    names = DEFINITIONS
+    names = DEFINITION_LABELS
     series: list[Options] = []
     heights: list[float] = []
     if curve is not None:
@@ -176,8 +176,8 @@ def plane_chart(plane: Field, answer: Answer, palette: Palette) -> Options:
     return made | {"scale": scale, "square": True, "margin": {"left": 50, "bottom": 84}}
 
 
+# Colours of the film of a ball, from thin to thick, as in pictures.
 FILM_COLOURS = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"]
-"""Of the film of a ball, from thin to thick, as in pictures."""
 
 
 def diagram_chart(answer: Answer, palette: Palette) -> Options:

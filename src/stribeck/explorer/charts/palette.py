@@ -54,5 +54,5 @@ DARK = Palette(
     pins=("#35c9a0", "#d6a54c", "#b491e0", "#9db4cc", "#ea8fbd", "#bdbdbd"),
 )
 
+# Dashes of pinned curves, so that they differ without colours too.
 PIN_DASHES = ([8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [12, 4], [3, 6])
-"""Dashes of pinned curves, so that they differ without colours too."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["figure_of", "picture"]
 
-POINTS, RTOL = 101, 1e-4
-"""Of the curve that is solved for a picture where the page reads it off the atlas."""
+CURVE_POINTS = 101  # Points of the curve that is solved for a picture where the page reads it off the atlas.
+CURVE_RTOL = 1e-4  # Relative tolerance of that curve.
 
 
 def picture(shown: View, what: str, kind: str, go_on: Callable[..., object] | None = None) -> bytes:
@@ -38,7 +38,12 @@ def figure_of(shown: View, what: str, go_on: Callable[..., object] | None = None
     found = None if curve is None or curve.stale else curve.solved
     if found is None:
         found = stribeck_curve(
-            inputs.contact, speed=shown.answer.speeds, points=POINTS, rtol=RTOL, definition=inputs.definition, on_point=go_on
+            inputs.contact,
+            speed=shown.answer.speeds,
+            points=CURVE_POINTS,
+            rtol=CURVE_RTOL,
+            definition=inputs.definition,
+            on_point=go_on,
         )
     band = None if curve is None or curve.stale else curve.band
     verdict = shown.answer.checks.headline

@@ -47,9 +47,8 @@ __all__ = [
 LAW_NAMES = {law: " and ".join(map(str.capitalize, law.split("-"))) for law in LAWS}
 
 LAW_TABLES = ("law", "surface", "table")
-MODEL = ("geometry", *LAW_TABLES, *KEYS)
-REST = ("curve", "fit", "check", "notes", "errors")
-"""Tables and keys of a case that make its model, and those that the page carries along."""
+MODEL_TABLES = ("geometry", *LAW_TABLES, *KEYS)  # Tables and keys of a case that make its model.
+CARRIED_TABLES = ("curve", "fit", "check", "notes", "errors")  # Tables of a case that the page only carries along.
 
 _NUMBERS = dict.fromkeys(INPUT_TABLES["line"].names, 1.0)
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -79,7 +78,7 @@ def tables_of(model: str) -> dict[str, Any]:
 
 def geometry_of(model: str) -> Any:
     """Return the geometry of a model, ``"line"`` or ``"point"``."""
-    return check_geometry(_object("model", model, MODEL).get("geometry", "line")) if model else "line"
+    return check_geometry(_object("model", model, MODEL_TABLES).get("geometry", "line")) if model else "line"
 
 
 def fluid_table(fluid: Fluid) -> dict[str, Any]:
@@ -96,7 +95,7 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
 def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
     """Return the contact of a model and of its numbers."""
     shape = shape_of(model)
-    tables = _object("model", model, MODEL) if model else {}
+    tables = _object("model", model, MODEL_TABLES) if model else {}
     geometry = check_geometry(tables.get("geometry", "line"))
     _, parts, problems = take_parts({name: tables[name] for name in KEYS if name in tables}, geometry)
     if problems:
@@ -108,7 +107,7 @@ def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
 
 def rest_of_case(case: Case) -> str:
     """Return as JSON what the page does not show of a case; empty if there is nothing."""
-    found = {key: case.tables[key] for key in REST if case.tables.get(key)}
+    found = {key: case.tables[key] for key in CARRIED_TABLES if case.tables.get(key)}
     known = preset_facts(case.tables)  # the page keeps the viscosity of a preset, not its name
     if known:
         found["check"] = {**known, **found.get("check", {})}
@@ -119,7 +118,7 @@ def shape_of(model: str) -> AsperityLaw | None:
     """Return the contact law of a model; the same object for the same law."""
     if not model:
         return None
-    tables = _object("model", model, MODEL)
+    tables = _object("model", model, MODEL_TABLES)
     return _shape(json_text({name: tables[name] for name in LAW_TABLES if name in tables}))
 
 
@@ -138,7 +137,7 @@ def check_rest(text: str) -> str:
     """Return what a page keeps for the saved case, in the form of :func:`rest_of_case`; refuse what no case can hold."""
     if not text:
         return ""
-    found = _object("rest", text, REST)
+    found = _object("rest", text, CARRIED_TABLES)
     errors = found.get("errors", {})
     if not isinstance(errors, dict) or not all(isinstance(each, float) and 0 < each <= 3 for each in errors.values()):
         raise InputError(f"rest holds errors = {show(errors)}, which are no relative errors of inputs.")
@@ -188,7 +187,7 @@ def model_changes(model: str, start: str) -> list[str]:
     """Return in words the parts in which a model differs from another."""
     one, two = tables_of(model), tables_of(start)
     found = []
-    for name in MODEL:
+    for name in MODEL_TABLES:
         if name not in ("surface", "table") and one.get(name) != two.get(name):
             value = one.get(name, "none")
             if isinstance(value, dict):

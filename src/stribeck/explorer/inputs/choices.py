@@ -32,13 +32,12 @@ from stribeck.solver.point.solve import check_model
 
 __all__ = ["CHOICES", "Choice", "choose", "state_of", "typed_detail"]
 
-Keys = tuple[tuple[str, ...], tuple[str, ...]]
-"""Keys that a choice needs, and those that it may have."""
+Keys = tuple[tuple[str, ...], tuple[str, ...]]  # Keys that a choice needs, and keys that it may have.
 
-NONE: Keys = ((), ())
+NO_KEYS: Keys = ((), ())
 
-RTOL = {geometry: rtol for geometry, (_, rtol) in DEFAULT_POINTS_AND_RTOL.items()}
-"""Tolerance of the states where the geometry is chosen on the page."""
+# Relative tolerance of the states where the geometry is chosen on the page.
+RTOL_BY_GEOMETRY = {geometry: rtol for geometry, (_, rtol) in DEFAULT_POINTS_AND_RTOL.items()}
 
 CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
 """What refuses models that the equations of a geometry do not have."""
@@ -57,7 +56,8 @@ TYPICAL: dict[str, Any] = {
 }
 """First value of a key that is needed."""
 
-WORDS = {
+# Labels of keys and names that differ from the key.
+LABELS = {
     "slide_to_roll": "slide-to-roll ratio",
     "poisson_ratio": "Poisson's ratio",
     "pressure": "cavity pressure, gauge",
@@ -84,7 +84,6 @@ WORDS = {
     "StandardLinearSolid": "viscoelastic, one time",
     "Prony": "viscoelastic, Prony series",
 }
-"""Words for keys and names that differ from these themselves."""
 
 IF_EMPTY = {
     "infinite_viscosity": "0",
@@ -98,11 +97,11 @@ IF_EMPTY = {
 }
 """What stands for an optional key that is not given."""
 
-LAYER: Keys = (("layer_thickness",), ("poisson_ratio",))
+LAYER_KEYS: Keys = (("layer_thickness",), ("poisson_ratio",))
 
 
 def _words(name: str) -> str:
-    return WORDS.get(name, name.replace("_", " ").replace("-", " "))
+    return LABELS.get(name, name.replace("_", " ").replace("-", " "))
 
 
 @dataclass(frozen=True)
@@ -128,21 +127,27 @@ LAW_OF_FLUID = (
 )
 """Name of a choice, its label, and its key in the table ``[fluid]``."""
 
-SURFACE: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+SURFACE_KEYS: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
 
 CHOICES = {
     each.name: each
     for each in (
-        Choice("geometry", "Geometry", "", "geometry", {"line": ("cylinder on flat", NONE), "point": ("ball on flat", NONE)}),
         Choice(
-            "law", "Contact law", "", "law", {law: (LAW_NAMES[law], SURFACE if law == "persson" else NONE) for law in LAWS}
+            "geometry", "Geometry", "", "geometry", {"line": ("cylinder on flat", NO_KEYS), "point": ("ball on flat", NO_KEYS)}
+        ),
+        Choice(
+            "law",
+            "Contact law",
+            "",
+            "law",
+            {law: (LAW_NAMES[law], SURFACE_KEYS if law == "persson" else NO_KEYS) for law in LAWS},
         ),
         Choice(
             "preset",
             "Fluid preset",
             "",
             "",
-            {"": ("choose ...", NONE)} | {k: (p.label.replace("degC", "°C"), NONE) for k, p in PRESETS.items()},
+            {"": ("choose ...", NO_KEYS)} | {k: (p.label.replace("degC", "°C"), NO_KEYS) for k, p in PRESETS.items()},
         ),
         *(
             Choice(
@@ -159,29 +164,29 @@ CHOICES = {
             "Cavitation",
             "cavitation",
             "model",
-            {str(each): (_words(each), ((), ("pressure",)) if each == "reform" else NONE) for each in Cavitation},
+            {str(each): (_words(each), ((), ("pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
         ),
         Choice(
             "motion",
             "Motion",
             "motion",
             "",
-            {"sliding": ("one surface at rest", NONE), "rolling": ("both surfaces move", (("slide_to_roll",), ()))},
+            {"sliding": ("one surface at rest", NO_KEYS), "rolling": ("both surfaces move", (("slide_to_roll",), ()))},
         ),
         Choice(
             "flow_factors",
             "Flow factors",
             "flow_factors",
             "model",
-            {name: (_words(name), NONE) for name in FLOW_FACTORS},
+            {name: (_words(name), NO_KEYS) for name in FLOW_FACTORS},
         ),
         Choice(
             "solid",
             "Soft body",
             "solid",
             "",
-            {"half-space": ("half-space", NONE), "layer": ("bonded layer", LAYER)}
-            | {each.__name__: (_words(each.__name__), (tuple(keys), sum(LAYER, ()))) for each, keys in MEMORIES},
+            {"half-space": ("half-space", NO_KEYS), "layer": ("bonded layer", LAYER_KEYS)}
+            | {each.__name__: (_words(each.__name__), (tuple(keys), sum(LAYER_KEYS, ()))) for each, keys in MEMORIES},
         ),
     )
 }
@@ -264,14 +269,14 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         for each in ("surface", "table"):
             tables.pop(each, None)
         if value == "persson":
-            tables["surface"] = {key: TYPICAL[key] for key in SURFACE[0]}
+            tables["surface"] = {key: TYPICAL[key] for key in SURFACE_KEYS[0]}
             return _of_surface(now, tables | {"law": value})
         return _with(now, {**tables, "law": value}, **_same_pressure(now, NAMED_LAWS[value]))
     if name == "geometry":
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         motion = tables.pop("motion", {})
         title = now.title if value == old else ""
-        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL[value], title=title)
+        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL_BY_GEOMETRY[value], title=title)
     table = dict(tables.get(where, {}))
     for key in (*choice.options[old][1][0], *choice.options[old][1][1]):
         table.pop(key, None)

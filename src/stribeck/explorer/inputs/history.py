@@ -6,8 +6,7 @@ from stribeck.explorer.inputs.inputs import Inputs
 
 __all__ = ["History"]
 
-MOST = 100
-"""Steps that are kept."""
+MAX_STEPS = 100  # Steps of undo that are kept.
 
 
 class History:
@@ -21,7 +20,7 @@ class History:
         """Take inputs that have come to rest; what was undone before is then gone, unless these are the same."""
         if now == self.states[self.place]:
             return
-        self.states = [*self.states[: self.place + 1], now][-MOST:]
+        self.states = [*self.states[: self.place + 1], now][-MAX_STEPS:]
         self.place = len(self.states) - 1
 
     def step(self, way: int, now: Inputs) -> Inputs | None:

@@ -63,8 +63,7 @@ class Field:
 
 
 FRICTION = "boundary_friction"
-LARGEST_FRICTION = 10.0
-"""Friction coefficient above which the value is probably in per cent."""
+MAX_FRICTION = 10.0  # Friction coefficient above which the value is probably in per cent.
 
 
 def _html(symbol: str) -> str:
@@ -74,8 +73,7 @@ def _html(symbol: str) -> str:
     return letter.replace("^*", "*") + (f"<sub>{index}</sub>" if index else "")
 
 
-MOST_CHANGED = ("speed", "load", "viscosity", "roughness")
-"""The inputs changed most often, shown first."""
+FIRST_FIELDS = ("speed", "load", "viscosity", "roughness")  # Inputs that are changed most often, shown first.
 
 
 def _field(row: Input) -> Field:
@@ -83,7 +81,7 @@ def _field(row: Input) -> Field:
 
 
 FIELDS: dict[str, dict[str, Field]] = {
-    geometry: {name: _field(table.quantities[name]) for name in dict.fromkeys((*MOST_CHANGED, *table.names))}
+    geometry: {name: _field(table.quantities[name]) for name in dict.fromkeys((*FIRST_FIELDS, *table.names))}
     for geometry, table in INPUT_TABLES.items()
 }
 """The inputs of each geometry, those changed most often first."""
@@ -98,8 +96,7 @@ GROUP_FIELDS = {
 NAMES = tuple(dict.fromkeys(name for fields in FIELDS.values() for name in fields))
 """The inputs of all geometries."""
 
-DIGITS = 3
-"""Digits to which a slider rounds, so that its value can be read and typed."""
+SLIDER_DIGITS = 3  # Digits to which a slider rounds, so that its value can be read and typed.
 
 
 @dataclass(frozen=True)
@@ -159,9 +156,9 @@ def with_model(inputs: Inputs, model: str, **numbers: float | None) -> Inputs:
 
 def check_friction(name: str, value: float) -> None:
     """Refuse a friction coefficient that looks like per cent."""
-    if value > LARGEST_FRICTION:
+    if value > MAX_FRICTION:
         raise InputError(
-            f"{name} = {value:g} is above {LARGEST_FRICTION:g}, the largest the explorer takes; "
+            f"{name} = {value:g} is above {MAX_FRICTION:g}, the largest the explorer takes; "
             f"write {value / 100:g} for {value:g} %."
         )
 
@@ -226,7 +223,7 @@ def slid(inputs: Inputs, name: str, place: float) -> Inputs:
     """Return the inputs after a slider was moved to ``place``, the logarithm to base ten of its value in SI units."""
     shown = inputs.shown_as(name)
     factor = _factor(inputs, name)
-    value = float(f"{min(max(10.0**place, shown.low), shown.high) / factor:.{DIGITS}g}")
+    value = float(f"{min(max(10.0**place, shown.low), shown.high) / factor:.{SLIDER_DIGITS}g}")
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, value)
     if shown.units:

@@ -17,10 +17,9 @@ from stribeck.solver.solve import check_rtol
 __all__ = ["Opened", "Pin", "check_length", "decode", "encode"]
 
 SEPARATOR = "~"
-LONGEST = 60_000
-"""Characters of an address that the server and all browsers take."""
+MAX_URL_LENGTH = 60_000  # Characters of an address that the server and all browsers take.
 
-MOST_PINS = 6
+MAX_PINS = 6  # Pinned contacts of a page.
 
 
 @dataclass(frozen=True)
@@ -61,12 +60,12 @@ def encode(inputs: Inputs, pins: Sequence[Pin] = ()) -> str:
 def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
     """Refuse what no address can hold."""
     length = len(encode(inputs, pins))
-    if length > LONGEST:
+    if length > MAX_URL_LENGTH:
         parts = {"the title": inputs.title, "the contact law": inputs.model, "notes and [fit]": inputs.rest}
         parts["the pinned curves"] = "".join(pin.model for pin in pins)
         most = max(parts, key=lambda name: len(parts[name]))
         raise InputError(
-            f"the address of this state would have {length} characters, but at most {LONGEST} are "
+            f"the address of this state would have {length} characters, but at most {MAX_URL_LENGTH} are "
             f"possible; most come from {most}. "
             "Shorten them: a contact law or spectrum needs some hundred rows at most."
         )
@@ -106,7 +105,7 @@ def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
         inputs = with_model(inputs, model, **numbers) if numbers or model != inputs.model else inputs
     except InputError as problem:
         problems["state" if model == start.model else "model"] = (model, str(problem))
-    return Opened(inputs, tuple(pins[:MOST_PINS]), problems)
+    return Opened(inputs, tuple(pins[:MAX_PINS]), problems)
 
 
 def _changed(inputs: Inputs, key: str, text: str) -> Inputs:

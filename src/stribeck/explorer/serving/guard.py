@@ -14,17 +14,16 @@ from urllib.parse import parse_qsl, urlencode
 
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST_REQUEST", "NAMES", "Guard", "check_host"]
+__all__ = ["MAX_REQUEST_BYTES", "LOCAL_HOSTS", "Guard", "check_host"]
 
 Scope = MutableMapping[str, Any]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 
-NAMES = ("127.0.0.1", "localhost", "[::1]")
-"""Names of this machine in the header Host; another name that points here belongs to somebody else's page."""
+# Names of this machine in the header Host; another name that points here belongs to somebody else's page.
+LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
 
-LARGEST_REQUEST = 5_000_000
-"""Bytes of a request: the largest file that is read."""
+MAX_REQUEST_BYTES = 5_000_000  # Bytes of a request: the largest file that is read.
 
 POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
@@ -93,7 +92,7 @@ class Guard:
     def refusal(self, headers: dict[str, list[str]]) -> tuple[int, str] | None:
         """Return why a request does not come from this machine, or None."""
         hosts = headers.get("host", [])
-        if len(hosts) != 1 or _name(hosts[0]) not in NAMES:
+        if len(hosts) != 1 or _name(hosts[0]) not in LOCAL_HOSTS:
             return 400, "The explorer answers only to 127.0.0.1 and localhost.\n"
         if any(origin != f"http://{hosts[0]}" for origin in headers.get("origin", [])):
             return 403, "The explorer answers only to its own page.\n"
@@ -125,7 +124,7 @@ class Guard:
             message = await receive()
             if message["type"] == "http.request":
                 size += len(message.get("body", b""))
-                if size > LARGEST_REQUEST:
+                if size > MAX_REQUEST_BYTES:
                     raise TooLarge
             return message
 
@@ -140,7 +139,7 @@ class Guard:
             await self.app(scope, counted, protected)
         except TooLarge:
             if not begun:
-                await _answer(scope, send, *TOO_LARGE)
+                await _answer(scope, send, *TOO_LARGE_RESPONSE)
 
     def _is_token(self, text: str) -> bool:
         return hmac.compare_digest(text.encode("utf-8", "replace"), self.token.encode())
@@ -151,12 +150,12 @@ class Guard:
         return [(b"location", f"/{'?' if rest else ''}{rest}".encode()), (b"set-cookie", cookie.encode())]
 
 
-TOO_LARGE = (413, f"A file may have at most {LARGEST_REQUEST // 1_000_000} MB.\n")
+TOO_LARGE_RESPONSE = (413, f"A file may have at most {MAX_REQUEST_BYTES // 1_000_000} MB.\n")
 
 
 def _too_large(headers: dict[str, list[str]]) -> tuple[int, str] | None:
     sizes = headers.get("content-length", [])
-    return TOO_LARGE if any(not size.isdecimal() or int(size[:20]) > LARGEST_REQUEST for size in sizes) else None
+    return TOO_LARGE_RESPONSE if any(not size.isdecimal() or int(size[:20]) > MAX_REQUEST_BYTES for size in sizes) else None
 
 
 def _name(host: str) -> str:

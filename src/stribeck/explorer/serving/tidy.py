@@ -13,8 +13,7 @@ import threading
 
 __all__ = ["set_aside", "tidy_soon"]
 
-DELAY = 5.0
-"""Seconds within which pages that close are tidied together."""
+TIDY_DELAY_SECONDS = 5.0  # Time within which pages that close are tidied together [s].
 
 _waiting = threading.Lock()
 
@@ -28,7 +27,7 @@ def set_aside() -> None:
 def tidy_soon() -> None:
     """Collect closed pages a little later, once for all that close until then."""
     if _waiting.acquire(blocking=False):
-        timer = threading.Timer(DELAY, _tidy)
+        timer = threading.Timer(TIDY_DELAY_SECONDS, _tidy)
         timer.daemon = True
         timer.start()
 
