@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from evidence.coefficients import JUDGED, RATIOS, largest_errors
+from evidence.coefficients import COEFFICIENT_RATIOS, JUDGED_FORMULAS, largest_errors
 from evidence.error_maps import error_map, error_maps, kind_of
 from evidence.plot import plot_error_maps
 from stribeck.asymptotics import FORMULAS, Formula, Limit
-from stribeck.asymptotics.formula import COEFFICIENTS
+from stribeck.asymptotics.formula import COEFFICIENT_RATIO
 from stribeck.asymptotics.rough import load_sharing, transitions
 from stribeck.numerics.threads import one_blas_thread
 
@@ -151,13 +151,13 @@ def share_table(maps: list[tuple[Formula[Any], xarray.Dataset]]) -> str:
 def ratio_table() -> str:
     """Return the largest errors of the laws of friction and of its minimum for several beta/mu0; in range bold."""
     rows = []
-    for name, (formula, _) in JUDGED.items():
-        [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
+    for name, (formula, _) in JUDGED_FORMULAS.items():
+        [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
         cells = []
-        for ratio, error in zip(RATIOS, largest_errors(name, points=RATIO_POINTS)[0], strict=True):
+        for ratio, error in zip(COEFFICIENT_RATIOS, largest_errors(name, points=RATIO_POINTS)[0], strict=True):
             cells.append(f"**{percent(error)}**" if limit.low <= ratio <= limit.high else percent(error))
         rows.append([f"`{name.partition(',')[0]}`{name.partition(',')[1]}{name.partition(',')[2]}", *cells])
-    return table(["Largest error at beta/mu0 =", *map(short, RATIOS)], rows)
+    return table(["Largest error at beta/mu0 =", *map(short, COEFFICIENT_RATIOS)], rows)
 
 
 def blocks_of(text: str) -> dict[str, str]:

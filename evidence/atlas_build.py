@@ -38,8 +38,7 @@ from stribeck.atlas.grid import (
 from stribeck.atlas.table import COEFFICIENT_UNIT, pack, solver_hash
 from stribeck.atlas.tables import TABLES, TableRow
 
-NEGLIGIBLE = 2e-8
-"""Size of coefficients below which a polynomial is left out."""
+MIN_COEFFICIENT = 2e-8  # Size of coefficients below which a polynomial is left out.
 
 ROWS = {row.name: row for row in TABLES}
 
@@ -104,7 +103,7 @@ def piece_blocks(where: Region, lines: Sequence[Array]) -> list[Array]:
         part = values[:, :, first : first + count]
         T = to_coefficients(count) if count else np.empty((0, 0))
         dense = np.einsum("ai,bj,ct,ijtf->cabf", K, Y, T, part, optimize=True)
-        found.append(np.where(np.abs(dense) > NEGLIGIBLE, dense, 0.0))
+        found.append(np.where(np.abs(dense) > MIN_COEFFICIENT, dense, 0.0))
         first += count
     assert len(found) == SEGMENTS
     return found

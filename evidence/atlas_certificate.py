@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from evidence.atlas_states import FROM, groups_of
+from evidence.atlas_states import TABLED_OBSERVABLES, groups_of
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TABLES, Box, TableRow
@@ -27,31 +27,26 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.solver.solve import solve
 
-RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5, "ball-persson": 1e-5, "ball-exit": 1e-4}
-"""Tolerance of the reference states, as far as double precision and time allow; 1e-6 for other tables."""
+# Tolerance of the reference states, as far as double precision and time allow; 1e-6 for other tables.
+REFERENCE_RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5, "ball-persson": 1e-5, "ball-exit": 1e-4}
 
-MIN_SHARE = 1e-9
-"""Contact share above which its relative error counts; a smaller part of the load affects nothing else."""
+MIN_CONTACT_SHARE = 1e-9  # Contact share above which its relative error counts; a smaller part of the load affects nothing.
 
-MIN_FLUID = 1e-3
-"""Fluid share above which the solver, which bounds its absolute error, is a reference."""
+MIN_FLUID_SHARE = 1e-3  # Fluid share above which the solver, which bounds its absolute error, is a reference.
 
-OFFSET_FLOOR = 1.0
-"""The offset crosses zero: below this its error is absolute."""
+OFFSET_FLOOR = 1.0  # Offset below which its error is absolute, as the offset crosses zero.
 
-SHARED = 0.01
-"""Smallest of the two load shares of states in mixed lubrication, which are judged apart as well."""
+MIN_MIXED_SHARE = 0.01  # Smaller load share of states in mixed lubrication, which are judged apart as well.
 
-TRIES = 20
-"""States drawn for each in mixed lubrication; about one in nine is."""
+DRAWS_PER_MIXED_STATE = 20  # States drawn for each one in mixed lubrication; about one in nine is.
 
+# Coefficients of the contact law, of whole balls such that a/R is below 0.3, at friction coefficient 1 of the dry contact; 1
+# and 0.01 for cylinders.  The viscous friction itself is judged at the first.
 BETAS: dict[str, tuple[float, float]] = {
     "ball-exponential": (0.1, 0.01),
     "ball-persson": (0.02, 0.002),
     "ball-exit": (0.1, 0.01),
 }
-"""Coefficients of the contact law, of whole balls such that a/R is below 0.3, at friction coefficient 1 of the dry contact;
-1 and 0.01 for cylinders. The viscous friction itself is judged at the first."""
 
 
 def betas(row: TableRow) -> tuple[float, float]:
@@ -72,8 +67,7 @@ def quantities(row: TableRow) -> tuple[str, ...]:
     return (*frictions, *viscous, *films_of(row), "offset", "contact load share", "fluid load share")
 
 
-FRICTIONS = 4
-"""How many frictions are judged first."""
+FRICTION_COUNT = 4  # Number of frictions that are judged first.
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +89,7 @@ class Certificate:
     @property
     def friction(self) -> Array:
         """Largest error of all frictions on each state."""
-        return np.asarray(self.errors[:, :FRICTIONS].max(axis=1))
+        return np.asarray(self.errors[:, :FRICTION_COUNT].max(axis=1))
 
     @property
     def film(self) -> Array:
@@ -106,14 +100,14 @@ class Certificate:
 def random_states(row: TableRow, states: int, seed: int, mixed: bool = False) -> tuple[Array, Array, Array]:
     """Return speeds, loads and relative roughnesses, evenly distributed in their logarithms over the box of a table.
 
-    Where ``mixed``, only states on which by the table fluid and asperities both carry at least :data:`SHARED`.
+    Where ``mixed``, only states on which by the table fluid and asperities both carry at least :data:`MIN_MIXED_SHARE`.
     """
     rng = np.random.default_rng(seed)
-    drawn = TRIES * states if mixed else states
+    drawn = DRAWS_PER_MIXED_STATE * states if mixed else states
     speed, load, kappa = (np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), drawn)) for ends in row.box.values())
     if mixed:
         share = np.asarray(atlas.contact_load_share(states_of(row, speed, load, kappa)))
-        kept = np.nonzero((share > SHARED) & (share < 1 - SHARED))[0][:states]
+        kept = np.nonzero((share > MIN_MIXED_SHARE) & (share < 1 - MIN_MIXED_SHARE))[0][:states]
         speed, load, kappa = speed[kept], load[kept], kappa[kept]
     return speed, load, kappa
 
@@ -127,8 +121,8 @@ def states_of(row: TableRow, speed: Array, load: Array, kappa: Array) -> Groups:
 def solved(name: str, state: tuple[float, float, float]) -> Array:
     """Return the observables in tables at a speed, load and relative roughness, solved from cold."""
     row = next(row for row in TABLES if row.name == name)
-    found = solve(groups_of(row, *state), rtol=RTOL.get(name, 1e-6), on_failure="return").observables
-    return np.array([getattr(found, observable) for observable in FROM[row.geometry]])
+    found = solve(groups_of(row, *state), rtol=REFERENCE_RTOL.get(name, 1e-6), on_failure="return").observables
+    return np.array([getattr(found, observable) for observable in TABLED_OBSERVABLES[row.geometry]])
 
 
 def certify(states: int, seed: int, workers: int = 1, mixed: bool = False, row: TableRow = TABLES[0]) -> Certificate:
@@ -155,7 +149,7 @@ def _reported(results: Iterable[Array], count: int) -> Array:
 def compare(speed: Array, load: Array, kappa: Array, observed: Array, row: TableRow = TABLES[0]) -> Certificate:
     """Return the errors of a table on solved states."""
     groups, rule = states_of(row, speed, load, kappa), RULES[row.geometry]
-    solved_values = dict(zip(FROM[row.geometry], observed.T, strict=True))
+    solved_values = dict(zip(TABLED_OBSERVABLES[row.geometry], observed.T, strict=True))
     contact, fluid, offset = (solved_values[name] for name in ("contact_load_share", "fluid_load_share", "offset"))
 
     usual, film = rule.of_contact(None), far_film(row.model)
@@ -173,8 +167,8 @@ def compare(speed: Array, load: Array, kappa: Array, observed: Array, row: Table
     found += [viscous / right for _, viscous, right in all_terms[: len(kinds)]]
     found += [np.asarray(getattr(atlas, name)(groups)) / solved_values[name] for name in films_of(row)]
     found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
-    contact_counts = np.where(contact > MIN_SHARE, contact, np.nan)
-    fluid_counts = np.where(fluid > MIN_FLUID, fluid, np.nan)
+    contact_counts = np.where(contact > MIN_CONTACT_SHARE, contact, np.nan)
+    fluid_counts = np.where(fluid > MIN_FLUID_SHARE, fluid, np.nan)
     found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
     return Certificate(row, speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
 
@@ -229,7 +223,7 @@ def main() -> None:
     certificate = certify(arguments.states, arguments.seed, arguments.workers, row=rows[arguments.name])
     print(f"{arguments.states} states\n\n{table(certificate)}", flush=True)
     mixed = certify(arguments.states, arguments.seed + 1, arguments.workers, True, rows[arguments.name])
-    print(f"\n{arguments.states} states, both load shares above {SHARED:.0%}\n\n{table(mixed)}")
+    print(f"\n{arguments.states} states, both load shares above {MIN_MIXED_SHARE:.0%}\n\n{table(mixed)}")
     if arguments.map is not None:
         draw(certificate, arguments.map)
 

@@ -22,21 +22,18 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.solver.solve import SolveError, solve
 
-GAPS = (0.5, 2.0, 6.5)
-"""Central gaps over the relative roughness at the ends of segments that begin at the smallest speed, where asperities may
-carry any share already. The last ends with their share, like the others."""
+# Central gaps over the relative roughness at the ends of segments that begin at the smallest speed, where asperities may carry
+# any share already; the last ends with their share, as elsewhere.
+SEGMENT_GAPS = (0.5, 2.0, 6.5)
 
-FAINT = 1e-6
-"""Contact share below which films that end are solved from cold."""
+COLD_START_SHARE = 1e-6  # Contact share below which films that end are solved from cold.
 
-LOST = 1e-4
-"""Share of the fluid over the tolerance below which it is rounding; its law for slow speeds is taken instead."""
+# Share of the fluid over the tolerance below which it is rounding; its law for slow speeds is taken instead.
+ROUNDING_SHARE = 1e-4
 
-NOTHING = 1e-20
-"""Contact share below all segments."""
+MIN_CONTACT_SHARE = 1e-20  # Contact share below all segments.
 
-SEPARATIONS = np.geomspace(1e-4, 60.0, 600)
-"""Separations at which the law of a table is kept."""
+LAW_SEPARATIONS = np.geomspace(1e-4, 60.0, 600)  # Separations at which the law of a table is kept.
 
 
 @dataclass(frozen=True)
@@ -51,6 +48,7 @@ class Plan:
     films: tuple[int, int] = (8, 20)  # Pieces of the smooth films, and nodes of a piece
 
 
+# Plans of the tables by their names.
 PLANS = {
     "line-exponential": Plan(),
     "line-persson": Plan(1e-5, 1e-3, 1e-6, (5, 4), 0.5, (4, 16)),
@@ -59,7 +57,6 @@ PLANS = {
     "ball-persson": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
     "ball-exit": Plan(1e-4, 1e-3, 1e-4, (5, 4), 0.7, (5, 10)),
 }
-"""The tables by their names."""
 
 
 @lru_cache(maxsize=1)
@@ -70,7 +67,7 @@ def reference_law() -> AsperityLaw:
 
 def law_of(row: TableRow) -> Array | None:
     """Return separations and logarithms of the pressures of the law of a table; None for the exponential one."""
-    return None if row.law == "exponential" else np.stack([SEPARATIONS, reference_law().log_pressure(SEPARATIONS)])
+    return None if row.law == "exponential" else np.stack([LAW_SEPARATIONS, reference_law().log_pressure(LAW_SEPARATIONS)])
 
 
 def groups_of(row: TableRow, speed: float, load: float, kappa: float) -> Groups:
@@ -108,20 +105,20 @@ def _refine_faint(row: TableRow, found: list[Any], log_speeds: Array, load: floa
     Along a curve of films that end the error of their share is bounded against the whole load, not against the share.
     """
     for i, s in enumerate(log_speeds.tolist()):
-        if found[i].contact_load_share < FAINT:
+        if found[i].contact_load_share < COLD_START_SHARE:
             groups = groups_of(row, math.exp(s), load, kappa)
             found[i] = _at_least(partial(solve, groups), rtol).observables
-            if found[i].contact_load_share < NOTHING:
+            if found[i].contact_load_share < MIN_CONTACT_SHARE:
                 return
 
 
 def tabulated(row: TableRow, observed: list[Any], log_speeds: Array, load: float) -> Array:
     """Return the functions of a table on solved states, shape (states, functions)."""
-    names = FROM[row.geometry]
+    names = TABLED_OBSERVABLES[row.geometry]
     values = dict(zip(names, np.array([[getattr(o, name) for name in names] for o in observed]).T, strict=True))
     with np.errstate(divide="ignore"):
         odds = np.log(values["fluid_load_share"]) - np.log(values["contact_load_share"])
-    slow = values["fluid_load_share"] < LOST * PLANS[row.name].rtol
+    slow = values["fluid_load_share"] < ROUNDING_SHARE * PLANS[row.name].rtol
     if slow.any() and not slow.all():
         first = int(np.argmin(slow))
         odds[:first] = odds[first] + row.grid.power * (log_speeds[:first] - log_speeds[first])
@@ -141,11 +138,11 @@ def tabulated(row: TableRow, observed: list[Any], log_speeds: Array, load: float
 
 
 _SHARED = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "offset")
-FROM = {
+# Observables that tables are made from, by geometry.
+TABLED_OBSERVABLES = {
     "line": (*_SHARED, "flux_gap", "viscous_published", "viscous_balanced"),
     "point": (*_SHARED, "J_couette", "J_poiseuille", "J_pcx"),
 }
-"""Observables that tables are made from, by geometry."""
 
 
 # --- where segments end ---
@@ -189,7 +186,7 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
     there[there] &= np.append(True, odds[there][1:] > np.maximum.accumulate(odds[there])[:-1])  # the rest is rounding
     s, odds, central = log_speeds[there], odds[there], central[there]
     if not has_rest and row.law != "exponential":
-        ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(GAPS)))
+        ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(SEGMENT_GAPS)))
         last = PchipInterpolator(odds, s)(SEGMENT_SHARES[-1])
         return np.array([math.log(row.box["speed"][0]), *ends.tolist(), float(last)])
     first = math.log(MIN_SPEED)

@@ -18,17 +18,15 @@ from stribeck.contacts.line import Groups
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointObservables, PointState
 
-RTOL = 1e-5
-"""Relative tolerance of the reference states."""
+REFERENCE_RTOL = 1e-5  # Relative tolerance of the reference states.
 
-SMALL_SHARE = 1e-5
-"""Share of the fluid below which the solver is no reference: the errors of shares are absolute."""
+MIN_FLUID_SHARE = 1e-5  # Share of the fluid below which the solver is no reference: the errors of shares are absolute.
 
 
 @lru_cache(maxsize=1024)
 def state(groups: Groups) -> PointState:
     """Return the state of the ball, solved from cold."""
-    return _sound(solve_cold(groups, RTOL))
+    return _sound(solve_cold(groups, REFERENCE_RTOL))
 
 
 def row(states: list[Groups]) -> list[PointState | None]:
@@ -42,7 +40,7 @@ def row(states: list[Groups]) -> list[PointState | None]:
     for groups in states:
         try:
             begun = before if groups.roughness else None
-            before = state(groups) if begun is None else _sound(solve_from(begun, groups, RTOL))
+            before = state(groups) if begun is None else _sound(solve_from(begun, groups, REFERENCE_RTOL))
             found.append(before)
         except RuntimeError:
             found.append(None)
@@ -57,7 +55,7 @@ def _sound(found: PointState) -> PointState:
 
 def _fluid_share(found: PointState, _: dict[str, Any]) -> float:
     share = found.values["fluid_load_share"]
-    return share if share >= SMALL_SHARE or found.groups.speed == 0 else math.nan
+    return share if share >= MIN_FLUID_SHARE or found.groups.speed == 0 else math.nan
 
 
 def _viscous(found: PointState, options: dict[str, Any]) -> float:
@@ -70,6 +68,7 @@ def _friction(found: PointState, options: dict[str, Any]) -> float:
     return float(options.get("boundary_friction", 1.0) * found.values["contact_load_share"] + _viscous(found, options))
 
 
+# Quantities of one state of the ball, with the options of the formula.
 OBSERVED: dict[str, Callable[[PointState, dict[str, Any]], float]] = {
     **{
         name: lambda found, _, name=name: found.values[name]  # type: ignore[misc]
@@ -79,7 +78,6 @@ OBSERVED: dict[str, Callable[[PointState, dict[str, Any]], float]] = {
     "viscous_friction": _viscous,
     "friction": _friction,
 }
-"""Quantities of one state of the ball, with the options of the formula."""
 
 
 def along_the_middle(found: PointState, field: str, x: Array) -> Array:

@@ -17,22 +17,20 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.asymptotics.formula import COEFFICIENTS, Formula
+from stribeck.asymptotics.formula import COEFFICIENT_RATIO, Formula
 from stribeck.asymptotics.rough import boundary, mixed, transitions, uniform
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
 
-__all__ = ["JUDGED", "RATIOS", "largest_errors"]
+__all__ = ["JUDGED_FORMULAS", "COEFFICIENT_RATIOS", "largest_errors"]
 
-RATIOS = (1e-4, 1e-3, 1e-2, 0.1, 1.0, 3.0, 10.0)
-"""beta/mu0 for which the errors are tabulated."""
+COEFFICIENT_RATIOS = (1e-4, 1e-3, 1e-2, 0.1, 1.0, 3.0, 10.0)  # beta/mu0 for which the errors are tabulated.
 
+# Film ratios c lambda**(3/5)/kappa over which the minimum is sought: it lies between 1.9 and 31 for all ratios.
 FILM_RATIOS = np.geomspace(0.5, 80.0, 300)
-"""Film ratios c lambda**(3/5)/kappa over which the minimum is searched: it lies between 1.9 and 31 for all of RATIOS."""
 
-ZOOMS = 3
-ZOOM_POINTS = 21
-"""Number of refinements around a minimum, and of points in each."""
+ZOOMS = 3  # Refinements around a minimum.
+ZOOM_POINTS = 21  # Points of each refinement.
 
 
 def _axes(formula: Formula[Any], points: tuple[int, int]) -> tuple[Array, Array]:
@@ -51,7 +49,9 @@ def _of_states(formula: Formula[Any], points: tuple[int, int], **options: Any) -
     speed = np.geomspace(1e-12, 1e4, 10 * points[0])
     load, kappa, speed = (axis.ravel() for axis in np.meshgrid(load, kappa, speed, indexing="ij"))
     groups = Groups(speed, load, kappa * load)
-    inside = np.logical_and.reduce([limit.holds(groups, 1.0) for limit in formula.limits if limit.parameter != COEFFICIENTS])
+    inside = np.logical_and.reduce(
+        [limit.holds(groups, 1.0) for limit in formula.limits if limit.parameter != COEFFICIENT_RATIO]
+    )
     groups = Groups(speed[inside], load[inside], (kappa * load)[inside])
     definition: Definition = next(iter(options.values()), "published")
     share, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, definition)
@@ -96,7 +96,8 @@ def _of_minimum(formula: Formula[Any], points: tuple[int, int]) -> Callable[[flo
     return errors
 
 
-JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
+# Formulas with both coefficients, with their options, by their names in the table.
+JUDGED_FORMULAS: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
     "uniform.friction, published": (uniform.friction, {"definition": "published"}),
     "uniform.friction, balanced": (uniform.friction, {"definition": "balanced"}),
     "mixed.friction": (mixed.friction, {}),
@@ -105,14 +106,13 @@ JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
     "friction_at_minimum": (transitions.friction_at_minimum, {}),
     "separation_at_minimum": (transitions.separation_at_minimum, {}),
 }
-"""Formulas with both coefficients, with their options, by their names in the table."""
 
 
 def largest_errors(
-    name: str, ratios: tuple[float, ...] = RATIOS, points: tuple[int, int] = (16, 13)
+    name: str, ratios: tuple[float, ...] = COEFFICIENT_RATIOS, points: tuple[int, int] = (16, 13)
 ) -> tuple[list[float], list[float]]:
     """Return the largest and the median error of a formula at each beta/mu0, over its range in the groups."""
-    formula, options = JUDGED[name]
+    formula, options = JUDGED_FORMULAS[name]
     located = formula.predicts.endswith("_at_minimum")
     errors = _of_minimum(formula, points) if located else _of_states(formula, points, **options)
     with np.errstate(all="ignore"):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from evidence import ball
-from evidence.formulas import FIELDS, LOCATED, MEASURED, OF_STATE, RTOL, field_error, state_of
+from evidence.formulas import CURVE_QUANTITIES, FIELDS, MEASURED, REFERENCE_RTOL, STATE_QUANTITIES, field_error, state_of
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
@@ -32,10 +32,11 @@ if TYPE_CHECKING:
 
 __all__ = ["AXES", "error_map", "error_maps", "kind_of"]
 
-SMALL_SHARE = 1e-3
-"""Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and
-on a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
+# Load share of the fluid below which a state is not taken from a row: the errors of shares are absolute, and on a mesh made
+# for faster states so small a share can be off by 1e-3 of itself.
+MIN_FLUID_SHARE = 1e-3
 
+# Groups on which the error depends for each kind of formula, and their grid: loads, or decades and points per decade.
 AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "smooth": {"speed": (-11, 8, 4)},
     "rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-6, 3, 3)},
@@ -45,21 +46,19 @@ AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "ball at rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 2, 2)},
     "any ball": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-3, -1, 1), "speed": (-8, 1, 1)},
 }
-"""The groups on which the error depends for each kind of formula, and their grid: loads, or decades and points per decade."""
 
 LABELS = {"load": "load group", "relative_roughness": "relative roughness h_rms/F_N", "speed": "speed group"}
 
-ROUNDING = 1e-12
+MIN_ERROR = 1e-12  # Relative error below which an error is rounding.
 
-SMOOTH_LOAD = 0.1
-"""Load at which smooth contacts are solved; their relative errors do not depend on it."""
+SMOOTH_LOAD = 0.1  # Load at which smooth contacts are solved; their relative errors do not depend on it.
 
 
 def kind_of(formula: Formula[Any]) -> str:
     """Return the kind of a formula, by the groups on which its error depends, as a key of :data:`AXES`."""
     if formula.geometry == "point":
         return {"smooth": "smooth ball", "rest": "ball at rest", "mixed": "any ball"}[formula.plane]
-    return "located" if formula.predicts in LOCATED else formula.plane
+    return "located" if formula.predicts in CURVE_QUANTITIES else formula.plane
 
 
 def error_map(
@@ -133,8 +132,8 @@ def _maps(
     for i, load in enumerate(loads.tolist()):
         for j, kappa in enumerate(kappas.tolist()):
             base = Groups(1.0, load, kappa * load**exponent, geometry=geometry)
-            for name in wanted & set(LOCATED):
-                right[name][i, j, 0] = LOCATED[name](base, options)
+            for name in wanted & set(CURVE_QUANTITIES):
+                right[name][i, j, 0] = CURVE_QUANTITIES[name](base, options)
             for k, on_ball in _ball_row(base, speeds) if geometry == "point" else ():
                 estimate = max(estimate, on_ball.error_estimate)
                 for name in wanted:
@@ -143,11 +142,11 @@ def _maps(
                     groups = replace(base, speed=float(speeds[k]))
                     errors[formula.name][i, j, k] = field_error(formula, groups, on_ball, options)
             for k, found_in_row in _row(base, speeds) if kind != "located" and geometry == "line" else ():
-                small = "fluid_load_share" in wanted and 0 < found_in_row.fluid_load_share < SMALL_SHARE
+                small = "fluid_load_share" in wanted and 0 < found_in_row.fluid_load_share < MIN_FLUID_SHARE
                 state = state_of(found_in_row.groups) if small else found_in_row
                 estimate = max(estimate, state.error_estimate)
                 for name in wanted:
-                    right[name][i, j, k] = OF_STATE[name](state, options)
+                    right[name][i, j, k] = STATE_QUANTITIES[name](state, options)
                 for formula in fields:
                     groups = replace(base, speed=float(speeds[k]))
                     errors[formula.name][i, j, k] = field_error(formula, groups, state, options)
@@ -165,7 +164,7 @@ def _maps(
 
 def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Flags:
     """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
-    steps = 1 - ROUNDING, 1 + ROUNDING
+    steps = 1 - MIN_ERROR, 1 + MIN_ERROR
     near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
     given = {name: options[name] for name in ("boundary_friction", "beta") if name in options}
     return np.asarray(np.logical_or.reduce([formula.valid(state, **given) for state in near]))
@@ -179,7 +178,7 @@ def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
     found = [(k, state_of(replace(base, speed=float(speeds[k])))) for k in alone]
     if len(moving) > 2:
         try:
-            curve = stribeck_curve(load=base.load, roughness=base.roughness, speed=speeds[moving], rtol=RTOL)
+            curve = stribeck_curve(load=base.load, roughness=base.roughness, speed=speeds[moving], rtol=REFERENCE_RTOL)
         except SolveError:
             return found
         places = dict(zip(speeds.tolist(), range(len(speeds)), strict=True))
@@ -219,7 +218,7 @@ def _dataset(
             "reference": formula.source,
             "range": formula.range,
             "worst_stated": formula.worst,
-            "rtol": RTOL,
+            "rtol": REFERENCE_RTOL,
             "error_estimate": estimate,
             "source": f"stribeck {version('stribeck')}",
         },

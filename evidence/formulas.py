@@ -29,25 +29,22 @@ from stribeck.solver.solve import solve
 if TYPE_CHECKING:
     pass
 
-__all__ = ["FIELDS", "MEASURED", "RTOL", "judged_groups", "relative_error"]
+__all__ = ["FIELDS", "MEASURED", "REFERENCE_RTOL", "judged_groups", "relative_error"]
 
+# Fields along the contact: predicted by formulas of the groups and of positions x.
 FIELDS = ("gap", "pressure", "contact_pressure", "fluid_pressure")
-"""Fields along the contact: predicted by formulas of the groups and of positions x."""
 
-POSITIONS = 201
-"""Positions in its interval at which a field is judged."""
+POSITION_COUNT = 201  # Positions in its interval at which a field is judged.
 
-RTOL = 1e-7
-"""Relative tolerance of the reference states."""
+REFERENCE_RTOL = 1e-7  # Relative tolerance of the reference states.
 
 
-CURVE_POINTS = 41
-"""Points of the curve on which a minimum or a load share is searched, which is then located exactly."""
+CURVE_POINTS = 41  # Points of the curve on which a minimum or a load share is searched, which is then located exactly.
 
 
 @lru_cache(maxsize=4096)
 def state_of(groups: Groups) -> Solution:
-    found: Solution = solve(groups, rtol=RTOL)
+    found: Solution = solve(groups, rtol=REFERENCE_RTOL)
     return found
 
 
@@ -55,7 +52,7 @@ def state_of(groups: Groups) -> Solution:
 def _curve(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> StribeckCurve:
     coefficients: dict[str, Any] = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
     curve: StribeckCurve = stribeck_curve(
-        load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients
+        load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=REFERENCE_RTOL, **coefficients
     )
     return curve
 
@@ -80,7 +77,8 @@ def _of_landmark(mark: Landmark | None, value: Callable[[Landmark], float]) -> f
     return math.nan if mark is None else value(mark)
 
 
-OF_STATE: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
+# Quantities of one state, with the options of the formula.
+STATE_QUANTITIES: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
     "central_gap": lambda s, _: s.central_gap,
     "flux_gap": lambda s, _: s.flux_gap,
     "minimum_gap": lambda s, _: s.minimum_gap,
@@ -90,9 +88,9 @@ OF_STATE: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
     "viscous_friction": lambda s, options: s.friction(**_coefficients(options)).viscous,
     "friction": lambda s, options: s.friction(**_coefficients(options)).total,
 }
-"""Quantities of one state, with the options of the formula."""
 
-LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
+# Quantities located on a curve over the speed; the speed of the groups has no effect.
+CURVE_QUANTITIES: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
     "speed_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.value),
     "friction_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.friction),
     "separation_at_minimum": lambda g, options: _of_landmark(
@@ -101,17 +99,20 @@ LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
     "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.BOUNDARY_END), lambda mark: mark.value),
     "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.EQUAL_SHARES), lambda mark: mark.value),
 }
-"""Quantities located on a curve over the speed; the speed of the groups has no effect."""
 
 
 def _measured(name: str, groups: Groups, **options: Any) -> float:
     if groups.geometry == "point":
         return ball.OBSERVED[name](ball.state(groups), options)
-    return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](state_of(groups), options)
+    return (
+        CURVE_QUANTITIES[name](groups, options)
+        if name in CURVE_QUANTITIES
+        else STATE_QUANTITIES[name](state_of(groups), options)
+    )
 
 
 MEASURED: dict[str, Callable[..., float]] = {
-    name: partial(_measured, name) for name in dict.fromkeys((*OF_STATE, *LOCATED, *ball.OBSERVED))
+    name: partial(_measured, name) for name in dict.fromkeys((*STATE_QUANTITIES, *CURVE_QUANTITIES, *ball.OBSERVED))
 }
 """The solver's value of each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
 (1 by default) and definition (that of the article)."""
@@ -142,7 +143,7 @@ def field_error(formula: Formula[Any], groups: Groups, state: Solution | PointSt
     ends = formula.interval(groups)
     if not np.isfinite(ends).all():
         return math.nan
-    x: Array = np.linspace(*ends, POSITIONS)
+    x: Array = np.linspace(*ends, POSITION_COUNT)
     if isinstance(state, PointState):
         right = ball.along_the_middle(state, formula.predicts, x)
     else:

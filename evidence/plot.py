@@ -24,30 +24,25 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_error_maps"]
 
-COLUMNS = 3
-"""Panels beside one another."""
+PANELS_PER_ROW = 3  # Panels beside one another.
 
-PANEL, WIDER = (3.15, 2.15), 3.8
-HEAD, LEGEND, SCALED = 0.42, 0.32, 0.75
-"""Width and height of a panel, width where there are fewer than three; height of the title, of the legend, and of that with a
-scale of colours [inch]."""
+PANEL_SIZE = (3.15, 2.15)  # Width and height of a panel [inch].
+WIDE_PANEL_WIDTH = 3.8  # Width of a panel where there are fewer than three [inch].
+TITLE_HEIGHT = 0.42  # Height of the title [inch].
+LEGEND_HEIGHT = 0.32  # Height of the legend [inch].
+SCALE_HEIGHT = 0.75  # Height of the legend with a scale of colours [inch].
 
-SCALE = (1e-4, 1.0)
-"""Errors between which colours differ."""
+ERROR_SCALE = (1e-4, 1.0)  # Errors between which colours differ.
 
-CONTOURS = {0.01: "white", 0.1: INK}
-"""Errors of the contour lines, and their colours, each seen on the colours around it."""
+CONTOURS = {0.01: "white", 0.1: INK}  # Errors of the contour lines, and their colours, each seen on the colours around it.
 
-SMALLEST = 1e-7
-"""Smallest error with a colour of its own: the tolerance of the solved states."""
+MIN_ERROR = 1e-7  # Smallest error with a colour of its own: the tolerance of the solved states.
 
-LARGEST = 1e6
-"""Largest error with a colour of its own."""
+MAX_ERROR = 1e6  # Largest error with a colour of its own.
 
-NOTHING, HATCH = "#f4f4f4", "#b8bec5"
+EMPTY_COLOUR, HATCH_COLOUR = "#f4f4f4", "#b8bec5"
 
-FINE = 241
-"""Points along each side of a panel at which the range of a formula is looked up."""
+RANGE_POINTS = 241  # Points along each side of a panel at which the range of a formula is looked up.
 
 SYMBOLS = {
     "load": r"load $\bar F_N$",
@@ -81,7 +76,9 @@ def plot_error_maps(
     Errors of either sign are drawn alike.  As they pass through zero, contours follow the median of nine neighbouring states.
     """
     over_speed = [[(f, data.isel(load=i)) for i in range(data.sizes["load"])] for f, data in maps if len(_long(data)) == 2]
-    over_load = [(f, data) for f, data in maps if _long(data) == ["relative_roughness"] and data.sizes["load"] > COLUMNS]
+    over_load = [
+        (f, data) for f, data in maps if _long(data) == ["relative_roughness"] and data.sizes["load"] > PANELS_PER_ROW
+    ]
     lines = [(f, data) for f, data in maps if len(_long(data)) == 1 and all(data is not other for _, other in over_load)]
     rows = [part for panels in [*over_speed, over_load, lines] for part in _in_rows(panels)]
     if not rows:
@@ -115,23 +112,25 @@ def _long(data: xarray.Dataset) -> list[str]:
 def _two(data: xarray.Dataset) -> list[str]:
     """Return the two axes of a map, or the one of lines."""
     names = [str(name) for name in data["error"].dims if data.sizes[name] > 1]
-    return names if "load" not in names or data.sizes["load"] > COLUMNS else _long(data)
+    return names if "load" not in names or data.sizes["load"] > PANELS_PER_ROW else _long(data)
 
 
 def _in_rows(panels: Sequence[Any]) -> list[list[Any]]:
-    columns = 2 if len(panels) == 4 else COLUMNS
+    columns = 2 if len(panels) == 4 else PANELS_PER_ROW
     return [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
 
 
 def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figure, list[list[Axes]]]:
     """Return an empty figure with headline, and its panels."""
-    low = SCALED if mapped else LEGEND
+    low = SCALE_HEIGHT if mapped else LEGEND_HEIGHT
     # Narrower pictures have no room for the legend.
-    panel, height = PANEL[0] if columns == COLUMNS else WIDER, PANEL[1] * rows + HEAD + low
+    panel, height = PANEL_SIZE[0] if columns == PANELS_PER_ROW else WIDE_PANEL_WIDTH, PANEL_SIZE[1] * rows + TITLE_HEIGHT + low
     width = panel * max(columns, 2) + 0.3
     figure = blank_figure(width, height, dpi=100, layout="constrained")
     engine: Any = figure.get_layout_engine()
-    engine.set(rect=(0.005, low / height, 0.99, 1 - (HEAD + low) / height), w_pad=0.05, h_pad=0.05, wspace=0.02, hspace=0.03)
+    engine.set(
+        rect=(0.005, low / height, 0.99, 1 - (TITLE_HEIGHT + low) / height), w_pad=0.05, h_pad=0.05, wspace=0.02, hspace=0.03
+    )
     figure.text(0.12 / width, 1 - 0.12 / height, title, size=13, weight="bold", color=INK, va="top", parse_math=False)
     return figure, [list(row) for row in figure.subplots(rows, columns, squeeze=False)]
 
@@ -139,7 +138,7 @@ def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figu
 def _fine(values: Array) -> Array:
     """Return points between the ends of an axis, evenly in the logarithm, without the ends themselves."""
     low, high = np.log(values[0]), np.log(values[-1])
-    return np.asarray(np.exp(low + (high - low) * (np.arange(FINE) + 0.5) / FINE))
+    return np.asarray(np.exp(low + (high - low) * (np.arange(RANGE_POINTS) + 0.5) / RANGE_POINTS))
 
 
 def _states(name: str, x: Array, kappa: Any, load: float) -> Groups:
@@ -165,12 +164,12 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     data = data.isel({name: np.flatnonzero(data[name].values > 0)})
     x, y, load = data[name].values, data["relative_roughness"].values, float(data["load"].values.ravel()[0])
     error = np.ma.masked_invalid(np.abs(data["error"].transpose("relative_roughness", name).values))
-    axes.patch.set(facecolor=NOTHING, edgecolor=HATCH, hatch="////", linewidth=0)
+    axes.patch.set(facecolor=EMPTY_COLOUR, edgecolor=HATCH_COLOUR, hatch="////", linewidth=0)
     axes.set(xscale="log", yscale="log")
-    error = np.ma.clip(error, SMALLEST, LARGEST)
+    error = np.ma.clip(error, MIN_ERROR, MAX_ERROR)
     edges = [_edges(values) for values in (x, y)]
-    image = axes.pcolormesh(*edges, error, cmap="cividis", norm=LogNorm(*SCALE))
-    smooth = np.ma.array(median_filter(error.filled(LARGEST), 3, mode="nearest"), mask=error.mask)
+    image = axes.pcolormesh(*edges, error, cmap="cividis", norm=LogNorm(*ERROR_SCALE))
+    smooth = np.ma.array(median_filter(error.filled(MAX_ERROR), 3, mode="nearest"), mask=error.mask)
     for level, colour in CONTOURS.items():
         if smooth.count() and smooth.min() < level < smooth.max():
             logs = np.log(smooth / level)
@@ -178,7 +177,7 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     ends = [(values[0], values[-1]) for values in edges]
     axes.set(xlim=ends[0], ylim=ends[1])
     fine_x, fine_y = (_fine(np.asarray(pair)) for pair in ends)
-    inside = np.broadcast_to(formula.valid(_states(name, fine_x, fine_y[:, None], load)), (FINE, FINE))
+    inside = np.broadcast_to(formula.valid(_states(name, fine_x, fine_y[:, None], load)), (RANGE_POINTS, RANGE_POINTS))
     frame = [np.concatenate([pair[:1], fine, pair[1:]]) for pair, fine in zip(ends, (fine_x, fine_y), strict=True)]
     # Coefficients of the friction may lie outside the range although the groups do not.
     if inside.any() and data["valid"].values.any():
@@ -207,12 +206,12 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     loads = data["load"].values.ravel().tolist() if "load" in data.coords else [1.0]
     shown = data.transpose(..., name)
     error, inside = (shown[key].values.reshape(-1, len(x)) for key in ("error", "valid"))
-    size = np.clip(np.abs(error), SMALLEST, None)
+    size = np.clip(np.abs(error), MIN_ERROR, None)
     colours = sequence(len(loads)) if len(loads) > 1 else [INK]
     fine = _fine(x)
-    valid = np.zeros(FINE, dtype=bool)
+    valid = np.zeros(RANGE_POINTS, dtype=bool)
     for load, colour, values, flags in zip(loads, colours, size, inside, strict=True):
-        valid |= np.broadcast_to(formula.valid(_states(name, fine, 0.0, load)), FINE)
+        valid |= np.broadcast_to(formula.valid(_states(name, fine, 0.0, load)), RANGE_POINTS)
         axes.plot(x, values, color=colour, lw=0.9, alpha=0.75)
         axes.plot(x, np.where(flags, values, np.nan), color=colour, lw=2.0)
     axes.set(xscale="log", yscale="log", xlim=(x[0], x[-1]))
@@ -222,7 +221,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     axes.fill_between(fine, 0, 1, where=where, transform=across, color=TINTS["hydrodynamic"], lw=0, zorder=0)
     axes.plot(fine, np.where(valid, formula.worst, np.nan), color=GREY, lw=1.2, ls=DASHED)
     known = size[np.isfinite(size)]
-    low, high = (known.min(), known.max()) if known.size else (SMALLEST, 1.0)
+    low, high = (known.min(), known.max()) if known.size else (MIN_ERROR, 1.0)
     axes.set_ylim(low / 2, 2 * min(max(high, formula.worst), 10.0))
     axes.set_title(data.attrs["title"], loc="left", size=9, color=INK)
     _decades(axes.xaxis, (x[0], x[-1]))
@@ -266,7 +265,7 @@ def _explain(figure: Figure, image: Any, lines: Sequence[tuple[Formula[Any], xar
             bar.ax.axvline(level, color=colour, lw=1.0)
         bar.outline.set_edgecolor(GREY)
         marks.append(Line2D([], [], color=CONTACT, lw=1.8, label="range of the formula"))
-        marks.append(Patch(facecolor=NOTHING, edgecolor=HATCH, hatch="////", lw=0, label="no value"))
+        marks.append(Patch(facecolor=EMPTY_COLOUR, edgecolor=HATCH_COLOUR, hatch="////", lw=0, label="no value"))
     if lines:
         loads: list[float] = next((data["load"].values.tolist() for _, data in lines if data.sizes.get("load", 1) > 1), [])
         colours = sequence(len(loads))

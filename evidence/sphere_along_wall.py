@@ -25,25 +25,25 @@ from stribeck._types import Array, Indices
 Series = tuple[Array, Array, Array]
 Factors = tuple[Array | float, ...]
 
-ORDERS = {"A": 1, "B": 1, "C": 1, "D": 0, "E": 0, "F": 2, "G": 2}
-"""Angular orders of the series: sinh of W; cosh and sinh of Q, of U_0, of U_2; each begins with the term of its order."""
+# Angular orders of the series: sinh of W; cosh and sinh of Q, of U_0, of U_2; each begins with the term of its order.
+ANGULAR_ORDERS = {"A": 1, "B": 1, "C": 1, "D": 0, "E": 0, "F": 2, "G": 2}
 
-TERMS = 22
-"""Terms of the series times the bispherical coordinate of the sphere; what is left out is below 1e-8."""
+# Terms of the series times the bispherical coordinate of the sphere; what is left out is below 1e-8.
+SERIES_TERMS = 22
 
-ANGLES = (0.8, 0.6, 0.45, 0.35, 0.28, 0.22, 0.18, 0.14)
-"""Bispherical coordinates arcosh(1 + gap) at which the constant is fitted: gaps 0.34 to 0.0098 of the radius."""
+# Bispherical coordinates arcosh(1 + gap) at which the constant is fitted: gaps 0.34 to 0.0098 of the radius.
+BISPHERICAL_COORDINATES = (0.8, 0.6, 0.45, 0.35, 0.28, 0.22, 0.18, 0.14)
 
 
 def force(gap: float, turning: bool = False) -> float:
     """Return the force over 6 pi eta R U on a sphere at a gap [R] from a plane, sliding or turning at U."""
     alpha = math.acosh(1 + gap)
     c = math.sinh(alpha)
-    count = int(TERMS / alpha)
+    count = int(SERIES_TERMS / alpha)
     eta = (np.arange(count) + 0.5) / count * math.pi
     mu, sine = np.cos(eta), np.sin(eta)
     P = _legendre(count + 2, mu)
-    place = {name: slice(k * count, (k + 1) * count) for k, name in enumerate(ORDERS)}
+    place = {name: slice(k * count, (k + 1) * count) for k, name in enumerate(ANGULAR_ORDERS)}
     rows: list[Array] = []
     right: list[Array] = []
 
@@ -61,7 +61,8 @@ def force(gap: float, turning: bool = False) -> float:
         z_xi, z_eta = c * (1 - math.cosh(xi) * mu) / G**2, -c * math.sinh(xi) * sine / G**2
         by_rho, by_z = (z_eta * (G / c) ** 2, -z_xi * (G / c) ** 2), (z_xi * (G / c) ** 2, z_eta * (G / c) ** 2)
         series = {
-            name: _series(P, xi, alpha, mu, sine, m, np.arange(m, m + count), name in "ACEG") for name, m in ORDERS.items()
+            name: _series(P, xi, alpha, mu, sine, m, np.arange(m, m + count), name in "ACEG")
+            for name, m in ANGULAR_ORDERS.items()
         }
         half = rho / (2 * c)
         across = np.zeros(count) if not xi else z - math.cosh(alpha) if turning else np.ones(count)
@@ -90,7 +91,7 @@ def wall_constant(turning: bool = False) -> float:
 
     For a turning sphere K' of :math:`\tfrac{2}{15} \ln(1/\epsilon) + K'`, against the motion of its lowest point.
     """
-    gaps = np.cosh(ANGLES) - 1
+    gaps = np.cosh(BISPHERICAL_COORDINATES) - 1
     sign, coefficient = (-1, 2 / 15) if turning else (1, 8 / 15)
     rest = sign * np.array([force(float(gap), turning) for gap in gaps]) + coefficient * np.log(gaps)
     logs = np.log(gaps)

@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev as reference
 
 import stribeck as sb
 from evidence import atlas_build
-from evidence.atlas_certificate import FRICTIONS, certify, compare, quantities, solved
+from evidence.atlas_certificate import FRICTION_COUNT, certify, compare, quantities, solved
 from evidence.atlas_states import groups_of, speed_range
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
@@ -72,7 +72,7 @@ def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_ma
     for errors in (found.friction, found.film):
         assert np.median(errors) < 1e-5
         assert errors.max() < 1e-4
-    viscous, balanced, *_ = found.errors[:, FRICTIONS:].T
+    viscous, balanced, *_ = found.errors[:, FRICTION_COUNT:].T
     assert max(viscous.max(), balanced.max()) < 1e-4
 
 

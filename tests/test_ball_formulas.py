@@ -79,7 +79,7 @@ def test_the_gap_of_hertz_is_that_of_its_pressure():
 
     groups = ball(0.0)
     for r in (1.01, 1.2, 2.0, 5.0):
-        assert math.isclose(float(hertz.gap(groups, r)), hertz.OFFSET + r * r / 2 + deflection(r), rel_tol=1e-6)
+        assert math.isclose(float(hertz.gap(groups, r)), hertz.HERTZ_OFFSET + r * r / 2 + deflection(r), rel_tol=1e-6)
     assert float(hertz.gap(groups, 0.7)) == 0 and float(hertz.pressure(groups, 0.6)) == pytest.approx(0.8)
 
 
@@ -163,7 +163,7 @@ def test_the_minimum_of_the_outlet_over_the_film_that_comes_is_the_stated_power(
         layer = film_layers.outlet(film=constants.FILM_CONSTANT * share)
         return minimize_scalar(lambda xi: float(layer.gap(np.array([xi]))[0]), bounds=(0.0, 1.0), method="bounded").fun
 
-    one, two = film.OUTLET_POWER
+    one, two = film.OUTLET_COEFFICIENTS
     for share in (0.85, 0.95):
         log = math.log(share)
         assert math.isclose(lowest(share) / constants.MINIMUM_CONSTANT, math.exp(log * (one + two * log)), rel_tol=3e-4)
@@ -185,8 +185,8 @@ def test_the_lift_is_the_integral_over_the_bessel_functions():
         t = math.sqrt(2) * k
         return k * k0(t) * (-0.8 * k**2 * k1(t) / math.sqrt(2) + 0.4 * k**3 * kn(2, t))
 
-    assert math.isclose(0.8 * quad(integrand, 0, 60)[0], rigid.LIFT, rel_tol=1e-9)
-    assert math.isclose(18 * math.pi * rigid.LIFT / 4, 0.416, abs_tol=5e-4)
+    assert math.isclose(0.8 * quad(integrand, 0, 60)[0], rigid.LIFT_COEFFICIENT, rel_tol=1e-9)
+    assert math.isclose(18 * math.pi * rigid.LIFT_COEFFICIENT / 4, 0.416, abs_tol=5e-4)
 
 
 def test_the_fast_ball_is_met():
@@ -218,8 +218,8 @@ def test_the_fluids_share_has_its_limits_and_its_closed_form():
     loads = np.exp(-3 * np.geomspace(2e-3, 220, 12))
     np.testing.assert_allclose(boundary.phi(loads, "closed"), boundary.phi(loads), rtol=2.6e-3)
     heavy = math.exp(-3e-4)
-    assert math.isclose(float(boundary.phi(heavy)) * 1e-12, boundary.HEAVY, rel_tol=5e-3)
-    assert 0.95 < float(boundary.phi(1e-300)) * (math.log(1e300) / 3) ** 6 / boundary.LIGHT < 1
+    assert math.isclose(float(boundary.phi(heavy)) * 1e-12, boundary.HEAVY_LIMIT, rel_tol=5e-3)
+    assert 0.95 < float(boundary.phi(1e-300)) * (math.log(1e300) / 3) ** 6 / boundary.LIGHT_LIMIT < 1
     with pytest.warns(OutOfRangeWarning):
         assert np.isnan(boundary.phi(1.0))
 
@@ -231,7 +231,7 @@ def test_the_pressure_of_slow_fluid_obeys_its_equation_and_is_found_by_other_ele
     flux = r * H**3 * slope
     found = np.gradient(flux, r, edge_order=2)[4:-4] / r[4:-4] - (H**3 * P / r**2)[4:-4]
     np.testing.assert_allclose(found, (r / (1 - r**2))[4:-4], rtol=0.03)
-    monkeypatch.setattr(slow_contact, "PANELS", 17)
+    monkeypatch.setattr(slow_contact, "ELEMENTS", 17)
     slow_contact.slow_contact.cache_clear()
     finer = slow_contact.slow_contact(2.3)
     slow_contact.slow_contact.cache_clear()
@@ -320,7 +320,7 @@ def test_the_laws_of_the_smooth_ball_have_their_limits():
     assert math.isclose(J, -math.pi * 1e12 * (8 / 15 * math.log(2 * h0) + 0.4), rel_tol=1e-4)
     theta = np.linspace(0, math.pi / 2, 20001)
     shear = 2 * np.trapezoid(np.cos(theta) ** 1.4, theta) / (3 * constants.BALL_FILM_CONSTANT)
-    assert math.isclose(friction.SLOW, shear, rel_tol=1e-7)
+    assert math.isclose(friction.SLOW_INTEGRAL, shear, rel_tol=1e-7)
     assert math.isclose(float(friction.smooth_integral(1e-15)) / 1e-15**0.4, shear, rel_tol=2e-3)
 
 

@@ -209,7 +209,7 @@ def test_phi_has_ten_digits(load):
 def test_phi_does_not_depend_on_its_nodes(monkeypatch):
     loads = np.append(np.geomspace(1e-300, 0.99, 61), [0.9999, 0.999999])
     found = perturbation.phi(loads)
-    monkeypatch.setattr(slow_contact, "ORDER", 23)
+    monkeypatch.setattr(slow_contact, "NODES_PER_PANEL", 23)
     monkeypatch.setattr(slow_contact, "PANELS", 25)
     assert np.abs(perturbation.phi(loads) / found - 1).max() < 1e-12
 
@@ -225,7 +225,7 @@ def test_phi_takes_less_than_a_millisecond_per_load():
 def test_phi_of_many_loads_is_phi_of_each(monkeypatch):
     loads = np.array([[0.1, 0.3, 0.1], [1e-5, 0.3, 0.9]])
     single = np.array([[perturbation.phi(load) for load in row] for row in loads])
-    monkeypatch.setattr(slow_contact, "LOADS_AT_ONCE", 3)
+    monkeypatch.setattr(slow_contact, "LOADS_PER_BLOCK", 3)
     assert np.abs(perturbation.phi(loads) / single - 1).max() < 1e-14
     assert perturbation.phi([]).shape == (0,)
     assert isinstance(perturbation.phi(0.1), float)

@@ -8,7 +8,7 @@ from scipy.integrate import trapezoid
 
 import stribeck as sb
 from evidence import sphere_along_wall
-from stribeck.asymptotics.point.logarithm import LOGARITHM, far_integral
+from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, far_integral
 from stribeck.contacts import cut_off
 from stribeck.equations.point.observables import FrictionWithin
 from stribeck.solver.point.solve import solve_cold
@@ -30,8 +30,8 @@ def test_the_logarithm_joins_the_lubrication_film_to_the_whole_ball():
     finite = -math.pi * (8 / 15 * math.log(2 * h / slope**2) + 0.4)
     whole = math.pi * (8 / 15 * math.log(1 / h) + cut_off.CUT_OFF_SLIDING)
     assert math.isclose(finite + float(far_integral(slope)), whole, rel_tol=1e-12)
-    assert math.isclose(math.exp(float(far_integral(0.1)) / LOGARITHM), 50.340, rel_tol=1e-5)
-    assert math.isclose(float(far_integral(0.1, 30.0)), LOGARITHM * math.log(30), rel_tol=1e-12)
+    assert math.isclose(math.exp(float(far_integral(0.1)) / LOGARITHM_COEFFICIENT), 50.340, rel_tol=1e-5)
+    assert math.isclose(float(far_integral(0.1, 30.0)), LOGARITHM_COEFFICIENT * math.log(30), rel_tol=1e-12)
 
 
 @pytest.mark.quick

@@ -214,7 +214,7 @@ def test_minimum_friction_goes_with_roughness_to_two_thirds_and_logarithms(mixed
 def test_a_minimum_that_is_not_found_ends_the_figure_with_a_sentence(monkeypatch):
     for module in ("article.figure_9", "article.stribeck_cases"):
         monkeypatch.setattr(f"stribeck.figures.{module}.CASES", ((0.1, 1e-3),))
-    monkeypatch.setattr("stribeck.figures.article.figure_9.WINDOW", (2.0, 4.0))
+    monkeypatch.setattr("stribeck.figures.article.figure_9.SPEED_WINDOW", (2.0, 4.0))
     with pytest.raises(sb.SolveError, match="No minimum of friction was found at load 0.1, relative roughness 1e-05"):
         load_figure("9").data()
 

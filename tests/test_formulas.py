@@ -17,11 +17,11 @@ import pytest
 from numpydoc.validate import validate
 
 import stribeck as sb
-from evidence.coefficients import JUDGED, largest_errors
-from evidence.formulas import FIELDS, LOCATED, MEASURED, relative_error
+from evidence.coefficients import JUDGED_FORMULAS, largest_errors
+from evidence.formulas import CURVE_QUANTITIES, FIELDS, MEASURED, relative_error
 from stribeck import asymptotics
 from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
-from stribeck.asymptotics.formula import COEFFICIENTS, PARAMETERS
+from stribeck.asymptotics.formula import COEFFICIENT_RATIO, PARAMETERS
 
 SEED = 60913
 STATES = 6
@@ -148,7 +148,7 @@ def states(formula):
 
 def coefficients(formula):
     """Return mu0 and beta at the ends of the range of a formula and in it; nothing, once, if it has no such range."""
-    found = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
+    found = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
     if not found:
         return [{}]
     ends = [{"boundary_friction": 0.3, "beta": 0.3 * max(end, 1e-3)} for end in (found[0].low, found[0].high)]
@@ -203,7 +203,7 @@ def test_what_a_formula_says_of_itself_is_complete(formula):
     assert (formula.interval is None) == (formula.predicts not in FIELDS)
     assert formula.plane in ("smooth", "rest", "mixed")
     assert 0 < formula.worst < 1
-    assert {limit.parameter for limit in formula.limits} <= {*PARAMETERS, COEFFICIENTS}
+    assert {limit.parameter for limit in formula.limits} <= {*PARAMETERS, COEFFICIENT_RATIO}
     assert bool(formula.small) == bool(formula.approach) == (len(formula.steps) >= 3) == (formula.error_order > 0)
     assert not formula.small or formula.small in PARAMETERS
 
@@ -213,7 +213,7 @@ def test_a_formula_of_both_coefficients_states_for_which_of_them_its_error_holds
     has_both = {"boundary_friction", "beta"} <= set(inspect.signature(formula.function).parameters)
     assert formula.needs_coefficients == has_both
     if has_both:
-        assert COEFFICIENTS in formula.range
+        assert COEFFICIENT_RATIO in formula.range
         # What rubber and gels have, by the surfaces of theory.md, section 8.
         assert formula.valid(states(formula)[0], boundary_friction=1.0, beta=0.05) and formula.valid(states(formula)[0])
 
@@ -268,7 +268,7 @@ def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
 
 @NAMED
 def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(formula):
-    located = formula.predicts in LOCATED
+    located = formula.predicts in CURVE_QUANTITIES
     errors = []
     for i, groups in enumerate(states(formula)):
         # A curve for each state where it takes one, with other coefficients each time.
@@ -277,10 +277,10 @@ def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(formula):
     assert np.abs(errors).max() <= 1.02 * formula.worst, errors
 
 
-@pytest.mark.parametrize("name", JUDGED)
+@pytest.mark.parametrize("name", JUDGED_FORMULAS)
 def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_most_the_stated_one(name):
-    formula = JUDGED[name][0]
-    [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
+    formula = JUDGED_FORMULAS[name][0]
+    [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
     ratios = (max(limit.low, 1e-5), 0.03, limit.high)
     worst, median = largest_errors(name, (*ratios, limit.low / 10, limit.high * 10), points=(5, 4))
     assert max(worst[:3]) <= formula.worst
@@ -297,7 +297,7 @@ def test_the_law_of_mixed_friction_is_worst_where_its_limits_meet():
 
 
 def test_the_scan_over_coefficients_knows_every_law_that_has_both():
-    assert {id(law) for law, _ in JUDGED.values()} == {id(law) for law in LINE if law.needs_coefficients}
+    assert {id(law) for law, _ in JUDGED_FORMULAS.values()} == {id(law) for law in LINE if law.needs_coefficients}
 
 
 @NAMED

@@ -12,9 +12,9 @@ import pytest
 
 import stribeck as sb
 from evidence.ball import OBSERVED
-from evidence.coefficients import JUDGED, RATIOS, largest_errors
+from evidence.coefficients import COEFFICIENT_RATIOS, JUDGED_FORMULAS, largest_errors
 from evidence.error_maps import AXES, error_map, error_maps, kind_of
-from evidence.formulas import LOCATED, MEASURED, OF_STATE, relative_error
+from evidence.formulas import CURVE_QUANTITIES, MEASURED, STATE_QUANTITIES, relative_error
 from stribeck.asymptotics import FORMULAS, Limit, boundary, hertz, hydrodynamic, load_sharing, rest, transitions, uniform
 from stribeck.contacts.scaling import SCALINGS
 
@@ -132,9 +132,9 @@ def test_a_map_of_coefficients_outside_the_range_has_no_state_in_it():
 
 @pytest.mark.parametrize("name", ["mixed.friction", "friction_at_minimum"])
 def test_the_errors_over_the_coefficients_are_those_on_the_page(name, script, blocks):
-    limit = next(limit for limit in JUDGED[name][0].limits if limit.parameter == "beta/mu0")
+    limit = next(limit for limit in JUDGED_FORMULAS[name][0].limits if limit.parameter == "beta/mu0")
     shown = rows(blocks["ratios"])[name]
-    assert [cell.startswith("**") for cell in shown] == [limit.low <= ratio <= limit.high for ratio in RATIOS]
+    assert [cell.startswith("**") for cell in shown] == [limit.low <= ratio <= limit.high for ratio in COEFFICIENT_RATIOS]
     found = largest_errors(name, points=script.RATIO_POINTS)[0]
     assert [float(cell.strip("*").removesuffix(" %")) / 100 for cell in shown] == pytest.approx(found, rel=0.02)
 
@@ -308,6 +308,6 @@ def test_numbers_are_short_and_true(script):
 
 def test_every_quantity_that_a_formula_predicts_is_measured():
     line, ball = sb.Groups(1e-4, 0.1, 1e-4), sb.Groups(1e-2, 1e-3, 1e-4, geometry="point")
-    assert all(math.isfinite(MEASURED[name](line)) for name in (*OF_STATE, *LOCATED))
+    assert all(math.isfinite(MEASURED[name](line)) for name in (*STATE_QUANTITIES, *CURVE_QUANTITIES))
     assert all(math.isfinite(MEASURED[name](ball)) for name in OBSERVED)
-    assert {*OF_STATE, *LOCATED, *OBSERVED} == MEASURED.keys()
+    assert {*STATE_QUANTITIES, *CURVE_QUANTITIES, *OBSERVED} == MEASURED.keys()

@@ -107,8 +107,8 @@ on the scale of the roughness over Hertz pressure), the fluid's load share at sl
 (lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha, with the
 constant c of the geometry), and roughly the fluid's load share under a slow ball."""
 
-COEFFICIENTS = "beta/mu0"
-"""The parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio."""
+# Parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio.
+COEFFICIENT_RATIO = "beta/mu0"
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Limit:
     Attributes
     ----------
     parameter : str
-        Key of :data:`PARAMETERS`, or :data:`COEFFICIENTS`.
+        Key of :data:`PARAMETERS`, or :data:`COEFFICIENT_RATIO`.
     low, high : float
         Ends of the interval.
     """
@@ -129,7 +129,7 @@ class Limit:
 
     def holds(self, groups: Groups, ratio: Value = 1.0) -> Flags:
         """Return where the parameter lies in the interval, for groups and for coefficients of this ratio beta/mu0."""
-        value = ratio if self.parameter == COEFFICIENTS else PARAMETERS[self.parameter](groups)
+        value = ratio if self.parameter == COEFFICIENT_RATIO else PARAMETERS[self.parameter](groups)
         return np.asarray((self.low <= value) & (value <= self.high))
 
     def __str__(self) -> str:
@@ -207,7 +207,7 @@ class Formula(Generic[Arguments]):
     @property
     def needs_coefficients(self) -> bool:
         """Whether the range depends on mu0 and beta."""
-        return any(limit.parameter == COEFFICIENTS for limit in self.limits)
+        return any(limit.parameter == COEFFICIENT_RATIO for limit in self.limits)
 
     def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
         """Return where all limits hold: nowhere for groups of the other geometry or of another model.

@@ -43,42 +43,40 @@ __all__ = [
     "transition_marks",
 ]
 
-POINTS = 121
-ROWS = 33
-"""Points of a curve, and roughnesses of a diagram."""
+CURVE_POINTS = 121  # Points at which a curve is shown.
+DIAGRAM_ROWS = 33  # Roughnesses of a diagram.
 
-SOLVED_RTOL = 1e-4
+SOLVED_RTOL = 1e-4  # Relative tolerance of curves that are solved.
+# Tolerance of the first curve for new inputs, by geometry: less than a tenth of a pixel; at 1e-3 some take more states.
 FIRST_RTOL = {"line": 5e-4, "point": SOLVED_RTOL}
-"""Tolerance of curves that are solved, and by geometry of the first one for new inputs: less than a tenth of a pixel; at 1e-3
-some take more states."""
 
+# Points of curves that are solved, by geometry; of a ball each point is a state where it is no function.
 SOLVED_POINTS = {"line": 200, "point": 15}
-"""Points of curves that are solved; of a ball those for which states are solved where it is no function."""
 
 
-NOTED_POINTS, NOTED_RTOL = {"line": 101, "point": 41}, 1e-4
-"""Of the curve that is solved for its notes where the page reads it off the atlas."""
+# Points of the curve that is solved for its notes where the page reads it off the atlas, by geometry.
+NOTED_POINTS = {"line": 101, "point": 41}
+NOTED_RTOL = 1e-4  # Relative tolerance of that curve.
 
 
 class SolvedRows(NamedTuple):
     """How a diagram of one geometry is solved."""
 
-    step: int  # One of how many of the :data:`ROWS` roughnesses is solved
+    step: int  # One of how many of the :data:`DIAGRAM_ROWS` roughnesses is solved
     points: int  # Points of a row
     rtol: float  # Tolerance of its states
     room: float = 1.0  # Factor by which rows go on beyond the ends of the axis, so that lines can leave it between two rows
     is_quick: bool = False  # Whether it comes before margins and checks, which need not wait for it long
 
 
+# Plan of a solved diagram by geometry.  Monotone cubics between rows three quarters of a decade apart miss the speeds by up to
+# 4 %, less than a pixel; straight lines do so between rows half a decade apart.
 SOLVED_ROWS = {"line": SolvedRows(8, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(8, 9, 1e-3)}
-"""By geometry.  Monotone cubics between rows three quarters of a decade apart miss the speeds by up to 4 %, less than a pixel;
-straight lines do so between rows half a decade apart."""
 
-STEEPNESS, MARGIN = (1.0, 2.6), 2.0
-"""Least and largest power of the roughness as which the speeds of transitions grow, and the factor by which rows go on."""
+SPEED_POWERS = (1.0, 2.6)  # Least and largest power of the roughness as which the speeds of transitions grow.
+SPEED_MARGIN = 2.0  # Factor by which a row goes on beyond the speeds that these powers predict.
 
-Report = Callable[[float], object]
-"""Called with the finished part; an exception that it raises ends the work."""
+Report = Callable[[float], object]  # Callback with the finished part; an exception that it raises ends the work.
 
 
 @dataclass(frozen=True)
@@ -174,7 +172,7 @@ def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequenc
 def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
     """Return a curve read off the atlas."""
     groups, unit, boundary_friction = contact.groups, _group_per_unit(contact, "speed"), contact.boundary_friction
-    speed = np.geomspace(*speeds, POINTS)
+    speed = np.geomspace(*speeds, CURVE_POINTS)
     row = table_for(groups)
     along = Groups(np.clip(speed * unit, *row.speeds(groups)), groups.load, groups.roughness, **groups.physics)
     rule = RULES[groups.geometry]
@@ -189,16 +187,28 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
 def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
     """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas."""
     try:
-        found = stribeck_curve(
-            contact,
-            points=NOTED_POINTS[contact.INPUTS.geometry],
-            rtol=NOTED_RTOL,
-            definition=definition,
-            on_point=lambda done, of: report(done / of),
-        )
+        return _solve_curve(contact, definition, report, NOTED_POINTS[contact.INPUTS.geometry], NOTED_RTOL).notes
     except (InputError, SolveError) as problem:
         return (str(problem),)
-    return found.notes
+
+
+def _solve_curve(
+    contact: Contact,
+    definition: Definition,
+    report: Report,
+    points: int,
+    rtol: float,
+    speeds: tuple[float, float] | None = None,
+) -> StribeckCurve:
+    """Return the Stribeck curve of a contact and report the finished part."""
+    return stribeck_curve(
+        contact,
+        speed=speeds,
+        points=points,
+        rtol=rtol,
+        definition=definition,
+        on_point=lambda done, of: report(done / of),
+    )
 
 
 def solved_curve(
@@ -208,17 +218,11 @@ def solved_curve(
     rtol: float = SOLVED_RTOL,
 ) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
-    found = stribeck_curve(
-        contact,
-        points=SOLVED_POINTS[contact.INPUTS.geometry],
-        rtol=rtol,
-        definition=definition,
-        on_point=lambda done, of: report(done / of),
-    )
+    found = _solve_curve(contact, definition, report, SOLVED_POINTS[contact.INPUTS.geometry], rtol)
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
-    if len(found) < POINTS:
-        found = found.sampled(POINTS)
+    if len(found) < CURVE_POINTS:
+        found = found.sampled(CURVE_POINTS)
     speed = np.asarray(found.values)
     doubtful = found.law_in_doubt
     friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
@@ -238,17 +242,17 @@ def _between(speed: Array, values: Array, at: Array) -> Array:
     return np.exp(PchipInterpolator(np.log(speed), np.log(np.maximum(values, tiny)))(np.log(at)))
 
 
-MARKS = {
+# Transitions of a curve that are shown.
+SHOWN_TRANSITIONS = {
     "boundary": regime.Transition.BOUNDARY_END,
     "minimum": regime.Transition.MINIMUM,
     "hydrodynamic": regime.Transition.HYDRODYNAMIC_START,
 }
-"""Transitions of a curve that are shown."""
 
 
 def _marks_of(found: StribeckCurve) -> tuple[Transition, ...]:
     """Return where the regimes of a solved curve end, within what its own tolerance leaves open."""
-    marks = [(name, found.landmark(mark, found.rtol)) for name, mark in MARKS.items()]
+    marks = [(name, found.landmark(mark, found.rtol)) for name, mark in SHOWN_TRANSITIONS.items()]
     known = [Transition(name, mark.value, mark.error) for name, mark in marks if mark is not None]
     return tuple(sorted(known, key=lambda mark: mark.speed))
 
@@ -263,7 +267,7 @@ def solved_diagram(
 ) -> Iterator[Diagram]:
     """Give the diagram at the load of a contact as its rows are solved, those beside the contact first."""
     step = SOLVED_ROWS[contact.INPUTS.geometry].step
-    shown = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
+    shown = np.geomspace(10.0**decade, 10.0 ** (decade + 3), DIAGRAM_ROWS)
     roughness = shown[::step]
     shown = shown[: step * (len(roughness) - 1) + 1]
     lines = np.full((3, len(roughness)), math.nan)
@@ -296,14 +300,7 @@ def _row(
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
     whole = speeds[0] / solved.room, speeds[1] * solved.room
     for low, high in (_expected(contact.roughness, whole, neighbour), whole):
-        found = stribeck_curve(
-            contact,
-            speed=(low, high),
-            points=solved.points,
-            rtol=solved.rtol,
-            definition=definition,
-            on_point=lambda done, of: report(done / of),
-        )
+        found = _solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
         is_slow = low == whole[0] or found.regimes[0] == "boundary"
         rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
         if is_slow and (rises or high == whole[1]):
@@ -322,8 +319,8 @@ def _expected(roughness: float, whole: tuple[float, float], neighbour: StribeckC
     marks = {} if neighbour is None else {mark.name: mark.speed for mark in _marks_of(neighbour)}
     if neighbour is None or neighbour.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
         return whole
-    factors = [(roughness / neighbour.contact.roughness) ** power for power in STEEPNESS]
-    low, high = min(factors) * marks["boundary"] / MARGIN, max(factors) * max(marks.values()) * MARGIN
+    factors = [(roughness / neighbour.contact.roughness) ** power for power in SPEED_POWERS]
+    low, high = min(factors) * marks["boundary"] / SPEED_MARGIN, max(factors) * max(marks.values()) * SPEED_MARGIN
     low, high = max(low, whole[0]), min(high, whole[1])
     return (low, high) if low < high else whole
 
@@ -343,7 +340,7 @@ def decade_of_roughness(contact: Contact) -> int:
 
 def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[float, float], decade: int) -> Diagram:
     """Return the diagram at the load of a contact over three decades of roughness, off the atlas."""
-    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
+    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), DIAGRAM_ROWS)
     groups, unit, row = contact.groups, _group_per_unit(contact, "speed"), table_for(contact.groups)
     h = roughness * _group_per_unit(contact, "roughness")
     low, high = row.box["relative_roughness"]

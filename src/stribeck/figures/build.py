@@ -31,10 +31,10 @@ from stribeck.solver.solve import SolveError, solve
 if TYPE_CHECKING:
     import xarray
 
-PICTURES = (".png", ".svg")
-"""Endings of the pictures."""
+PICTURE_ENDINGS = (".png", ".svg")
 
-SHOWING = (
+# Beginnings of the names of sources that change no number of a figure.
+SOURCES_WITHOUT_NUMBERS = (
     "__main__.py",
     "cases/",
     "cli/",
@@ -44,7 +44,6 @@ SHOWING = (
     "fits/",
     "sweeps/",
 )
-"""How the names of sources begin that change no number of a figure."""
 
 Column = tuple[str | Sequence[str], Any, dict[str, str]]
 
@@ -161,7 +160,7 @@ def fingerprint(figure: PaperFigure) -> str:
     for path in sorted(package.rglob("*.py")):
         name = path.relative_to(package).as_posix()
         of_another = name.startswith("figures/article/figure_") and path.stem != figure.stem
-        if not name.startswith(SHOWING) and not name.endswith("/plot.py") and not of_another:
+        if not name.startswith(SOURCES_WITHOUT_NUMBERS) and not name.endswith("/plot.py") and not of_another:
             found.update(name.encode() + b"\0" + path.read_bytes())
     return found.hexdigest()[:16]
 
@@ -177,10 +176,10 @@ def _make(figure: PaperFigure, place: Path, force: bool, on_progress: OnProgress
         # Before the pictures: it is the sign that they may be replaced.
         write_netcdf(data, file, force=True)
     picture = figure.draw(data)
-    for ending in PICTURES:
-        with atomic_write(stem.with_suffix(ending), PICTURES, force=True) as temporary:
+    for ending in PICTURE_ENDINGS:
+        with atomic_write(stem.with_suffix(ending), PICTURE_ENDINGS, force=True) as temporary:
             style.save(picture, temporary)
-    files = tuple(stem.with_suffix(ending) for ending in (*PICTURES, *NETCDF_ENDINGS))
+    files = tuple(stem.with_suffix(ending) for ending in (*PICTURE_ENDINGS, *NETCDF_ENDINGS))
     return Made(figure.name, "reused" if reused else "solved", files)
 
 
@@ -231,5 +230,5 @@ def _check_files(figure: PaperFigure, place: Path, force: bool) -> None:
     """Refuse to replace files that this command has not made."""
     stem = place / figure.stem
     ours = force or _read(figure, stem.with_suffix(".nc")) is not None
-    for ending in (*PICTURES, *NETCDF_ENDINGS):
+    for ending in (*PICTURE_ENDINGS, *NETCDF_ENDINGS):
         check_writable(stem.with_suffix(ending), (ending,), force=ours)

@@ -39,24 +39,20 @@ __all__ = [
     "slope",
 ]
 
-GREEN = "#009e73"
-"""The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK."""
+GREEN = "#009e73"  # The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK.
 
-DASHED: Any = (0, (5, 2.5))
-DOTTED: Any = (0, (1.2, 1.6))
-"""Dashes of lines that formulas give; states of the solver are full lines or dots."""
+DASHED: Any = (0, (5, 2.5))  # Dashes of lines that formulas give; states of the solver are full lines or dots.
+DOTTED: Any = (0, (1.2, 1.6))  # Dots of lines that formulas give.
 
-LINE = 0.17
-"""Height of a line of the foot [inch]."""
+FOOT_LINE_HEIGHT = 0.17  # Height of a line of the foot [inch].
 
-LETTERS_PER_INCH = 17.0
-"""Letters of the foot that fit into an inch."""
+LETTERS_PER_INCH = 17.0  # Letters of the foot that fit into an inch.
 
 
 def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
     """Return an empty figure with the title, and a foot of claim, finding and source of the data."""
     foot = _foot(data, int(LETTERS_PER_INCH * (width - 0.3)))
-    head, low = 0.45, LINE * len(foot) + 0.22
+    head, low = 0.45, FOOT_LINE_HEIGHT * len(foot) + 0.22
     whole = height + head + low
     figure = blank_figure(width, whole, layout="constrained")
     engine: Any = figure.get_layout_engine()
@@ -64,7 +60,9 @@ def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
     headline = f"Figure {data.attrs['figure']}: {data.attrs['title']}"
     figure.text(0.15 / width, 1 - 0.13 / whole, headline, size=13, weight="bold", color=INK, va="top", parse_math=False)
     for i, (text, colour) in enumerate(reversed(foot)):
-        figure.text(0.15 / width, (0.1 + LINE * i) / whole, text, size=8, color=colour, va="bottom", parse_math=False)
+        figure.text(
+            0.15 / width, (0.1 + FOOT_LINE_HEIGHT * i) / whole, text, size=8, color=colour, va="bottom", parse_math=False
+        )
     return figure
 
 

@@ -30,19 +30,19 @@ from stribeck.quantities.units import InputError, show
 
 PhiForm = Literal["quadrature", "closed"]
 
-HEAVY, LIGHT = 2 / 125, 1 / 24
-"""phi A**3 as the load tends to one, and phi A**6 as it tends to zero, A = -ln(F)/3."""
+HEAVY_LIMIT = 2 / 125  # phi A**3 as the load tends to one, A = -ln(F)/3.
+LIGHT_LIMIT = 1 / 24  # phi A**6 as the load tends to zero.
 
-CLOSED = (6.809, 3.505, 8.521, 10.584)
-"""b1, b2, a1, a2 of the closed form, by smallest maximum error."""
+# b1, b2, a1, a2 of the closed form of phi, by smallest maximum error.
+CLOSED_FORM_COEFFICIENTS = (6.809, 3.505, 8.521, 10.584)
 
-SHARE_EDGES = (-2.143, 3.779, 1.267)
-SHEAR_EDGES = (1.566, 4.399, -0.658)
-MOMENT_EDGES = (-0.845, 7.554, 0.835)
-"""Coefficients of kappa**(2/3), the width of the edges, relative, as polynomials in A; fitted to states of the solver
-at loads 1e-4 to 0.5 and kappa 1e-5 to 0.03, whose errors have that power."""
+# Coefficients of kappa**(2/3), the width of the edges, relative, as polynomials in A: of the load share, the shear and the
+# moment of the pressure.  They are fitted to states at loads 1e-4 to 0.5 and kappa 1e-5 to 0.03, whose errors have that power.
+SHARE_EDGE_COEFFICIENTS = (-2.143, 3.779, 1.267)
+SHEAR_EDGE_COEFFICIENTS = (1.566, 4.399, -0.658)
+MOMENT_EDGE_COEFFICIENTS = (-0.845, 7.554, 0.835)
 
-SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 0.03), Limit("slow_share", 0, 1e-3))
+SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 0.03), Limit("slow_share", 0, 1e-3))
 
 
 def gap_at_rest(load: Value, kappa: Value = 0.0) -> Array:
@@ -57,11 +57,11 @@ def phi_of(A: Array, form: PhiForm = "quadrature") -> Array:
         return of_gap(A, lambda contact: contact.share)
     if form != "closed":
         raise InputError(f"form = {show(form)}; it must be 'quadrature' or 'closed'.")
-    b1, b2, a1, a2 = CLOSED
-    a3 = b2 * (HEAVY / LIGHT) ** (1 / 3)
+    b1, b2, a1, a2 = CLOSED_FORM_COEFFICIENTS
+    a3 = b2 * (HEAVY_LIMIT / LIGHT_LIMIT) ** (1 / 3)
     # In 1/A, which does not overflow for very rough contacts.
     a = 1 / A
-    return np.asarray(HEAVY * (a * a * (a * (a + b1) + b2) / (a * (a * (a + a1) + a2) + a3)) ** 3)
+    return np.asarray(HEAVY_LIMIT * (a * a * (a * (a + b1) + b2) / (a * (a * (a + a1) + a2) + a3)) ** 3)
 
 
 def phi(load: Value, form: PhiForm = "quadrature") -> Value:
@@ -116,7 +116,7 @@ def edge_factor(load: Value, kappa: Value, coefficients: tuple[float, float, flo
     predicts="fluid_load_share",
     undefined="from load 1 on",
     plane="mixed",
-    limits=SLOW,
+    limits=SLOW_RANGE,
     worst=0.06,
     source="ours",
 )
@@ -147,7 +147,7 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     if not with_edges:
         return np.square(number) * phi_of(gap_at_rest(groups.load), form)
     F, kappa = groups.load, groups.relative_roughness
-    return np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(F, kappa, SHARE_EDGES)
+    return np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(F, kappa, SHARE_EDGE_COEFFICIENTS)
 
 
 @formula(
@@ -155,7 +155,7 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     predicts="contact_load_share",
     undefined="from load 1 on",
     plane="mixed",
-    limits=SLOW,
+    limits=SLOW_RANGE,
     worst=2e-4,
     source="ours",
 )
@@ -183,7 +183,7 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
     predicts="viscous_friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=SLOW,
+    limits=SLOW_RANGE,
     worst=0.09,
     source="ours",
 )
@@ -218,14 +218,16 @@ def viscous_friction(
     if beta == 0:
         return np.zeros(groups.shape)[()]
     A = gap_at_rest(F, kappa)
-    J = lambda_ / kappa * edge_factor(F, kappa, SHEAR_EDGES) * of_gap(A, lambda contact: contact.shear)
+    J = lambda_ / kappa * edge_factor(F, kappa, SHEAR_EDGE_COEFFICIENTS) * of_gap(A, lambda contact: contact.shear)
     J = J + lambda_ * far_integral(groups.slope(beta), wetted_radius)
     if definition == "published":
         # A disc of liquid ends with a pressure at its rim.
         J = (
             J
             + (0.0 if wetted_radius is None else POISEUILLE) * lambda_
-            - fluid_number(groups) * edge_factor(F, kappa, MOMENT_EDGES) * of_gap(A, lambda contact: contact.moment)
+            - fluid_number(groups)
+            * edge_factor(F, kappa, MOMENT_EDGE_COEFFICIENTS)
+            * of_gap(A, lambda contact: contact.moment)
         )
     return (0.75 * beta * np.power(F, 1 / 3) * J)[()]
 
@@ -235,7 +237,7 @@ def viscous_friction(
     predicts="friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*SLOW, Limit("beta/mu0", 0.0, 1.0)),
+    limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)),
     worst=1e-3,
     source="ours",
 )

@@ -39,23 +39,21 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT, MINIMUM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.point.rigid import GAP
+from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.contacts.line import Groups
 
-LEAKAGE = math.pi * BALL_FILM_CONSTANT**2
-"""Flux lost up to the middle of the contact over the flux that enters, as a multiple of lambda**(1/5)."""
+# Flux lost up to the middle of the contact over the flux that enters, as a multiple of lambda**(1/5).
+LEAKAGE_COEFFICIENT = math.pi * BALL_FILM_CONSTANT**2
 
-OUTLET_POWER = (0.8283, -0.078)
-"""Logarithm of the minimum of the outlet, over that at the line's film, as a polynomial in the logarithm of the
-incoming film; from the outlet solved for films of 0.8 to 1.05 times that of the line, within 2e-4."""
+# Logarithm of the minimum of the outlet over the line's, as a polynomial in the logarithm of the incoming film; from the
+# outlet solved for films of 0.8 to 1.05 times the line's, within 2e-4.
+OUTLET_COEFFICIENTS = (0.8283, -0.078)
 
-SIDE = (0.6817, 0.9625, 1.0682)
-"""Fitted: limit of the minimum film over lambda**(3/4), and coefficients of what divides it."""
+# Fitted: limit of the minimum film over lambda**(3/4), and coefficients of what divides it.
+SIDE_COEFFICIENTS = (0.6817, 0.9625, 1.0682)
 
-BRIDGE = (-0.35423, -0.055968, -0.05253, 0.094462, 0.53295, -0.10852, -0.0096834)
-"""Fitted coefficients d1 .. d4, n2 .. n4 of :func:`central_gap`."""
-
-STEPS = (1e-3, 1e-4, 1e-5)
+# Fitted coefficients d1 .. d4, n2 .. n4 of :func:`central_gap`.
+BRIDGE_COEFFICIENTS = (-0.35423, -0.055968, -0.05253, 0.094462, 0.53295, -0.10852, -0.0096834)
 
 
 def _smooth(speed: float) -> Groups:
@@ -96,7 +94,7 @@ def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
     Source: ours, see the module.
     """
     film: Value = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6)
-    return film * (1 + LEAKAGE * np.power(groups.speed, 0.2)) ** -0.5 if leakage else film
+    return film * (1 + LEAKAGE_COEFFICIENT * np.power(groups.speed, 0.2)) ** -0.5 if leakage else film
 
 
 @formula(
@@ -130,11 +128,11 @@ def central_gap(groups: Groups) -> Value:
 
 def film_of(speed: Value) -> Value:
     """Return the gap in the middle of a smooth ball at a speed group."""
-    d1, d2, d3, d4, n2, n3, n4 = BRIDGE
-    K = (GAP / BALL_FILM_CONSTANT) ** 2
+    d1, d2, d3, d4, n2, n3, n4 = BRIDGE_COEFFICIENTS
+    K = (GAP_COEFFICIENT / BALL_FILM_CONSTANT) ** 2
     # Beyond, the ratio is its limit, K u**2, to all digits; its powers would overflow.
     u, beyond = np.minimum(np.power(speed, 0.2), 1e30), np.maximum(np.power(speed, 0.2) / 1e30, 1.0)
-    above = 1 + u * (d1 - LEAKAGE + u * (n2 + u * (n3 + u * (n4 + u * K * (d3 + d4 * u)))))
+    above = 1 + u * (d1 - LEAKAGE_COEFFICIENT + u * (n2 + u * (n3 + u * (n4 + u * K * (d3 + d4 * u)))))
     below = 1 + u * (d1 + u * (d2 + u * (d3 + u * d4)))
     found: Value = BALL_FILM_CONSTANT * np.power(speed, 0.6) * np.sqrt(above / below) * beyond
     return found
@@ -196,8 +194,8 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
     Source: ours, see the module.
     """
     film = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6)
-    log_f = -0.5 * np.log1p(2 * LEAKAGE * np.power(groups.speed, 0.2))
-    one, two = OUTLET_POWER
+    log_f = -0.5 * np.log1p(2 * LEAKAGE_COEFFICIENT * np.power(groups.speed, 0.2))
+    one, two = OUTLET_COEFFICIENTS
     found: Value = MINIMUM_CONSTANT / FILM_CONSTANT * film * np.exp(log_f * (one + two * log_f))
     return found
 
@@ -223,7 +221,7 @@ def minimum_gap(groups: Groups) -> Value:
 
     Source: ours, see the module.
     """
-    limit, one, two = SIDE
+    limit, one, two = SIDE_COEFFICIENTS
     v = np.power(groups.speed, 0.25)
     found: Value = limit * np.power(groups.speed, 0.75) / (1 + v * (one + two * v))
     return found
@@ -232,4 +230,4 @@ def minimum_gap(groups: Groups) -> Value:
 def _flux_film(speed: Value, angle: Array) -> Array:
     """Return the film of the flux that is left in the middle after the leakage over an angle arcsin x + pi/2."""
     film = BALL_FILM_CONSTANT * np.power(speed, 0.6)
-    return np.asarray(film * (1 + 2 / math.pi * LEAKAGE * np.power(speed, 0.2) * angle) ** -0.5)
+    return np.asarray(film * (1 + 2 / math.pi * LEAKAGE_COEFFICIENT * np.power(speed, 0.2) * angle) ** -0.5)

@@ -25,28 +25,27 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.point.logarithm import LOGARITHM, far_integral
+from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, far_integral
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.asymptotics.point.rigid import GAP
-from stribeck.asymptotics.point.sharing import BOX, film_speed_ratio, log_odds, speed_of_share
+from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
+from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
 from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups
 
-SLOW = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)
-"""Friction integral over lambda**(2/5) of the slow horseshoe, 1.4054."""
+# Friction integral over lambda**(2/5) of the slow horseshoe, 1.4054.
+SLOW_INTEGRAL = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)
 
-SMOOTH = (1.14012, 4.59157, 1.21222, -0.65781, 0.84862, 1.04412, -0.027006)
-ROUGH = (0.55662, 0.017976, 0.30227, 0.013413, 0.0021505)
-FIRST_MOMENT = (0.158797, 0.621804, 3.214195, 1.305809, 0.380217)
-MOMENT = (2.0682, 1.3137, 37.592, 0.73164, 0.2153, 1.2369, 0.43489)
-MOMENT_EDGES = (-0.56624, 7.1791, 0.68051)
-"""Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`; the moment of first order in the speed is
-within 0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.slow_contact`) for A from 0.08 to 20."""
+# Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`; the moment of first order in the speed is within
+# 0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.slow_contact`) for A from 0.08 to 20.
+SMOOTH_COEFFICIENTS = (1.14012, 4.59157, 1.21222, -0.65781, 0.84862, 1.04412, -0.027006)
+ROUGH_COEFFICIENTS = (0.55662, 0.017976, 0.30227, 0.013413, 0.0021505)
+FIRST_MOMENT_COEFFICIENTS = (0.158797, 0.621804, 3.214195, 1.305809, 0.380217)
+MOMENT_COEFFICIENTS = (2.0682, 1.3137, 37.592, 0.73164, 0.2153, 1.2369, 0.43489)
+MOMENT_EDGE_COEFFICIENTS = (-0.56624, 7.1791, 0.68051)
 
 
-FIRST_SHARE = 1e-4
-"""Load share of the fluid below which the friction integral is proportional to the speed."""
+LINEAR_SHARE_BELOW = 1e-4  # Load share of the fluid below which the friction integral is proportional to the speed.
 
 
 def smooth_integral(speed: Value) -> Value:
@@ -68,11 +67,13 @@ def smooth_integral(speed: Value) -> Value:
     float or ndarray
         J_fp [-]; within 7e-4 of J with the liquid up to 15 radii, at 49 speeds from 1e-6 to 1e4.
     """
-    b1, b2, a1, a2, a3, a4, q = SMOOTH
+    b1, b2, a1, a2, a3, a4, q = SMOOTH_COEFFICIENTS
     lambda_ = np.asarray(speed)
     u = lambda_**0.2
-    film = SLOW * u**2 * (1 + u * (b1 + u * b2)) / (1 + u * (a1 + u * (a2 + u * (a3 + u * a4))))
-    found: Value = film - LOGARITHM / 2 * lambda_ * np.log1p(q * u**2 + 2 * math.exp(0.75) * GAP * u**4)
+    film = SLOW_INTEGRAL * u**2 * (1 + u * (b1 + u * b2)) / (1 + u * (a1 + u * (a2 + u * (a3 + u * a4))))
+    found: Value = film - LOGARITHM_COEFFICIENT / 2 * lambda_ * np.log1p(
+        q * u**2 + 2 * math.exp(0.75) * GAP_COEFFICIENT * u**4
+    )
     return found
 
 
@@ -114,7 +115,7 @@ def viscous_friction_smooth(
     predicts="viscous_friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
+    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
     worst=0.22,
     source="ours",
 )
@@ -155,7 +156,7 @@ def viscous_friction(
     predicts="friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*BOX, Limit("beta/mu0", 0.1, 1.0)),
+    limits=(*FIT_RANGE, Limit("beta/mu0", 0.1, 1.0)),
     worst=0.15,
     source="ours",
 )
@@ -191,16 +192,16 @@ def friction(
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition, wetted_radius: float | None) -> Array:
-    power, bend, one, by_roughness, by_load = ROUGH
+    power, bend, one, by_roughness, by_load = ROUGH_COEFFICIENTS
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     J = np.array(np.broadcast_to(smooth_integral(lambda_), odds.shape))
     J[np.isnan(odds)] = np.nan
     rough = np.isfinite(odds)
     lambda_, F, kappa, odds = lambda_[rough], F[rough], kappa[rough], odds[rough]
     # In boundary lubrication the integral is proportional to the speed.
-    slowest = np.log(FIRST_SHARE / (1 - FIRST_SHARE))
+    slowest = np.log(LINEAR_SHARE_BELOW / (1 - LINEAR_SHARE_BELOW))
     low = Groups(1.0, F, kappa * F ** (2 / 3), geometry="point")
-    speed = np.where(odds < slowest, speed_of_share(low, FIRST_SHARE), lambda_)
+    speed = np.where(odds < slowest, speed_of_share(low, LINEAR_SHARE_BELOW), lambda_)
     states = Groups(speed, F, kappa * F ** (2 / 3), geometry="point")
     y = -np.log(film_speed_ratio(states, np.maximum(odds, slowest)))
     factor = 1 + (one + by_roughness * np.log(kappa) + by_load * np.log(F)) * y
@@ -212,17 +213,17 @@ def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition, w
 
 def _moment(F: Array, kappa: Array, odds: Array) -> Array:
     """Return the moment of the contact pressure over lambda/kappa**2."""
-    b1, b2, b3, b4, b5, b6, b7 = MOMENT
+    b1, b2, b3, b4, b5, b6, b7 = MOMENT_COEFFICIENTS
     A, more = -np.log(F) / 3, np.logaddexp(0.0, odds)
     G = A + (0.5 + CATALAN) * kappa + more
     q = b7 + (b1 + b2 / G) / ((1 + b3 * kappa**b4 * G**b6) * (1 + b5 * more))
-    edges = 1 + np.polynomial.polynomial.polyval(A, MOMENT_EDGES) * kappa ** (2 / 3)
+    edges = 1 + np.polynomial.polynomial.polyval(A, MOMENT_EDGE_COEFFICIENTS) * kappa ** (2 / 3)
     return np.asarray(first_moment(G) * np.exp(-more * q) * edges)
 
 
 def first_moment(A: Value) -> Array:
     """Return the moment of the fluid's pressure that Slow.moment integrates, less its sign, in closed form."""
-    c1, c2, c3, c4, c5 = FIRST_MOMENT
+    c1, c2, c3, c4, c5 = FIRST_MOMENT_COEFFICIENTS
     G = np.asarray(A)
     return np.asarray(c1 * G**-c2 * (1 + c3 * G) ** -c4 * (1 + c5 * G) ** (c2 + c4 - 3))
 

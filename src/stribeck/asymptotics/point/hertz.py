@@ -14,8 +14,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
 from stribeck.solids import hertz
 
-OFFSET = -1.0
-"""Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation."""
+HERTZ_OFFSET = -1.0  # Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation.
 
 
 def _rest(relative_roughness: float) -> Groups:
@@ -141,4 +140,4 @@ def offset(groups: Groups) -> Value:
 
     Source: Hertz (1882).
     """
-    return np.full(groups.shape, OFFSET)[()]
+    return np.full(groups.shape, HERTZ_OFFSET)[()]

@@ -14,8 +14,7 @@ from stribeck.asymptotics.formula import Value
 from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
 from stribeck.quantities.units import InputError, real_array, show
 
-LOGARITHM = COUETTE + POISEUILLE
-"""Coefficient of lambda ln X, 16 pi/15."""
+LOGARITHM_COEFFICIENT = COUETTE + POISEUILLE  # Coefficient of lambda ln X, 16 pi/15.
 
 
 def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
@@ -43,8 +42,8 @@ def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
     if wetted_radius is None:
         by_shear, by_pressure = log_cut_offs(1.0)
         with np.errstate(divide="ignore"):
-            return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure - LOGARITHM * np.log(slope))
+            return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure - LOGARITHM_COEFFICIENT * np.log(slope))
     radius = real_array("wetted_radius", wetted_radius)
     if not ((radius > 1) & (radius < math.inf)).all():
         raise InputError(f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact.")
-    return np.asarray(LOGARITHM * np.log(radius))
+    return np.asarray(LOGARITHM_COEFFICIENT * np.log(radius))

@@ -30,21 +30,17 @@ from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.asymptotics.smooth.edge_layer import layer
 from stribeck.contacts.line import Groups
 
-CATALAN = 0.915965594177219
-"""Catalan's constant."""
+CATALAN = 0.915965594177219  # Catalan's constant.
 
+# Coefficient of kappa**2 in the offset beside its logarithm, from states at kappa = 1e-2 and 1e-4; the logarithm is derived.
 OFFSET_CONSTANT = 0.6532
-"""Coefficient of kappa**2 in the offset beside its logarithm, from states at kappa = 1e-2 and 1e-4; the logarithm is
-derived."""
 
 LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
 SMALL_INDENTATION = (Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 0.2))
 
-RULE = np.polynomial.legendre.leggauss(40)
-"""Gauss rule of the correction of the pressure; good to rounding."""
+GAUSS_RULE = np.polynomial.legendre.leggauss(40)  # Rule of the correction of the pressure, good to rounding.
 
-WIDTHS = 5.0
-"""Distance from the edge, in widths of its layer, to which the fields are compared with the solver."""
+LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
 
 
 def _smoother(relative_roughness: float) -> Groups:
@@ -63,7 +59,7 @@ def _contact(groups: Groups) -> tuple[float, float]:
 
 
 def _edge(groups: Groups) -> tuple[float, float]:
-    width = float(WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3))
+    width = float(LAYER_WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3))
     return 1 - width, 1 + width
 
 
@@ -315,12 +311,12 @@ def offset_small_indentation(groups: Groups) -> Value:
 def pressure_correction(r: Array) -> Array:
     """Return p_1 at distances below one from the middle, the pressure under the gap of a rough contact over kappa."""
     r = np.asarray(r, dtype=float)[..., None]
-    psi = math.pi / 4 * (RULE[0] + 1)
+    psi = math.pi / 4 * (GAUSS_RULE[0] + 1)
     # cos(theta) on the path, by which the distance from the edge is exact.
     away = np.sqrt((1 - r) * (1 + r)) * np.cos(psi)
     phi = np.arcsin(away)
     slope = (0.5 * np.sin(2 * phi) - phi + math.pi * np.sin(phi / 2) ** 2) / away**2
-    integral = (slope / np.sqrt((1 - away) * (1 + away))) @ (math.pi / 4 * RULE[1])
+    integral = (slope / np.sqrt((1 - away) * (1 + away))) @ (math.pi / 4 * GAUSS_RULE[1])
     return np.asarray(-1 / np.sqrt((1 - r[..., 0]) * (1 + r[..., 0])) - 0.5 * integral)
 
 

@@ -22,13 +22,13 @@ import numpy as np
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
 
-LIFT = 27 * math.pi**2 / (6400 * math.sqrt(2))
-"""Load of the fluid over lambda**2 h_0**(-5/2)."""
+LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid over lambda**2 h_0**(-5/2).
 
-GAP = (3 * LIFT / (2 * math.pi)) ** 0.4
-"""h_0 over lambda**(4/5), 0.18162, at which that is 2 pi/3."""
+GAP_COEFFICIENT = (
+    3 * LIFT_COEFFICIENT / (2 * math.pi)
+) ** 0.4  # h_0 over lambda**(4/5), 0.18162, at which that load is 2 pi/3.
 
-RANGE = (Limit("speed", 1e2),)
+FAST_RANGE = (Limit("speed", 1e2),)
 
 
 def _fast(inverse_speed: float) -> Groups:
@@ -42,7 +42,7 @@ def _near(groups: Groups) -> tuple[float, float]:
 
 def gap_of(groups: Groups) -> Value:
     """Return the gap under the rigid ball."""
-    found: Value = GAP * np.power(groups.speed, 0.8)
+    found: Value = GAP_COEFFICIENT * np.power(groups.speed, 0.8)
     return found
 
 
@@ -51,7 +51,7 @@ def gap_of(groups: Groups) -> Value:
     predicts="minimum_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=FAST_RANGE,
     worst=8e-4,
     small="1/speed",
     error_order=1.2,

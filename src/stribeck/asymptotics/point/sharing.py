@@ -27,37 +27,34 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.point.boundary import SHARE_EDGES, phi_of
+from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, real_array, show
 
-BOX = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-3, 0.7), Limit("relative_roughness", 3e-4, 1e-1))
-"""Range of the states that the coefficients were fitted to."""
+# Range of the states to which the coefficients are fitted.
+FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-3, 0.7), Limit("relative_roughness", 3e-4, 1e-1))
 
-WEDGE = (17.3934, 3.1231, 1.44, -0.1293, -0.0146)
-SHAPE = (0.3229, 0.00265, -0.0572)
-PROFILE = (0.7215, -0.1963, 0.1719, 0.2288)
-SUM = (1.0553, -0.4377)
-"""Fitted coefficients of the wedge, of q, of the speed of the film, and of the sum of both."""
+WEDGE_COEFFICIENTS = (17.3934, 3.1231, 1.44, -0.1293, -0.0146)  # Fitted coefficients of the wedge.
+SHAPE_COEFFICIENTS = (0.3229, 0.00265, -0.0572)  # Fitted coefficients of q.
+FILM_COEFFICIENTS = (0.7215, -0.1963, 0.1719, 0.2288)  # Fitted coefficients of the speed of the film.
+SUM_COEFFICIENTS = (1.0553, -0.4377)  # Fitted coefficients of the sum of both speeds.
 
-NODES = 48
-TABLE = (math.log(1e-18), math.log(1e9), 6000)
-"""Gauss nodes across the film; ends and number of the logarithms of speeds at which the film is inverted."""
+GAUSS_NODES = 48  # Gauss nodes across the film.
+# Ends and number of the logarithms of speeds at which the film is inverted.
+LOG_SPEED_TABLE = (math.log(1e-18), math.log(1e9), 6000)
 
-LARGEST_ROUGHNESS = 100.0
-"""Relative roughness beyond which the fits mean nothing and the film across cannot be integrated: there is no value."""
+MAX_ROUGHNESS = 100.0  # Relative roughness above which the film across cannot be integrated, and there is no value.
 
-STEPS = 70
-"""Most steps of the inversions; 10 are usual."""
+MAX_STEPS = 70  # Steps of the inversions; 10 are usual.
 
 
 @formula(
     geometry="point",
     predicts="contact_load_share",
     plane="mixed",
-    limits=(*BOX, Limit("film_ratio", 0.0, 6.0)),
+    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 6.0)),
     worst=0.09,
     source="ours",
 )
@@ -107,7 +104,7 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
         raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
     odds, F, kappa = np.broadcast_arrays(np.log(wanted / (1 - wanted)), groups.load, groups.relative_roughness)
     found = np.full(odds.shape, math.nan)
-    inside = (F < 1) & (kappa > 0) & (kappa <= LARGEST_ROUGHNESS)
+    inside = (F < 1) & (kappa > 0) & (kappa <= MAX_ROUGHNESS)
     found[inside] = np.exp(_log_speed(odds[inside], F[inside], kappa[inside])[0])
     return found[()]
 
@@ -115,12 +112,12 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
 def log_odds(groups: Groups) -> Array:
     """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan where the law has no value."""
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
-    has_value = (F < 1) & ((lambda_ == 0) | (kappa <= LARGEST_ROUGHNESS))
+    has_value = (F < 1) & ((lambda_ == 0) | (kappa <= MAX_ROUGHNESS))
     found = np.where(has_value, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
     inside = has_value & (lambda_ > 0) & (kappa > 0)
     wanted, F, kappa = np.log(lambda_[inside]), F[inside], kappa[inside]
     low, high = np.full(F.shape, -120.0), np.full(F.shape, 120.0)
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         middle = 0.5 * (low + high)
         slower = _log_speed(middle, F, kappa)[0] < wanted
         low, high = np.where(slower, middle, low), np.where(slower, high, middle)
@@ -136,16 +133,16 @@ def film_speed_ratio(groups: Groups, odds: Array) -> Array:
 
 def _log_speed(odds: Array, F: Array, kappa: Array) -> tuple[Array, Array]:
     """Return the logarithms of the speed for ln X, and of that of the film alone."""
-    w1, w2, w3, w4, w5 = WEDGE
-    q0, q1, q2 = SHAPE
-    f0, f1, f2, f3 = PROFILE
-    s1, s2 = SUM
+    w1, w2, w3, w4, w5 = WEDGE_COEFFICIENTS
+    q0, q1, q2 = SHAPE_COEFFICIENTS
+    f0, f1, f2, f3 = FILM_COEFFICIENTS
+    s1, s2 = SUM_COEFFICIENTS
     more, fluid = np.logaddexp(0.0, odds), 1 / (1 + np.exp(-odds))  # ln(1 + X), 1 - S
     A_0 = -np.log(F) / 3
     A = A_0 + (0.5 + CATALAN) * kappa
     G = A + more
     H = G + math.log(1.5)
-    edges = 1 + np.polynomial.polynomial.polyval(A_0, SHARE_EDGES) * kappa ** (2 / 3)
+    edges = 1 + np.polynomial.polynomial.polyval(A_0, SHARE_EDGE_COEFFICIENTS) * kappa ** (2 / 3)
     at_rest = -0.5 * np.log(phi_of(A, "closed") * np.maximum(edges, 0.02)) - math.log(w1) - w2 * np.log(A)
     wedge = 2 * np.log(kappa) + 0.5 * (odds + more) + math.log(w1) + w2 * np.log(G)
     wedge = wedge + at_rest * np.exp(-(w3 + w4 * A_0 + w5 * np.sqrt(kappa)) * more)
@@ -162,7 +159,7 @@ def _horseshoe(H: Array, q: Array) -> Array:
     cosine, weights = _across()
     shape = cosine ** (2 * q[..., None])
     found = H
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         # In the logarithm the sum is nearly linear in the film.
         parts = weights * np.exp(-found[..., None] * shape)
         total = parts.sum(-1)
@@ -176,14 +173,14 @@ def _horseshoe(H: Array, q: Array) -> Array:
 @cache
 def _across() -> tuple[Array, Array]:
     """Return (1 - y**2)**(1/2) across the film, and weights of (2/pi) (1 - y**2)**(1/2) dy, which add up to one."""
-    x, weights = np.polynomial.legendre.leggauss(NODES)
+    x, weights = np.polynomial.legendre.leggauss(GAUSS_NODES)
     cosine = np.cos(0.5 * math.pi * x)
     return cosine, weights * cosine**2
 
 
 @cache
 def _film_table() -> tuple[Array, Array]:
-    speeds = np.linspace(*TABLE)
+    speeds = np.linspace(*LOG_SPEED_TABLE)
     return np.asarray(np.log(film_of(np.exp(speeds)))), speeds
 
 

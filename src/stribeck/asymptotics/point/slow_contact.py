@@ -24,16 +24,13 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Value
 
-DEGREE = 16
-PANELS = 12
-"""Degree and number of the elements: the integrals to 1e-12 for loads up to 1 - 1e-3."""
+ELEMENT_DEGREE = 16  # Degree of the elements: the integrals err by 1e-12 for loads up to 1 - 1e-3.
+ELEMENTS = 12  # Number of the elements.
 
-REACH = 19.0
-"""Length in artanh(r): what is left out is 1e-16 of the whole."""
+DOMAIN_LENGTH = 19.0  # Length of the integrals in artanh(r): 1e-16 of the whole is left out.
 
 
-LARGEST_GAP = 1e50
-"""A up to which powers of the gap stay in double precision; beyond it the integrals are zero."""
+MAX_GAP = 1e50  # A up to which powers of the gap stay in double precision; above it the integrals are zero.
 
 
 @dataclass(frozen=True)
@@ -76,7 +73,7 @@ def slow_contact(A: float) -> Slow:
     """Return the contact at -1/3 ln F = A > 0."""
     nodes, rule, D = _reference()
     delta = np.arcsin(np.sqrt(-np.expm1(-2 * A)))
-    edges = np.linspace(0.0, np.arcsinh(REACH / delta), PANELS + 1)
+    edges = np.linspace(0.0, np.arcsinh(DOMAIN_LENGTH / delta), ELEMENTS + 1)
     half = 0.5 * (edges[1] - edges[0])
     v = edges[:-1, None] + half * (nodes + 1)
     u = delta * np.sinh(v)
@@ -85,17 +82,17 @@ def slow_contact(A: float) -> Slow:
     stretch = half * delta * np.cosh(v) * p_0**2
     weights = rule * stretch
     d_dr = D / stretch[..., None]
-    n = PANELS * DEGREE + 1
+    n = ELEMENTS * ELEMENT_DEGREE + 1
     matrix, right = np.zeros((n, n)), np.zeros(n)
-    for k in range(PANELS):
-        place = slice(k * DEGREE, (k + 1) * DEGREE + 1)
+    for k in range(ELEMENTS):
+        place = slice(k * ELEMENT_DEGREE, (k + 1) * ELEMENT_DEGREE + 1)
         matrix[place, place] -= d_dr[k].T @ ((weights[k] * r[k] * H[k] ** 3)[:, None] * d_dr[k])
         # The node in the middle has P = 0.
         matrix[place, place] -= np.diag(weights[k] * H[k] ** 3 / np.where(r[k] > 0, r[k], 1.0))
         right[place] += weights[k] * r[k] ** 2 / p_0[k] ** 2
     P = np.zeros(n)
     P[1:-1] = np.linalg.solve(matrix[1:-1, 1:-1], right[1:-1])
-    local = np.stack([P[k * DEGREE : (k + 1) * DEGREE + 1] for k in range(PANELS)])
+    local = np.stack([P[k * ELEMENT_DEGREE : (k + 1) * ELEMENT_DEGREE + 1] for k in range(ELEMENTS)])
     slope = np.einsum("kij,kj->ki", d_dr, local)
     return Slow(r, H, p_0, local, slope, weights)
 
@@ -104,20 +101,20 @@ def of_gap(A: Value, number: Callable[[Slow], float]) -> Array:
     """Return a number for each A from its contact, equal ones once; nan where A is no finite positive number."""
     gaps = np.asarray(A, dtype=float)
     different, where = np.unique(gaps, return_inverse=True)
-    found = [number(slow_contact(each)) if 0 < each < LARGEST_GAP else np.nan for each in different.tolist()]
+    found = [number(slow_contact(each)) if 0 < each < MAX_GAP else np.nan for each in different.tolist()]
     return np.asarray(np.array(found)[where.reshape(gaps.shape)])
 
 
 @cache
 def _reference() -> tuple[Array, Array, Array]:
     """Return Lobatto's nodes and weights and the matrix of the derivative."""
-    top = np.zeros(DEGREE + 1)
+    top = np.zeros(ELEMENT_DEGREE + 1)
     top[-1] = 1.0
     inner = np.sort(legendre.legroots(legendre.legder(top)).real)
     nodes = np.concatenate([[-1.0], inner, [1.0]])
     values = legendre.legval(nodes, top)
-    weights = 2 / (DEGREE * (DEGREE + 1) * values**2)
-    apart = nodes[:, None] - nodes + np.eye(DEGREE + 1)
+    weights = 2 / (ELEMENT_DEGREE * (ELEMENT_DEGREE + 1) * values**2)
+    apart = nodes[:, None] - nodes + np.eye(ELEMENT_DEGREE + 1)
     D = np.asarray(values[:, None] / values / apart)
     D -= np.diag(np.diag(D))
     D -= np.diag(D.sum(axis=1))

@@ -42,9 +42,10 @@ __all__ = [
 
 Viscous = Literal["published", "balanced", "neglected"]
 
-SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1))
-SLOWER = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
-"""Ranges of the formulas for load and friction of both together, and for the small share of the fluid."""
+# Range of the formulas for load and friction of both together.
+SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1))
+# Range of the formulas for the small share of the fluid.
+SMALL_SHARE_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
 
 
 def _smoother(relative_roughness: float) -> Groups:
@@ -62,7 +63,7 @@ def _slower(fluid_number: float) -> Groups:
     predicts="fluid_load_share",
     undefined="from load 1 on",
     plane="mixed",
-    limits=SLOWER,
+    limits=SMALL_SHARE_RANGE,
     worst=0.07,
     small="relative_roughness",
     error_order=2 / 3,
@@ -100,7 +101,7 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 @formula(
     predicts="contact_load_share",
     plane="mixed",
-    limits=SLOW,
+    limits=SLOW_RANGE,
     worst=0.017,
     small="fluid_number",
     error_order=4,
@@ -136,7 +137,7 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
     predicts="viscous_friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=SLOWER,
+    limits=SMALL_SHARE_RANGE,
     worst=0.075,
     small="relative_roughness",
     error_order=2 / 3,
@@ -180,7 +181,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
     predicts="friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*SLOW, Limit("beta/mu0", 0.0, 3.0)),
+    limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 3.0)),
     worst=0.017,
     small="relative_roughness",
     error_order=2 / 3,

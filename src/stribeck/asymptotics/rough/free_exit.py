@@ -28,17 +28,15 @@ from stribeck.quantities.units import InputError, real_array, show
 
 __all__ = ["FreeExit", "SmoothFilm", "boundary_film_with_free_exit", "rigid_film_with_free_exit", "slow_film_with_free_exit"]
 
-LARGEST_LOAD = 0.9
-"""Load group up to which the gap in the middle is clearly positive."""
+MAX_LOAD = 0.9  # Load group up to which the gap in the middle is clearly positive.
 
-NODES = 400
+GAUSS_NODES = 400
 
-MINIMUM_OVER_CENTRAL, EXIT_SLOPE = 0.796202, 0.16406
-"""Of slow films: minimum over central gap, and the way of the exit beyond the edge of the dry contact over lambda**(2/5); from
-solved states at speeds of 1e-8 to 1e-10."""
+MINIMUM_OVER_CENTRAL = 0.796202  # Minimum over central gap of slow films, from states at speeds of 1e-8 to 1e-10.
+EXIT_SLOPE = 0.16406  # Way of the exit beyond the edge of the dry contact over lambda**(2/5), from the same states.
 
-RIGID_LOAD, RIGID_EXIT = 2.44748424, 0.47512992
-"""Under a rigid parabola: load over eta U R/h_0, and exit over (2 h_0)**(1/2)."""
+RIGID_LOAD = 2.44748424  # Load over eta U R/h_0 under a rigid parabola.
+RIGID_EXIT = 0.47512992  # Exit over (2 h_0)**(1/2) under a rigid parabola.
 
 
 class FreeExit(NamedTuple):
@@ -170,10 +168,10 @@ def boundary_film_with_free_exit(load: float) -> FreeExit:
     For relative roughness to zero at :math:`\lambda/\kappa^2 \ll 1`; of a state at load 0.1 the share is 4 % higher at
     relative roughness 1e-3 and 24 % at 1e-2 (``test_free_exit_law.py``).
     """
-    if isinstance(load, bool) or not isinstance(load, int | float) or not 1e-8 <= load <= LARGEST_LOAD:
-        raise InputError(f"load = {show(load)}; it must be a number from 1e-8 to {LARGEST_LOAD:g}.")
+    if isinstance(load, bool) or not isinstance(load, int | float) or not 1e-8 <= load <= MAX_LOAD:
+        raise InputError(f"load = {show(load)}; it must be a number from 1e-8 to {MAX_LOAD:g}.")
     # x = -tanh(s): the gap grows as s towards the edge of the contact, where it is infinite.
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = np.polynomial.legendre.leggauss(GAUSS_NODES)
     half_log = -0.5 * math.log(load)
 
     def integrals(end: float) -> tuple[float, float]:

@@ -31,22 +31,20 @@ from stribeck.asymptotics.smooth.hydrodynamic import GAP_SLOPE
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, real_array, show
 
-BOX = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))
-"""Range of the states that the coefficients were fitted to."""
+# Range of the states to which the coefficients are fitted.
+FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))
 
-SHAPE = math.log(4 / math.pi)
-"""H - G: a uniform pressure is pi/4 of the largest one of the same load in Hertz's shape."""
+# H - G: a uniform pressure is pi/4 of the largest one of the same load in Hertz's shape.
+LOG_SHAPE_RATIO = math.log(4 / math.pi)
 
-FILM_SPEED = (-2.970, 2.566, 0.8164, 0.6893, -0.7373)
-WEDGE = (4.909, 2.551, 0.7937, 0.02793)
-EDGE = (-6.265, 4.186, 3.065)
-PROFILE = (0.5996, 0.8093, 0.3581, 0.09829, 0.1302, 0.7041, 2.677, 1.038, 3.302)
-SUM = (2.358, -0.3874, -0.9880, 0.05973)
-"""Fitted coefficients of :func:`_log_film_speed`, :func:`_wedge`, :func:`_film` and :func:`_log_speed`, :data:`EDGE` of the
-second too."""
+FILM_SPEED_COEFFICIENTS = (-2.970, 2.566, 0.8164, 0.6893, -0.7373)  # Fitted coefficients of :func:`_log_film_speed`.
+WEDGE_COEFFICIENTS = (4.909, 2.551, 0.7937, 0.02793)  # Fitted coefficients of :func:`_wedge`.
+EDGE_COEFFICIENTS = (-6.265, 4.186, 3.065)  # Fitted coefficients of the edge, in :func:`_wedge` and the film.
+# Fitted coefficients of :func:`_film`.
+FILM_COEFFICIENTS = (0.5996, 0.8093, 0.3581, 0.09829, 0.1302, 0.7041, 2.677, 1.038, 3.302)
+SUM_COEFFICIENTS = (2.358, -0.3874, -0.9880, 0.05973)  # Fitted coefficients of :func:`_log_speed`.
 
-NEWTON_STEPS = 60
-"""Most steps of the inversion; 6 are usual."""
+MAX_STEPS = 60  # Steps of the inversion; 6 are usual.
 
 
 @formula(
@@ -54,7 +52,7 @@ NEWTON_STEPS = 60
     uses=("load", "roughness"),
     undefined="from load 1 on, and without roughness",
     plane="mixed",
-    limits=BOX[1:],
+    limits=FIT_RANGE[1:],
     worst=0.105,
     source="ours",
 )
@@ -82,7 +80,7 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
     the largest roughness. The criterion :math:`\lambda^2 \phi/\kappa^4 = 1` of [BP], where the true share is 0.13 to 0.46,
     is the first order extrapolated.
 
-    Source: this module; the letters are :data:`WEDGE`, :data:`EDGE`, :data:`PROFILE` and :data:`SUM`.
+    Source: this module; the letters are the fitted coefficients of wedge, edge, film and sum.
     """
     wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():
@@ -94,7 +92,7 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 @formula(
     predicts="contact_load_share",
     plane="mixed",
-    limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
+    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
     worst=0.08,
     source="ours",
 )
@@ -136,7 +134,7 @@ def film_speed_ratio(groups: Groups, odds: Array) -> Array:
 def gaps(odds: Array, F: Array) -> tuple[Array, Array]:
     """Return the central gaps G and H, in kappa u_Hz, at which asperities carry the rest."""
     G = -0.5 * np.log(F) + np.logaddexp(0.0, odds)
-    return G, G + SHAPE
+    return G, G + LOG_SHAPE_RATIO
 
 
 def _speed(odds: Array, F: Array, kappa: Array) -> Array:
@@ -145,7 +143,7 @@ def _speed(odds: Array, F: Array, kappa: Array) -> Array:
 
 
 def _log_speed(odds: Array, F: Array, kappa: Array, phi: Value) -> Array:
-    s1, s2, s3, s4 = SUM
+    s1, s2, s3, s4 = SUM_COEFFICIENTS
     G, H = gaps(odds, F)
     m = s1 + s2 * H / (1 + H) + s3 * kappa**s4
     return np.asarray(-np.logaddexp(-m * _wedge(odds, G, H, F, kappa, phi), -m * _film(H, kappa)) / m)
@@ -153,8 +151,8 @@ def _log_speed(odds: Array, F: Array, kappa: Array, phi: Value) -> Array:
 
 def _wedge(odds: Array, G: Array, H: Array, F: Array, kappa: Array, phi: Value) -> Array:
     """Return the logarithm of the speed of the wedge."""
-    w1, w2, w3, w4 = WEDGE
-    e1, e2, e3 = EDGE
+    w1, w2, w3, w4 = WEDGE_COEFFICIENTS
+    e1, e2, e3 = EDGE_COEFFICIENTS
     more = np.logaddexp(0.0, odds)  # ln(1 + X)
     G_0 = -0.5 * np.log(F)
     at_rest = -0.5 * np.log(phi) - math.log(w1) - w2 * np.log(G_0)
@@ -165,7 +163,7 @@ def _wedge(odds: Array, G: Array, H: Array, F: Array, kappa: Array, phi: Value) 
 
 def _film(H: Array, kappa: Array) -> Array:
     """Return the logarithm of the speed of the film."""
-    p1, p2, p3, p4, p5, p6, p7, p8, p9 = PROFILE
+    p1, p2, p3, p4, p5, p6, p7, p8, p9 = FILM_COEFFICIENTS
     y = kappa * H
     profile = np.log1p(p1 * kappa**p2 * H**p3) + p4 * np.log1p(p5 * kappa**p6 * H**p7) / (1 + p8 * y**p9)
     return np.asarray(_log_film_speed(y) + profile)
@@ -181,7 +179,7 @@ def _log_film_speed(y: Array) -> Array:
 
     a and K follow from the laws of small and large speed.
     """
-    f1, f2, f3, f4, f5 = FILM_SPEED
+    f1, f2, f3, f4, f5 = FILM_SPEED_COEFFICIENTS
     c = FILM_CONSTANT
     a, K = 10 * GAP_SLOPE * c ** (-2 / 3), c**-10 / 24**3
     z = np.cbrt(y)
@@ -195,7 +193,7 @@ def _inverse(log_speed: Array, F: Array, kappa: Array) -> Array:
     low, high = np.full(F.shape, -300.0), np.full(F.shape, 700.0)
     x = np.zeros(F.shape)
     step = 1e-6
-    for _ in range(NEWTON_STEPS):
+    for _ in range(MAX_STEPS):
         off = _log_speed(x, F, kappa, phi) - log_speed
         low, high = np.where(off < 0, x, low), np.where(off < 0, high, x)
         newton = x - off * step / (_log_speed(x + step, F, kappa, phi) - log_speed - off)

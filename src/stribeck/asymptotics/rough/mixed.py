@@ -31,18 +31,18 @@ __all__ = ["Film", "contact_load_share", "friction"]
 
 Film = Literal["large", "central", "uniform"]
 
-OUTLET = (0.37, 0.0072)
-FEEDBACK = 0.45
-SATURATION = 1.85
-"""Coefficients of :func:`contact_load_share`, by smallest maximum error on 243 states of film ratio 3 to 10."""
+# Coefficients of :func:`contact_load_share`, by smallest maximum error on 243 states of film ratio 3 to 10.
+OUTLET_COEFFICIENTS = (0.37, 0.0072)
+FEEDBACK_COEFFICIENT = 0.45
+SATURATION_COEFFICIENT = 1.85
 
-BOX = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("load", 1e-3, 0.7))
+FIT_RANGE = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("load", 1e-3, 0.7))
 
 
 @formula(
     predicts="contact_load_share",
     plane="mixed",
-    limits=(Limit("film_ratio", 3.0, 10.0), *BOX[1:], Limit("speed", 0.0, 2.0)),
+    limits=(Limit("film_ratio", 3.0, 10.0), *FIT_RANGE[1:], Limit("speed", 0.0, 2.0)),
     worst=0.115,
     source="ours; [BP] Eq. (contact_pressure_integral)",
 )
@@ -85,19 +85,19 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
         share = _through(groups, ratio)
         if film == "central":
             return share
-        outlet = OUTLET[0] * groups.speed**0.6 + OUTLET[1] * ratio ** (8 / 3) * groups.speed**0.4
-        inlet = groups.speed**0.2 / FEEDBACK
+        outlet = OUTLET_COEFFICIENTS[0] * groups.speed**0.6 + OUTLET_COEFFICIENTS[1] * ratio ** (8 / 3) * groups.speed**0.4
+        inlet = groups.speed**0.2 / FEEDBACK_COEFFICIENT
         # A film of infinitely many roughnesses has an infinite outlet term and no share.
         share = np.where(np.equal(share, 0), 0.0, share * (1 + outlet))
         share = inlet * lambert_w(share / inlet)
-        found: Array = share / (1 + share**SATURATION) ** (1 / SATURATION)
+        found: Array = share / (1 + share**SATURATION_COEFFICIENT) ** (1 / SATURATION_COEFFICIENT)
         return found[()]
 
 
 @formula(
     predicts="friction",
     plane="mixed",
-    limits=(BOX[0], Limit("relative_roughness", 1e-4, 0.03), BOX[2], Limit("beta/mu0", 0.01, 3.0)),
+    limits=(FIT_RANGE[0], Limit("relative_roughness", 1e-4, 0.03), FIT_RANGE[2], Limit("beta/mu0", 0.01, 3.0)),
     worst=0.094,
     source="ours; [BP] Eq. (friction_hydro-mixed_transition)",
 )

@@ -30,14 +30,12 @@ from stribeck.quantities.units import InputError, show
 
 PhiForm = Literal["quadrature", "closed", "asymptote", "power", "printed"]
 
-ASYMPTOTE = 96 - 128 * math.log(2)
-"""phi (-ln F)**6 as F -> 0."""
+LIGHT_LIMIT = 96 - 128 * math.log(2)  # phi (-ln F)**6 as F -> 0.
 
-POWER = 0.325
-"""Least-squares fit of ln(phi (-ln F)**5) over loads 1e-5 to 1e-1; [BP] print 0.510 = 0.325 pi/2."""
+# Least-squares fit of ln(phi (-ln F)**5) over loads 1e-5 to 1e-1; [BP] print 0.510 = 0.325 pi/2.
+POWER_COEFFICIENT = 0.325
 
-CLOSED = (6.055, 4.462, 4.861, 1.498)
-"""a1, a2, b1, b2 of the closed form, with the smallest maximum error."""
+CLOSED_FORM_COEFFICIENTS = (6.055, 4.462, 4.861, 1.498)  # a1, a2, b1, b2 of the closed form of phi, by smallest maximum error.
 
 
 def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
@@ -47,14 +45,14 @@ def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
         return of_load(load, lambda c: -4 / math.pi * c.integral(c.x * c.second()))
     L = 2 * half_logarithm(load)
     if form == "closed":
-        a1, a2, b1, b2 = CLOSED
-        a3 = b2 * (1.5 * ASYMPTOTE) ** -0.4
+        a1, a2, b1, b2 = CLOSED_FORM_COEFFICIENTS
+        a3 = b2 * (1.5 * LIGHT_LIMIT) ** -0.4
         ratio: Array = (1 + L * (b1 + L * b2)) / (1 + L * (a1 + L * (a2 + L * a3)))
         return 2 / 3 * ratio**2.5 * L**-3.5
     if form == "asymptote":
-        return ASYMPTOTE * L**-6
+        return LIGHT_LIMIT * L**-6
     if form == "power":
-        return POWER * L**-5
+        return POWER_COEFFICIENT * L**-5
     if form == "printed":
         return 0.5 * L**5
     raise InputError(f"form = {show(form)}; it must be 'quadrature', 'closed', 'asymptote', 'power' or 'printed'.")

@@ -18,14 +18,12 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Value
 from stribeck.numerics.panels import reference
 
-ORDER = 16
-PANELS = 14
-"""Gauss points on a panel and panels: phi to 1e-13 for loads up to 1 - 1e-6."""
+NODES_PER_PANEL = 16  # Gauss points of a panel: phi errs by 1e-13 for loads up to 1 - 1e-6.
+PANELS = 14  # Panels of the integrals.
 
-REACH = 19.0
-"""Length of the integrals in artanh(x): what is left out is 1e-16 of the whole."""
+DOMAIN_LENGTH = 19.0  # Length of the integrals in artanh(x): 1e-16 of the whole is left out.
 
-LOADS_AT_ONCE = 256
+LOADS_PER_BLOCK = 256  # Loads that are integrated in one block, to bound the memory.
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,7 @@ class Outward:
 
     def second(self) -> Array:
         """Return (3 H_0* - 2 H_0) H_1/H_0**4, the slope of P_f2."""
-        rule = reference(ORDER)
+        rule = reference(NODES_PER_PANEL)
         slope = self.first() * self.weights / rule.weights
         panels = slope @ rule.weights
         from_here = panels[..., ::-1].cumsum(-1)[..., ::-1]
@@ -77,9 +75,9 @@ def outward(A: Value, x: Value | None = None) -> Outward:
 
 
 def _panels(A: Array, start: Array) -> Outward:
-    rule = reference(ORDER)
+    rule = reference(NODES_PER_PANEL)
     delta = np.arcsin(np.sqrt(-np.expm1(-2 * A)))
-    v, end = np.arcsinh(start / delta), np.arcsinh((start + REACH) / delta)
+    v, end = np.arcsinh(start / delta), np.arcsinh((start + DOMAIN_LENGTH) / delta)
     half = (end - v) / (2 * PANELS)
     v = v + half * (2 * np.arange(PANELS)[:, None] + 1 + rule.nodes)
     u = delta * np.sinh(v)
@@ -99,7 +97,7 @@ def of_load(load: Value, function: Callable[[Outward], Array]) -> Value:
     """Return a number for each load from its contact; equal loads are computed once."""
     A = half_logarithm(load)
     different, where = np.unique(A, return_inverse=True)
-    parts = [different[i : i + LOADS_AT_ONCE] for i in range(0, different.size, LOADS_AT_ONCE)]
+    parts = [different[i : i + LOADS_PER_BLOCK] for i in range(0, different.size, LOADS_PER_BLOCK)]
     found = np.concatenate([function(outward(part)) for part in parts] or [different])
     values: Value = found[where.reshape(A.shape)][()]
     return values

@@ -27,7 +27,7 @@ from stribeck.asymptotics.rough import mixed
 from stribeck.asymptotics.rough.mixed import lambert_w
 from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.asymptotics.rough.weakening import (
-    LARGEST_WEAKENING,
+    MAX_WEAKENING,
     Criterion,
     Form,
     checked_form,
@@ -40,7 +40,7 @@ from stribeck.asymptotics.smooth.hydrodynamic import central_gap
 from stribeck.contacts.line import Groups
 
 __all__ = [
-    "LARGEST_WEAKENING",
+    "MAX_WEAKENING",
     "Criterion",
     "Form",
     "friction_at_minimum",
@@ -52,7 +52,7 @@ __all__ = [
     "weakening_number",
 ]
 
-BOX = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit("beta/mu0", 1e-3, 1.0))
+FIT_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit("beta/mu0", 1e-3, 1.0))
 
 
 @formula(
@@ -60,7 +60,7 @@ BOX = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit(
     uses=("load", "roughness"),
     undefined="where the form has no minimum",
     plane="mixed",
-    limits=BOX,
+    limits=FIT_RANGE,
     worst=0.044,
     source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)",
 )
@@ -98,7 +98,7 @@ def separation_at_minimum(
             return np.divide(central_gap.function(Groups(_known(speed), 1.0, 0.0)), groups.relative_roughness) + 0 * speed
     k = np.asarray(weakening_number(groups, boundary_friction, beta, printed=printed))
     with np.errstate(all="ignore"):
-        k = np.where(k < LARGEST_WEAKENING, k, np.nan)
+        k = np.where(k < MAX_WEAKENING, k, np.nan)
         if form == "exact":
             # scipy's branch loses its way next to -0.
             return np.where(k > 1e-90, lambert_w(-3 * k**3, -1) / -3, -np.log(k))[()]
@@ -111,7 +111,7 @@ def separation_at_minimum(
     uses=("load", "roughness"),
     undefined="where the form has no minimum",
     plane="mixed",
-    limits=BOX,
+    limits=FIT_RANGE,
     worst=0.069,
     source="ours; [BP] Eq. (lambda_min)",
 )
@@ -155,7 +155,7 @@ def speed_at_minimum(
     uses=("load", "roughness"),
     undefined="where the form has no minimum",
     plane="mixed",
-    limits=BOX,
+    limits=FIT_RANGE,
     worst=0.049,
     source="ours; [BP] Eq. (minimal_friction)",
 )

@@ -16,25 +16,25 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.rough.load_sharing import BOX, film_speed_ratio, gaps, log_odds
+from stribeck.asymptotics.rough.load_sharing import FIT_RANGE, film_speed_ratio, gaps, log_odds
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
 Definition = Literal["published", "balanced"]
 
-SHEAR = (0.6179, 8.341, 0.3064, 0.05872)
-FIRST_MOMENT = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
-MOMENT = (0.9251, 3.692, 11.52, 0.4319, 7.886, 0.7303, 1.237)
-"""Fitted coefficients of :func:`viscous_friction`: of the shear, of the moment of first order in the speed, of what becomes of
-it. That of first order is within 1 % of (4/pi) :func:`perturbation.pressure_moment` for G from 0.02 to 60."""
+SHEAR_COEFFICIENTS = (0.6179, 8.341, 0.3064, 0.05872)  # Fitted coefficients of the shear in :func:`viscous_friction`.
+# Fitted coefficients of the moment of first order in the speed, within 1 % of (4/pi) :func:`perturbation.pressure_moment` for
+# G from 0.02 to 60.
+FIRST_MOMENT_COEFFICIENTS = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
+MOMENT_COEFFICIENTS = (0.9251, 3.692, 11.52, 0.4319, 7.886, 0.7303, 1.237)  # Fitted coefficients of the moment at any speed.
 
 
 @formula(
     predicts="viscous_friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
+    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
     worst=0.75,
     source="ours",
 )
@@ -68,7 +68,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     predicts="friction",
     undefined="from load 1 on",
     plane="mixed",
-    limits=(*BOX, Limit("beta/mu0", 1e-3, 1.0)),
+    limits=(*FIT_RANGE, Limit("beta/mu0", 1e-3, 1.0)),
     worst=0.075,
     source="ours",
 )
@@ -99,9 +99,9 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
     if not isinstance(definition, str) or definition not in ("published", "balanced"):
         raise InputError(f"definition = {show(definition)}; it must be 'balanced' or 'published'.")
-    a1, a2, a3, a4 = SHEAR
-    m1, m2, m3, m4, m5 = FIRST_MOMENT
-    b1, b2, b3, b4, b5, b6, b7 = MOMENT
+    a1, a2, a3, a4 = SHEAR_COEFFICIENTS
+    m1, m2, m3, m4, m5 = FIRST_MOMENT_COEFFICIENTS
+    b1, b2, b3, b4, b5, b6, b7 = MOMENT_COEFFICIENTS
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     found = np.array(np.broadcast_to(hydrodynamic.friction_uniform.function(groups, beta), odds.shape))
     found[np.isnan(odds)] = np.nan

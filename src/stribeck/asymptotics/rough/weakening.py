@@ -23,26 +23,23 @@ from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST_WEAKENING", "Criterion", "Form", "has_minimum", "roughness_without_minimum", "weakening_number"]
+__all__ = ["MAX_WEAKENING", "Criterion", "Form", "has_minimum", "roughness_without_minimum", "weakening_number"]
 
 Form = Literal["uniform", "exact", "expansion", "leading"]
 Criterion = Literal["uniform", "plateau", "lines", "weakening"]
 
-LARGEST_WEAKENING = (3 * math.e) ** (-1 / 3)
-"""k up to which the branch of Lambert's W exists, on which the minimum lies."""
+MAX_WEAKENING = (3 * math.e) ** (-1 / 3)  # k up to which the branch of Lambert's W exists on which the minimum lies.
 
-FILM_RATIOS = (1.5, 60.0)
-"""Film ratios c lambda**(3/5)/kappa between which the minimum of the uniform law is looked for."""
+FILM_RATIO_RANGE = (1.5, 60.0)  # Film ratios c lambda**(3/5)/kappa between which the minimum of the uniform law is sought.
 
-FINITE_SPEEDS = 1e-170, 1e170
-"""Relative roughness between which the speed of the minimum stays in double precision."""
+# Relative roughness between which the speed of the minimum stays in double precision.
+FINITE_SPEED_ROUGHNESS = 1e-170, 1e170
 
-SEARCH_POINTS = 121
-BISECTIONS = 30
-STEP = 1e-4
+SEARCH_POINTS = 121  # Film ratios at which the uniform law is scanned for its minimum.
+BISECTIONS = 30  # Halvings of the interval that holds a root.
+DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
 
-ROUGHNESSES = (1e-7, 1e3)
-"""Relative roughness between which the uniform law is asked for its merging."""
+ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
 
 def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
@@ -114,7 +111,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     if checked_form(form) == "uniform":
         return np.isfinite(film_ratio_at_minimum(groups, boundary_friction, beta))
-    return np.asarray(weakening_number(groups, boundary_friction, beta) < LARGEST_WEAKENING)
+    return np.asarray(weakening_number(groups, boundary_friction, beta) < MAX_WEAKENING)
 
 
 def roughness_without_minimum(
@@ -214,14 +211,16 @@ def _uniform_slopes(load: Value, kappa: Value, boundary_friction: float, beta: f
         speed = np.power(np.exp(log_ratio) * kappa / FILM_CONSTANT, 5 / 3)
         return mixed.friction.function(Groups(speed, load, kappa * load), boundary_friction, beta)
 
-    return np.asarray(friction(log_ratio + STEP) - friction(log_ratio - STEP))
+    return np.asarray(friction(log_ratio + DIFFERENCE_STEP) - friction(log_ratio - DIFFERENCE_STEP))
 
 
 def film_ratio_at_minimum(groups: Groups, boundary_friction: float, beta: float) -> Value:
     """Return the film ratio at which the uniform law has its minimum, nan where it has none."""
     load, given = np.broadcast_arrays(groups.load, groups.relative_roughness)
-    kappa = np.clip(given, *FINITE_SPEEDS)
-    ratios = np.linspace(math.log(FILM_RATIOS[0]), math.log(FILM_RATIOS[1]), SEARCH_POINTS).reshape(-1, *(1,) * load.ndim)
+    kappa = np.clip(given, *FINITE_SPEED_ROUGHNESS)
+    ratios = np.linspace(math.log(FILM_RATIO_RANGE[0]), math.log(FILM_RATIO_RANGE[1]), SEARCH_POINTS).reshape(
+        -1, *(1,) * load.ndim
+    )
     falling = _uniform_slopes(load, kappa, boundary_friction, beta, ratios) < 0
     last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
     found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa == given)
@@ -235,8 +234,8 @@ def film_ratio_at_minimum(groups: Groups, boundary_friction: float, beta: float)
 
 
 def _uniform_merging(load: Value, boundary_friction: float, beta: float) -> Value:
-    """Return the roughness from which the uniform law has no minimum, nan where that lies outside ROUGHNESSES."""
-    low, high = (np.full(np.shape(load), math.log(end)) for end in ROUGHNESSES)
+    """Return the roughness from which the uniform law has no minimum, nan where that lies outside ROUGHNESS_RANGE."""
+    low, high = (np.full(np.shape(load), math.log(end)) for end in ROUGHNESS_RANGE)
 
     def falls(log_kappa: Array) -> Flags:
         groups = Groups(1.0, load, load * np.exp(log_kappa))

@@ -34,12 +34,10 @@ from stribeck.contacts.line import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
-LOAD = 0.5 * np.pi
-"""Integral of P - P_H over the layer."""
+LAYER_LOAD = 0.5 * np.pi  # Integral of P - P_H over the layer.
 
-RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
-WIDTHS = 5.0
-"""Distance from the edge, in widths of the layer, to which the fields are compared with the solver."""
+LAYER_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
+LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
 
 
 def _rough(roughness: float) -> Groups:
@@ -47,7 +45,7 @@ def _rough(roughness: float) -> Groups:
 
 
 def _interval(groups: Groups) -> tuple[float, float]:
-    width = float(WIDTHS * groups.relative_roughness ** (2 / 3))
+    width = float(LAYER_WIDTHS * groups.relative_roughness ** (2 / 3))
     return 1 - width, 1 + width
 
 
@@ -61,7 +59,7 @@ def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
     predicts="gap",
     uses=("load", "relative_roughness"),
     plane="rest",
-    limits=RANGE,
+    limits=LAYER_RANGE,
     worst=0.025,
     small="relative_roughness",
     error_order=2 / 3,
@@ -99,7 +97,7 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     predicts="contact_pressure",
     uses=("relative_roughness",),
     plane="rest",
-    limits=RANGE,
+    limits=LAYER_RANGE,
     worst=0.07,
     small="relative_roughness",
     error_order=2 / 3,
@@ -186,4 +184,4 @@ def layer(reach: float = 1e5, width: float = 0.5, order: int = 12) -> Layer:
     if not root.outcome.ok:
         raise RuntimeError(f"edge layer with reach = {reach:g}, width = {width:g}, order = {order}: {root.outcome.value}")
     q = excess(root.x)
-    return Layer(line, -0.5 * np.log(2), LOAD, q, D @ q)
+    return Layer(line, -0.5 * np.log(2), LAYER_LOAD, q, D @ q)

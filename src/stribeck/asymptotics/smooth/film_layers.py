@@ -32,10 +32,9 @@ from stribeck.contacts.line import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
-RANGE = (Limit("speed", 1e-10, 1e-3),)
-WIDTHS = 5.0
-"""Distance from the edge, in widths of the layer, to which the fields are compared with the solver."""
-STEPS = (1e-5, 1e-6, 1e-7, 1e-8)
+SLOW_RANGE = (Limit("speed", 1e-10, 1e-3),)
+LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
+ORDER_SPEEDS = (1e-5, 1e-6, 1e-7, 1e-8)
 
 
 def _smooth(speed: float) -> Groups:
@@ -43,12 +42,12 @@ def _smooth(speed: float) -> Groups:
 
 
 def _at_inlet(groups: Groups) -> tuple[float, float]:
-    width = float(WIDTHS * groups.speed**0.4)
+    width = float(LAYER_WIDTHS * groups.speed**0.4)
     return -1 - width, -1 + width
 
 
 def _at_outlet(groups: Groups) -> tuple[float, float]:
-    width = float(WIDTHS * groups.speed**0.4)
+    width = float(LAYER_WIDTHS * groups.speed**0.4)
     return 1 - width, 1 + width
 
 
@@ -56,12 +55,12 @@ def _at_outlet(groups: Groups) -> tuple[float, float]:
     predicts="gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.04,
     small="speed",
     error_order=0.4,
     approach=_smooth,
-    steps=STEPS,
+    steps=ORDER_SPEEDS,
     interval=_at_inlet,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )
@@ -90,12 +89,12 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
     predicts="gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.055,
     small="speed",
     error_order=0.4,
     approach=_smooth,
-    steps=STEPS,
+    steps=ORDER_SPEEDS,
     interval=_at_outlet,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )
@@ -124,12 +123,12 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
     predicts="fluid_pressure",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.09,
     small="speed",
     error_order=0.4,
     approach=_smooth,
-    steps=STEPS,
+    steps=ORDER_SPEEDS,
     interval=_at_inlet,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )
@@ -157,12 +156,12 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     predicts="fluid_pressure",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.095,
     small="speed",
     error_order=0.4,
     approach=_smooth,
-    steps=STEPS,
+    steps=ORDER_SPEEDS,
     interval=_at_outlet,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )

@@ -33,8 +33,7 @@ from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import deflection_operator
 
-NEAR = 2.0
-"""Distance to which panels are of equal width; beyond it each is as wide as its distance."""
+EQUAL_PANELS_UP_TO = 2.0  # Distance to which panels have equal width; farther out each is as wide as its distance.
 
 Roots = tuple[Array, Array, Array]
 
@@ -102,7 +101,7 @@ class HalfLine:
     @cached_property
     def mesh(self) -> Mesh:
         """The panels; the last one, through infinity, carries nothing."""
-        near = self.width * np.arange(1, round(NEAR / self.width) + 1)
+        near = self.width * np.arange(1, round(EQUAL_PANELS_UP_TO / self.width) + 1)
         far = near[-1] * 2.0 ** np.arange(1, np.ceil(np.log2(self.reach / near[-1])) + 1)
         positive = np.concatenate([near, far])
         return Mesh(np.concatenate([-positive[::-1], [0.0], positive]), self.order)

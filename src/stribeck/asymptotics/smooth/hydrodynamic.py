@@ -42,19 +42,17 @@ __all__ = [
     "pressure_small",
 ]
 
+# Next term of central and flux gap at small speed, relative, over lambda**(2/5); from states at speeds down to 1e-9.
 GAP_SLOPE = 0.245
-"""Next term of central and flux gap at small speed, relative, over lambda**(2/5); from states at speeds down to 1e-9."""
 
-FRICTION_SLOPE = 4.0
-"""The same of the friction."""
+FRICTION_SLOPE = 4.0  # Next term of the friction at small speed, relative, over lambda**(2/5); from the same states.
 
-CENTRAL_GAP_FIT = (-0.841, 0.511, 0.032, 0.273)
-FLUX_GAP_FIT = (-0.882, 0.574, 0.127, -0.442)
-FRICTION_FIT = (3.69, 2.09, -1.10)
-"""Free coefficients of the laws for every speed, by smallest maximum error on 241 speeds from 1e-12 to 1e8."""
+# Fitted coefficients of the laws for every speed, by smallest maximum error on 241 speeds from 1e-12 to 1e8.
+CENTRAL_GAP_COEFFICIENTS = (-0.841, 0.511, 0.032, 0.273)
+FLUX_GAP_COEFFICIENTS = (-0.882, 0.574, 0.127, -0.442)
+FRICTION_COEFFICIENTS = (3.69, 2.09, -1.10)
 
-LARGEST_U = 1e50
-"""u up to which the laws are taken in powers of u, which overflow from 1e77 on."""
+MAX_U = 1e50  # u up to which the laws are taken in powers of u, which overflow from 1e77 on.
 
 
 @formula(
@@ -83,7 +81,7 @@ def central_gap(groups: Groups) -> Value:
     """
     u = np.power(groups.speed, 0.4)
     far = 1 / (576 * FILM_CONSTANT**6)
-    return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, CENTRAL_GAP_FIT)
+    return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, CENTRAL_GAP_COEFFICIENTS)
 
 
 @formula(
@@ -113,7 +111,7 @@ def flux_gap(groups: Groups) -> Value:
     """
     u = np.power(groups.speed, 0.4)
     far = (4 / 3) ** 6 / (576 * FILM_CONSTANT**6)
-    return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, FLUX_GAP_FIT)
+    return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, FLUX_GAP_COEFFICIENTS)
 
 
 @formula(
@@ -164,7 +162,7 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
     """
     slow = friction_large.function(groups, beta)
     far = (math.sqrt(2) * math.pi * 24 ** (1 / 6) * FILM_CONSTANT) ** 1.5
-    b, e1, e2 = FRICTION_FIT
+    b, e1, e2 = FRICTION_COEFFICIENTS
     u = np.power(groups.speed, 0.4)
     below = (far - 1.5 * FRICTION_SLOPE) * u + b * u**1.5
     ratio: Value = (1 + far * u - below / (1 + e1 * u**0.5 + e2 * u + b * u**1.5)) ** (2 / 3)
@@ -175,7 +173,7 @@ def _bridge(u: Value, far: float, fit: tuple[float, float, float, float]) -> Val
     """Return the sixth root of a rational function that tends to 1 + 6 s u at small u and to ``far`` u at large u."""
     d1, d2, d3, b2 = fit
     # Beyond, the ratio is its limit to all digits.
-    u, beyond = np.minimum(u, LARGEST_U), np.maximum(np.divide(u, LARGEST_U), 1.0)
+    u, beyond = np.minimum(u, MAX_U), np.maximum(np.divide(u, MAX_U), 1.0)
     below = 1 + u * (d1 + u * (d2 + u * d3))
     above = 1 + u * (6 * GAP_SLOPE + d1 + u * (b2 + far * u * (d2 + u * d3)))
     root: Value = (above / below * beyond) ** (1 / 6)

@@ -14,7 +14,7 @@ from stribeck.asymptotics.constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRIN
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
 
-RANGE = (Limit("speed", 0.0, 1e-3),)
+SLOW_RANGE = (Limit("speed", 0.0, 1e-3),)
 
 
 def _at_speed(speed: float) -> Groups:
@@ -25,7 +25,7 @@ def _at_speed(speed: float) -> Groups:
     predicts="central_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.015,
     small="speed",
     error_order=0.4,
@@ -56,7 +56,7 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
     predicts="flux_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.015,
     small="speed",
     error_order=0.4,
@@ -82,7 +82,7 @@ def flux_gap_large(groups: Groups) -> Value:
     predicts="minimum_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=SLOW_RANGE,
     worst=0.012,
     small="speed",
     error_order=0.4,

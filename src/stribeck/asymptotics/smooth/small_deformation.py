@@ -16,7 +16,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
 
-RANGE = (Limit("speed", 1e3),)
+FAST_RANGE = (Limit("speed", 1e3),)
 
 
 def _at_inverse_speed(inverse: float) -> Groups:
@@ -33,7 +33,7 @@ def _four_widths(groups: Groups) -> tuple[float, float]:
     predicts="central_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=FAST_RANGE,
     worst=0.021,
     small="1/speed",
     error_order=2 / 3,
@@ -59,7 +59,7 @@ def central_gap_small(groups: Groups) -> Value:
     predicts="flux_gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=FAST_RANGE,
     worst=0.002,
     small="1/speed",
     error_order=2 / 3,
@@ -85,7 +85,7 @@ def flux_gap_small(groups: Groups) -> Value:
     predicts="gap",
     uses=("speed",),
     plane="smooth",
-    limits=RANGE,
+    limits=FAST_RANGE,
     worst=0.017,
     small="1/speed",
     error_order=1 / 3,

@@ -30,19 +30,17 @@ from stribeck.numerics.panels import reference
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
 
-ORDER = 12
-PANELS = 32
-REACH = 30.0
-"""Gauss points on a panel, panels, and where they end in artanh(x): contact shares to 1e-9, down to shares of 1e-5."""
+NODES_PER_PANEL = 12  # Gauss points of a panel: contact shares err by 1e-9, down to shares of 1e-5.
+PANELS = 32  # Panels of the half-line.
+DOMAIN_LENGTH = 30.0  # Where the panels end in artanh(x).
 
-FIRST_NUMBER = 1e-3
-"""Fluid number of the first step, over that at which the first order reaches all of the load."""
+# Fluid number of the first step, over the one at which the first order reaches all of the load.
+FIRST_FLUID_NUMBER = 1e-3
 
-STEP = math.log(3.0)
-"""Steps from there in ln n."""
+LOG_STEP = math.log(3.0)  # Step in the logarithm of the fluid number.
 
-LARGEST_NUMBER = 1e3
-"""Fluid number up to which :func:`contact_load_share` answers; beyond, the film of the inlet is the thicker one by far."""
+# Fluid number up to which :func:`contact_load_share` answers; above it the film of the inlet is the thicker one by far.
+MAX_FLUID_NUMBER = 1e3
 
 
 @dataclass(frozen=True)
@@ -101,8 +99,8 @@ def wedge(load: float, fluid_number: float) -> Wedge:
     x, p_0, weights, integral = _line(load)
     at_rest = -0.5 * math.log(load) - np.log(p_0)
     y = np.append(at_rest, (weights @ at_rest**-2) / (weights @ at_rest**-3))
-    first = FIRST_NUMBER * float(at_rest.min()) ** 3
-    steps = max(0, math.ceil(math.log(fluid_number / first) / STEP)) if fluid_number > first else 0
+    first = FIRST_FLUID_NUMBER * float(at_rest.min()) ** 3
+    steps = max(0, math.ceil(math.log(fluid_number / first) / LOG_STEP)) if fluid_number > first else 0
     for n in [*np.geomspace(first, fluid_number, steps + 1)[1:]] if steps else [fluid_number]:
         y = _corrected(y, float(n), load, p_0, weights, integral)
     H = y[:-1]
@@ -138,21 +136,21 @@ def contact_load_share(groups: Groups) -> Value:
     lambda_, F, _ = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     number = np.where(lambda_ > 0, np.broadcast_to(fluid_number(groups), groups.shape), 0.0)
     states = zip(F.ravel().tolist(), number.ravel().tolist(), strict=True)
-    found = [wedge(load, n).contact_load_share if load < 1 and n <= LARGEST_NUMBER else math.nan for load, n in states]
+    found = [wedge(load, n).contact_load_share if load < 1 and n <= MAX_FLUID_NUMBER else math.nan for load, n in states]
     return np.array(found).reshape(F.shape)[()]
 
 
 def _line(load: float) -> tuple[Array, Array, Array, Array]:
     """Return positions, Hertz pressure, weights and running integral; see :mod:`slow_contact` for the variable."""
-    rule = reference(ORDER)
+    rule = reference(NODES_PER_PANEL)
     delta = math.acos(math.sqrt(load))
-    edges = np.linspace(-1, 1, PANELS + 1) * math.asinh(REACH / delta)
+    edges = np.linspace(-1, 1, PANELS + 1) * math.asinh(DOMAIN_LENGTH / delta)
     half = 0.5 * (edges[1] - edges[0])
     v = (edges[:-1, None] + half * (1 + rule.nodes)).ravel()
     u = delta * np.sinh(v)
     p_0 = 1 / np.cosh(u)
     stretch = delta * np.cosh(v) * p_0**2
-    whole = np.tile(half * rule.weights, (ORDER, 1))
+    whole = np.tile(half * rule.weights, (NODES_PER_PANEL, 1))
     before, inside = np.tri(PANELS, k=-1), np.eye(PANELS)
     from_left = np.kron(before, whole) + np.kron(inside, half * rule.integral)
     to_right = np.kron(before.T, whole) + np.kron(inside, whole - half * rule.integral)

@@ -20,40 +20,38 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SPEEDS = 1e-9, 30.0
-LOADS = 1e-12, 0.7
-"""Loads of panel (b)."""
+SPEED_RANGE = 1e-9, 30.0  # Speed groups of the curves.
+LOAD_RANGE = 1e-12, 0.7  # Load groups of panel (b).
 
-FITTED = 1e-5, 0.1
-"""Loads over which the power of the paper was fitted."""
+FIT_LOAD_RANGE = 1e-5, 0.1  # Load groups over which the power of the paper was fitted.
 
-SHOWN = CASES.index((0.1, 1e-4))
-"""The case of which friction is taken apart: the blue one of the paper."""
+CASE_IN_PARTS = CASES.index((0.1, 1e-4))  # Case whose friction is taken apart: the blue one of the paper.
 
-LAWS = {
+# Label, colour and dashes of each law of the load share.
+SHARE_LAWS = {
     "share_law": (r"$\lambda^2 \phi/\kappa^4$, $\phi$ with $2/\pi$", style.FLUID, style.DASHED),
     "share_without_factor": (r"$\phi$ without $2/\pi$, as printed", style.CONTACT, style.DASHED),
     "share_printed_groups": (r"and $6\pi\eta Ua$ for $6\eta Ua$, as printed", style.MARK, style.DASHED),
     "share_printed": (r"and $\phi = \frac{1}{2} L^{+5}$, as printed", style.GREY, style.DASHED),
 }
-PHI = {
+# Label, colour and dashes of each law of phi.
+PHI_LAWS = {
     "phi": ("quadrature", style.INK, "-"),
     "phi_closed": ("ours, closed form", style.MARK, style.DASHED),
     "phi_power": (r"$0.325\,L^{-5}$", style.FLUID, style.DASHED),
     "phi_asymptote": (r"$(96 - 128 \ln 2)\,L^{-6}$", style.GREEN, style.DOTTED),
     "phi_printed": (r"printed: $\frac{1}{2} L^{+5}$", style.CONTACT, style.DASHED),
 }
-"""Label, colour and dashes of each law."""
 
 
 def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=len(CASES))
-    curves = solved_cases(work, SPEEDS, points=85)
+    curves = solved_cases(work, SPEED_RANGE, points=85)
     friction, law = over(curves, "friction"), over(curves, "hydrodynamic_friction")
     share = np.array([curve.observable("contact_load_share") for curve in curves])
     boundary_law = np.array([boundary.friction.function(curve.groups, viscous="neglected") for curve in curves])
-    shown = _taken_apart(curves[SHOWN])
-    loads = np.geomspace(*LOADS, 121)
+    shown = _taken_apart(curves[CASE_IN_PARTS])
+    loads = np.geomspace(*LOAD_RANGE, 121)
     phis = {
         "phi": perturbation.phi(loads),
         "phi_closed": perturbation.phi(loads, form="closed"),
@@ -61,22 +59,25 @@ def _compute(report: Report) -> xarray.Dataset:
         "phi_asymptote": perturbation.phi(loads, form="asymptote"),
         "phi_printed": perturbation.phi(loads, form="printed"),
     }
-    fitted = (loads >= FITTED[0]) & (loads <= FITTED[1])
+    fitted = (loads >= FIT_LOAD_RANGE[0]) & (loads <= FIT_LOAD_RANGE[1])
     off = {name: np.abs(values / phis["phi"] - 1) for name, values in phis.items()}
     slope = np.gradient(np.log(phis["phi"]), np.log(-np.log(loads)))
     excess = friction.max(axis=1, where=share > 0.9, initial=0.0) - 1
     fluid = shown["fluid_load_share"]
     slow = int(np.argmin(np.abs(np.log(fluid / 1e-3))))
-    ratios = {name: fluid[slow] / shown[name][slow] for name in LAWS}
+    ratios = {name: fluid[slow] / shown[name][slow] for name in SHARE_LAWS}
     at_one = float(np.interp(0.0, np.log(shown["share_law"]), fluid))
     at_load, printed = float(perturbation.phi(0.1)), float(perturbation.phi(0.1, form="printed"))
     finding = (
-        f"at load {CASES[SHOWN][0]}, roughness {CASES[SHOWN][1]:g} the fluid's part of the load is {ratios['share_law']:.2f} "
+        f"at load {CASES[CASE_IN_PARTS][0]}, roughness {CASES[CASE_IN_PARTS][1]:g} the fluid's part of the load is "
+        f"{ratios['share_law']:.2f} "
         f"of the formula where it is 1e-3, {ratios['share_without_factor']:.2f} without 2/pi and "
         f"{ratios['share_printed']:.0e} of all that is printed; where the formula reaches 1 it is {at_one:.2f}. The printed "
-        f"friction first rises above mu_0, by {100 * excess[SHOWN]:.2f} %, by a viscous part of first order in the speed. phi "
+        f"friction first rises above mu_0, by {100 * excess[CASE_IN_PARTS]:.2f} %, by a viscous part of first order in "
+        "the speed. phi "
         f"at load 0.1 is {at_load:.3e}, printed {printed:.0f}; the power -5 is within "
-        f"{100 * off['phi_power'][fitted].max():.0f} % from {FITTED[0]:g} to {FITTED[1]:g}, where the local power of L is "
+        f"{100 * off['phi_power'][fitted].max():.0f} % from {FIT_LOAD_RANGE[0]:g} to {FIT_LOAD_RANGE[1]:g}, where the "
+        "local power of L is "
         f"{slope[fitted].min():.1f} to {slope[fitted].max():.1f}; our closed form within {100 * off['phi_closed'].max():.2f} "
         "%."
     )
@@ -101,7 +102,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "speed": column("speed", curves[0].values, "speed group lambda"),
         "phi_load": column("phi_load", loads, "load group"),
     }
-    return dataset(variables, coords, finding=finding, shown_case=SHOWN, **work.attributes)
+    return dataset(variables, coords, finding=finding, shown_case=CASE_IN_PARTS, **work.attributes)
 
 
 def _taken_apart(curve: StribeckCurve) -> dict[str, Array]:
@@ -130,13 +131,13 @@ def _draw(data: xarray.Dataset) -> Figure:
     style.letter(a, "a", r"dotted: $\mu_0(1 - F_f/F_N)$")
     style.legend(a, loc="lower left", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5)
     _draw_shares(shares, data)
-    for name, (label, colour, dashes) in PHI.items():
+    for name, (label, colour, dashes) in PHI_LAWS.items():
         b.loglog(data.phi_load, data[name], color=colour, ls=dashes, lw=1.6, label=label)
         ratios.semilogx(data.phi_load, data[name] / data.phi, color=colour, ls=dashes, lw=1.6, label=label)
     b.set(xlabel=r"load $\bar F_N$", ylabel=r"$\phi$", ylim=(1e-9, 1e9))
     style.letter(b, "b", r"auxiliary function $\phi$, $L = -\ln \bar F_N$")
     style.legend(b, loc="center left", bbox_to_anchor=(0.0, 0.62))
-    ratios.axvspan(*FITTED, color="#f4f4f2", lw=0, zorder=0)
+    ratios.axvspan(*FIT_LOAD_RANGE, color="#f4f4f2", lw=0, zorder=0)
     ratios.text(1e-3, 0.15, "range of the fit", size=8, color=style.GREY, ha="center")
     ratios.set(xlabel=r"load $\bar F_N$", ylabel=r"form over quadrature", ylim=(0, 4))
     style.letter(ratios, "+", "ratio to the quadrature")
@@ -155,7 +156,7 @@ def _draw_shares(axes: Axes, data: xarray.Dataset) -> None:
         axes.loglog(
             data.speed[every], data[name].where(data[name] > 0)[every], marker, color=style.INK, mfc=face, ms=4, label=label
         )
-    for name, (label, colour, dashes) in LAWS.items():
+    for name, (label, colour, dashes) in SHARE_LAWS.items():
         axes.plot(data.speed, data[name], color=colour, ls=dashes, lw=1.5, label=label)
     axes.set(xlabel=r"speed $\lambda$", ylabel="share of load or friction", xlim=(1e-9, 1e-3), ylim=(1e-8, 1e2))
     load, roughness = (style.power(float(data[name][case])) for name in ("load", "roughness"))

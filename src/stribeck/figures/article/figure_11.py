@@ -15,28 +15,25 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-LOADS = (0.01, 0.1)
-"""Load groups: the back and the front of the paper."""
+LOADS = (0.01, 0.1)  # Load groups: the back and the front of the paper.
 
-ROUGHNESSES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2)
-"""Roughness groups, denser where the lines meet."""
+ROUGHNESSES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # Roughness groups, denser where the lines meet.
 
-SPEEDS = 1e-9, 1e2
-RTOL = 1e-6
+SPEED_RANGE = 1e-9, 1e2  # Speed groups of the curves.
+CURVE_RTOL = 1e-6  # Relative tolerance of the curves.
 
-SMOOTHEST = 1e-3
-"""Roughness group up to which the lines are far enough apart to be compared with formulas."""
+MAX_COMPARED_ROUGHNESS = 1e-3  # Roughness group up to which the lines are far enough apart to be compared with formulas.
 
-MERGING = ("roughness_without_minimum", "formula_roughness_without_minimum")
+MERGING_FIELDS = ("roughness_without_minimum", "formula_roughness_without_minimum")
 
 
 def _compute(report: Report) -> xarray.Dataset:
     found = phase_diagram(
         load=LOADS,
         roughness=ROUGHNESSES,
-        speed=SPEEDS,
+        speed=SPEED_RANGE,
         points={"load": 2, "speed": 34},
-        rtol=RTOL,
+        rtol=CURVE_RTOL,
         definition="published",
         merging=True,
         on_point=report,
@@ -56,7 +53,7 @@ def _compute(report: Report) -> xarray.Dataset:
 
 
 def _finding(data: xarray.Dataset) -> str:
-    smooth = data.sel(roughness=slice(None, SMOOTHEST))
+    smooth = data.sel(roughness=slice(None, MAX_COMPARED_ROUGHNESS))
     corrected, printed = (
         smooth[f"{name}_speed_boundary_to_mixed"] / smooth.speed_at_5_percent_fluid for name in ("formula", "printed")
     )
@@ -64,9 +61,10 @@ def _finding(data: xarray.Dataset) -> str:
     minimum, ours = (smooth[f"{name}_speed_at_minimum"] / smooth.speed_at_minimum for name in ("printed", "formula"))
     five = smooth.formula_speed_at_5_percent_fluid / smooth.speed_at_5_percent_fluid
     off = 100 * max(float(abs(ratio - 1).max()) for ratio in (ours, five))
-    merging, formula = (", ".join(f"{value:.2g}" for value in data[name].values) for name in MERGING)
+    merging, formula = (", ".join(f"{value:.2g}" for value in data[name].values) for name in MERGING_FIELDS)
     finding = (
-        f"up to roughness {SMOOTHEST:g} the criterion of the paper, with phi corrected, gives {_span(corrected)} times the "
+        f"up to roughness {MAX_COMPARED_ROUGHNESS:g} the criterion of the paper, with phi corrected, gives "
+        f"{_span(corrected)} times the "
         f"speed at which the fluid carries 5 % of the load and {_span(half)} times that of one half; as printed "
         f"{_span(printed)} times the former, deep in the boundary regime. The printed speed of minimum friction is "
         f"{_span(minimum)} times the solved; our formulas for the 5 % and the minimum are within {off:.0f} %. Falling "

@@ -19,28 +19,28 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOAD, ROUGHNESS = 0.1, 1e-4
-SPEEDS = 1e-8, 0.1
-MAPPED = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-"""Roughness groups at which panel (b) shows where the regimes end, at the same load."""
+LOAD, ROUGHNESS = 0.1, 1e-4  # Groups of the curve.
+SPEED_RANGE = 1e-8, 0.1  # Speed groups of the curves.
+# Roughness groups at which panel (b) shows where the regimes end, at the same load.
+MAPPED_ROUGHNESSES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 
-MARKS: dict[str, str] = {
+MARK_NAMES: dict[str, str] = {
     Transition.BOUNDARY_END: "boundary_end",
     Transition.HYDRODYNAMIC_START: "hydrodynamic_begin",
     Transition.MINIMUM: "minimum",
 }
 
-FLOOR, TOP = (-10.0, -3.0, -8.0), (1.5, 0.0, -1.0)
-"""Ends of the box of panel (b): logarithms of speed, load and roughness; the planes of speed and roughness zero stand at
-its lower ends, as their logarithm has no place."""
+# Ends of the box of panel (b): logarithms of speed, load and roughness; the planes of speed and roughness zero stand at its
+# lower ends, as zero has no logarithm.
+BOX_LOW, BOX_HIGH = (-10.0, -3.0, -8.0), (1.5, 0.0, -1.0)
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(MAPPED) + 2)
-    curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEEDS, points=141)
-    balanced = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEEDS, points=141, definition="balanced")
-    ends = {name: [] for name in MARKS.values()}  # type: dict[str, list[float]]
-    for roughness in MAPPED:
+    work = FigureJob(report, steps=len(MAPPED_ROUGHNESSES) + 2)
+    curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEED_RANGE, points=141)
+    balanced = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEED_RANGE, points=141, definition="balanced")
+    ends = {name: [] for name in MARK_NAMES.values()}  # type: dict[str, list[float]]
+    for roughness in MAPPED_ROUGHNESSES:
         found = _marks(work.curve(load=LOAD, roughness=roughness, points=61))
         for name in ends:
             ends[name].append(found.get(name, (math.nan, math.nan))[0])
@@ -57,7 +57,8 @@ def _compute(report: Report) -> xarray.Dataset:
         "contact_load_share": column(speed, curve.observable("contact_load_share"), "part of the load on asperities"),
     }
     variables |= {
-        f"{name}_speed": column(rough, ends[name], f"speed group where {label}, load {LOAD}") for label, name in MARKS.items()
+        f"{name}_speed": column(rough, ends[name], f"speed group where {label}, load {LOAD}")
+        for label, name in MARK_NAMES.items()
     }
     for name, (value, friction) in marks.items():
         variables[f"{name}_hersey"] = column((), hersey * value, f"Hersey number of the {name.replace('_', ' ')}")
@@ -72,14 +73,14 @@ def _compute(report: Report) -> xarray.Dataset:
     )
     coords = {
         speed: column(speed, curve.values, "speed group lambda"),
-        rough: column(rough, MAPPED, "roughness group h_rms"),
+        rough: column(rough, MAPPED_ROUGHNESSES, "roughness group h_rms"),
     }
     return dataset(variables, coords, finding=finding, load_group=LOAD, roughness_group=ROUGHNESS, **work.attributes)
 
 
 def _marks(curve: StribeckCurve) -> dict[str, tuple[float, float]]:
     """Return value and friction of the landmarks that the figure shows."""
-    return {MARKS[mark.name]: (mark.value, mark.friction) for mark in curve.transitions if mark.name in MARKS}
+    return {MARK_NAMES[mark.name]: (mark.value, mark.friction) for mark in curve.transitions if mark.name in MARK_NAMES}
 
 
 def _draw(data: xarray.Dataset) -> Figure:
@@ -138,7 +139,7 @@ def _shade(axes: Axes, data: xarray.Dataset, named: bool) -> None:
 def _draw_space(axes: Any, data: xarray.Dataset) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    (s0, f0, r0), (s1, f1, r1) = FLOOR, TOP
+    (s0, f0, r0), (s1, f1, r1) = BOX_LOW, BOX_HIGH
     load, roughness = (math.log10(data.attrs[f"{name}_group"]) for name in ("load", "roughness"))
     smooth = [(s0, f0, r0), (s1, f0, r0), (s1, f1, r0), (s0, f1, r0)]
     rest = [(s0, f0, r0), (s0, f1, r0), (s0, f1, r1), (s0, f0, r1)]

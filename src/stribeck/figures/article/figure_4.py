@@ -19,34 +19,38 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SLOW = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-FAST = (1.0, 10.0, 1e2, 1e3, 1e4, 1e5)
-LOAD = 0.1
-"""Smooth contacts depend on the speed group alone."""
+SLOW_SPEEDS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # Speed groups of panel (a).
+FAST_SPEEDS = (1.0, 10.0, 1e2, 1e3, 1e4, 1e5)  # Speed groups of panel (b).
+LOAD = 0.1  # Load group, on which smooth contacts do not depend.
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(SLOW) + len(FAST))
+    work = FigureJob(report, steps=len(SLOW_SPEEDS) + len(FAST_SPEEDS))
     x_slow, xi = np.linspace(-2, 2, 801), np.linspace(-6, 4, 401)
     x_fast, ratio = np.linspace(-8, 8, 401), np.linspace(-4, 4, 321)
-    slow = [work.solve(speed, LOAD, 0.0) for speed in SLOW]
-    fast = [work.solve(speed, LOAD, 0.0) for speed in FAST]
+    slow = [work.solve(speed, LOAD, 0.0) for speed in SLOW_SPEEDS]
+    fast = [work.solve(speed, LOAD, 0.0) for speed in FAST_SPEEDS]
     layer = film_layers.outlet()
 
-    outlet = [s.profile(1 + xi * speed**0.4).gap / (FILM_CONSTANT * speed**0.6) for s, speed in zip(slow, SLOW, strict=True)]
+    outlet = [
+        s.profile(1 + xi * speed**0.4).gap / (FILM_CONSTANT * speed**0.6) for s, speed in zip(slow, SLOW_SPEEDS, strict=True)
+    ]
     outlet_limit = layer.gap(xi) / layer.constant
-    films = np.array(FAST) ** (2 / 3) / 24 ** (1 / 3)
+    films = np.array(FAST_SPEEDS) ** (2 / 3) / 24 ** (1 / 3)
     rigid = np.array([s.profile(ratio * film**0.5).gap / film for s, film in zip(fast, films, strict=True)])
     parabola = 1 + 0.5 * ratio**2
     outlet_distance = np.abs(np.array(outlet) / outlet_limit - 1)[:, np.abs(xi) <= 3].max(axis=1)
     rigid_distance = np.abs(rigid / parabola - 1).max(axis=1)
     orders = [
-        np.polyfit(np.log(a), np.log(b), 1)[0] for a, b in ((SLOW[:3], outlet_distance[:3]), (FAST[3:], rigid_distance[3:]))
+        np.polyfit(np.log(a), np.log(b), 1)[0]
+        for a, b in ((SLOW_SPEEDS[:3], outlet_distance[:3]), (FAST_SPEEDS[3:], rigid_distance[3:]))
     ]
     near, far, rest = (f"{100 * value:.2g} %" for value in (outlet_distance[0], outlet_distance[-1], rigid_distance[-1]))
     finding = (
-        f"the outlets lie within {near} of their limit at speed {SLOW[0]:g} and {far} at {SLOW[-1]:g}; fast films within "
-        f"{rest} of the parabola at speed {FAST[-1]:g}, but {100 * rigid_distance[1]:.0f} % off at {FAST[1]:g}. The distances "
+        f"the outlets lie within {near} of their limit at speed {SLOW_SPEEDS[0]:g} and {far} at {SLOW_SPEEDS[-1]:g}; "
+        "fast films within "
+        f"{rest} of the parabola at speed {FAST_SPEEDS[-1]:g}, but {100 * rigid_distance[1]:.0f} % off at "
+        f"{FAST_SPEEDS[1]:g}. The distances "
         f"go as speed to the powers {orders[0]:.2f} and {orders[1]:.2f}: the collapse is that of a limit, not exact."
     )
     variables = {
@@ -65,8 +69,8 @@ def _compute(report: Report) -> xarray.Dataset:
         "rigid_distance": column("fast_speed", rigid_distance, "largest distance of rigid_gap from parabola, relative"),
     }
     coords = {
-        "slow_speed": column("slow_speed", SLOW, "speed group lambda, slow"),
-        "fast_speed": column("fast_speed", FAST, "speed group lambda, fast"),
+        "slow_speed": column("slow_speed", SLOW_SPEEDS, "speed group lambda, slow"),
+        "fast_speed": column("fast_speed", FAST_SPEEDS, "speed group lambda, fast"),
         "x_slow": column("x_slow", x_slow, "position over a"),
         "x_fast": column("x_fast", x_fast, "position over a"),
         "xi": column("xi", xi, "(x/a - 1)/lambda^(2/5)"),

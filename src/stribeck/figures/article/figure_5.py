@@ -17,27 +17,27 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SPEEDS = 1e-8, 1e4
-LOAD = 0.1
-"""Its choice changes nothing: films depend on the speed group alone, and friction is shown over beta F**(1/2)."""
+SPEED_RANGE = 1e-8, 1e4  # Speed groups of the curves.
+LOAD = 0.1  # Load group, on which neither films nor friction over beta F**(1/2) depend.
 
-FILMS = {
+# Label, colour and dashes of each law of the film.
+FILM_LAWS = {
     "film_large": ("slow: $c \\lambda^{3/5}$, $c$ = 0.44583", style.FLUID, style.DASHED),
     "film_small": (r"fast: $\lambda^{2/3}/24^{1/3}$", style.GREEN, style.DASHED),
     "film_uniform": ("ours, for all speeds", style.MARK, "-"),
 }
-FRICTIONS = {
+# Label, colour and dashes of each law of friction.
+FRICTION_LAWS = {
     "friction_large": (r"slow: $\propto \lambda^{2/5}$", style.FLUID, style.DASHED),
     "friction_small": (r"fast: $\propto \lambda^{2/3}$", style.GREEN, style.DASHED),
     "friction_squares": ("the paper's root of squares", style.INK, style.DOTTED),
     "friction_uniform": ("ours, for all speeds", style.MARK, "-"),
 }
-"""Label, colour and dashes of each law."""
 
 
 def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=1)
-    curve = work.curve(load=LOAD, roughness=0.0, speed=SPEEDS, points=121)
+    curve = work.curve(load=LOAD, roughness=0.0, speed=SPEED_RANGE, points=121)
     film = curve.observable("central_gap")
     friction = curve.friction_viscous / LOAD**0.5
     groups = Groups(curve.values, LOAD, 0.0)
@@ -59,7 +59,7 @@ def _compute(report: Report) -> xarray.Dataset:
     ours = max(float(np.abs(errors[name]).max()) for name in ("film_uniform", "friction_uniform"))
     finding = (
         f"the better of both laws of the film is up to {-100 * between:.0f} % low between them, and the film by the printed "
-        f"constant 0.44 {-100 * printed:.1f} % low at {SPEEDS[0]:g}. The slow law of friction is {-100 * early:.0f} % "
+        f"constant 0.44 {-100 * printed:.1f} % low at {SPEED_RANGE[0]:g}. The slow law of friction is {-100 * early:.0f} % "
         f"low already at 1e-4, the root of squares up to {-100 * squares[place]:.1f} % low (at {curve.values[place]:.1g}) and "
         f"{100 * squares.max():.1f} % high. Our uniform formulas are within {100 * ours:.2g} %."
     )
@@ -77,18 +77,18 @@ def _compute(report: Report) -> xarray.Dataset:
 def _draw(data: xarray.Dataset) -> Figure:
     figure = style.new_figure(data, 11.0, 6.4)
     a, b, film_errors, friction_errors = style.panels(figure, 2, 2, height_ratios=[1.7, 1])
-    _draw_laws(a, data, "central_gap", FILMS)
+    _draw_laws(a, data, "central_gap", FILM_LAWS)
     a.set_ylabel(r"$h(0)/u_\mathrm{Hz}$")
     style.letter(a, "a", "central film")
-    _draw_laws(b, data, "friction", FRICTIONS)
+    _draw_laws(b, data, "friction", FRICTION_LAWS)
     b.set_ylabel(r"$\mu_f / (\beta \bar F_N^{1/2})$")
     style.letter(b, "b", "friction")
-    _draw_errors(film_errors, data, FILMS)
+    _draw_errors(film_errors, data, FILM_LAWS)
     printed = 100 * data.film_large_printed_error
     film_errors.plot(data.speed, printed, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="printed 0.44")
     style.legend(film_errors, loc="lower left")
     style.letter(film_errors, "+", "error of the laws of the film")
-    _draw_errors(friction_errors, data, FRICTIONS)
+    _draw_errors(friction_errors, data, FRICTION_LAWS)
     style.letter(friction_errors, "+", "error of the laws of friction")
     return figure
 

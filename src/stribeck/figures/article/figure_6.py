@@ -21,22 +21,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LARGE = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
-SMALL = (1.0, 3.0, 10.0, 30.0, 100.0)
-"""Relative roughness kappa = h_rms/F for large and for small indentation."""
+SMALL_KAPPAS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)  # Relative roughness h_rms/F of large indentation.
+LARGE_KAPPAS = (1.0, 3.0, 10.0, 30.0, 100.0)  # Relative roughness h_rms/F of small indentation.
 
-LOADS = (0.1, 0.01, 0.001)
-"""Load groups: that of the figure, and others at which a scale of its caption is seen to be wrong."""
+LOADS = (0.1, 0.01, 0.001)  # Load groups: that of the figure, and others at which a scale of its caption is seen to be wrong.
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(LARGE) + len(SMALL) + len(LOADS))
+    work = FigureJob(report, steps=len(SMALL_KAPPAS) + len(LARGE_KAPPAS) + len(LOADS))
     load = LOADS[0]
     x, inside, x_rough = np.linspace(-1.6, 1.6, 641), np.linspace(-0.999, 0.999, 401), np.linspace(-8, 8, 401)
     xi, ratio = np.linspace(-6, 4, 401), np.linspace(-4, 4, 321)
-    large = [work.solve(0.0, load, load * kappa) for kappa in LARGE]
-    small = [work.solve(0.0, load, load * kappa) for kappa in SMALL]
-    others = [work.solve(0.0, other, other * SMALL[-1]) for other in LOADS]
+    large = [work.solve(0.0, load, load * kappa) for kappa in SMALL_KAPPAS]
+    small = [work.solve(0.0, load, load * kappa) for kappa in LARGE_KAPPAS]
+    others = [work.solve(0.0, other, other * LARGE_KAPPAS[-1]) for other in LOADS]
 
     def at_edge(solution: Solution, shift: float = 0.0) -> Array:
         kappa = float(solution.groups.relative_roughness)
@@ -51,7 +49,7 @@ def _compute(report: Report) -> xarray.Dataset:
     rigid = np.array([on_film(s, ratio) for s in small])
     # sqrt(a h0), which the caption prints, over sqrt(R h0), for beta = 1.
     printed = [on_film(s, ratio * float(s.groups.slope()) ** 0.5) for s in others]
-    core = np.array([s.profile(inside).gap / k for s, k in zip(large, LARGE, strict=True)])
+    core = np.array([s.profile(inside).gap / k for s, k in zip(large, SMALL_KAPPAS, strict=True)])
     rough_contact = boundary.gap.function(Groups(0.0, load, load), inside)
     parabola = 1 + 0.5 * ratio**2
     edge_distance = np.abs(edge - edge_limit)[:, near].max(axis=1)
@@ -62,10 +60,13 @@ def _compute(report: Report) -> xarray.Dataset:
     rigid_at = [f"{100 * distance:.2g} %" for distance in rigid_distance]
     ends = ", ".join(f"{gap[-1]:.1f}" for gap in printed)
     finding = (
-        f"at kappa = {LARGE[at]:g} the rough-contact gap is within {core_distance[at]:.2g} h_rms/alpha of the solver inside "
+        f"at kappa = {SMALL_KAPPAS[at]:g} the rough-contact gap is within {core_distance[at]:.2g} h_rms/alpha of the "
+        "solver inside "
         f"0.9 a, and the edge within {edge_distance[at]:.2g} of the similarity solution, {shifted_distance[at]:.2g} if it is "
-        f"taken at a (1 - kappa); very rough contacts are within {rigid_at[-1]} of the parabola at kappa = {SMALL[-1]:g} and "
-        f"{rigid_at[0]} off at {SMALL[0]:g}. The caption's scale (a h0)^(1/2) gives no common curve: at its value 4 the gap "
+        f"taken at a (1 - kappa); very rough contacts are within {rigid_at[-1]} of the parabola at kappa = "
+        f"{LARGE_KAPPAS[-1]:g} and "
+        f"{rigid_at[0]} off at {LARGE_KAPPAS[0]:g}. The caption's scale (a h0)^(1/2) gives no common curve: at its "
+        "value 4 the gap "
         f"of loads {', '.join(map(str, LOADS))} is {ends} h0; with the text's (R h0)^(1/2) it is 9 h0."
     )
     variables = {
@@ -85,8 +86,8 @@ def _compute(report: Report) -> xarray.Dataset:
         "rigid_distance": column("kappa_large", rigid_distance, "largest distance of rigid_gap from parabola, relative"),
     }
     coords = {
-        "kappa_small": column("kappa_small", LARGE, "relative roughness kappa, large indentation"),
-        "kappa_large": column("kappa_large", SMALL, "relative roughness kappa, small indentation"),
+        "kappa_small": column("kappa_small", SMALL_KAPPAS, "relative roughness kappa, large indentation"),
+        "kappa_large": column("kappa_large", LARGE_KAPPAS, "relative roughness kappa, small indentation"),
         "load": column("load", LOADS, "load group"),
         "x": column("x", x, "position over a"),
         "inside": column("inside", inside, "position over a, inside the contact"),

@@ -15,7 +15,7 @@ from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import (
     CASES,
     LOADS,
-    REPORTED,
+    REPORTED_LAMBDA,
     ROUGHNESSES,
     case_coords,
     draw_reports,
@@ -32,21 +32,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SPEEDS = 1e-8, 1e3
-PREDICTED = 1e-8, 1e-2
-"""Roughness groups over which Lambda is predicted."""
+SPEED_RANGE = 1e-8, 1e3  # Speed groups of the curves.
+PREDICTED_ROUGHNESS_RANGE = 1e-8, 1e-2  # Roughness groups over which Lambda is predicted.
 
-HYDRODYNAMIC_SHARE = 1e-3
-"""Part of the friction from asperities below which a state counts as hydrodynamic here: a tenth of a percent."""
+MAX_SOLID_FRICTION_SHARE = 1e-3  # Share of friction from asperities below which a state counts as hydrodynamic here.
 
 
 def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=len(CASES))
-    curves = solved_cases(work, SPEEDS, points=67)
+    curves = solved_cases(work, SPEED_RANGE, points=67)
     friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
     law = over(curves, "hydrodynamic_friction")
     uniform = np.array([hydrodynamic.friction_uniform.function(curve.groups) for curve in curves])
-    fluid_film = over(curves, "friction_contact") < HYDRODYNAMIC_SHARE * friction
+    fluid_film = over(curves, "friction_contact") < MAX_SOLID_FRICTION_SHARE * friction
     off, ours = (np.where(fluid_film, friction / x - 1, np.nan) for x in (law, uniform))
     minima = [curve.minimum for curve in curves]
     lowest = {
@@ -58,7 +56,7 @@ def _compute(report: Report) -> xarray.Dataset:
     spread = _spread(hersey, friction, fluid_film)
     slopes = np.gradient(np.log(friction[0]), np.log(hersey[0]))
     slopes = np.where(fluid_film[0], slopes, np.nan)
-    groups = Groups(1.0, np.array(LOADS)[:, None], np.geomspace(*PREDICTED, 61))
+    groups = Groups(1.0, np.array(LOADS)[:, None], np.geomspace(*PREDICTED_ROUGHNESS_RANGE, 61))
     predicted = transitions.separation_at_minimum.function(groups)
     finding = (
         f"over the Hersey number the hydrodynamic branches of loads {LOADS[0]} and {LOADS[1]} differ by up to {spread:.2f} "
@@ -86,9 +84,11 @@ def _compute(report: Report) -> xarray.Dataset:
     coords = case_coords() | {
         "speed": column("speed", curves[0].values, "speed group lambda"),
         "predicted_load": column("predicted_load", LOADS, "load group"),
-        "predicted_roughness": column("predicted_roughness", np.geomspace(*PREDICTED, 61), "roughness group h_rms"),
+        "predicted_roughness": column(
+            "predicted_roughness", np.geomspace(*PREDICTED_ROUGHNESS_RANGE, 61), "roughness group h_rms"
+        ),
     }
-    reports = "; ".join(REPORTED)
+    reports = "; ".join(REPORTED_LAMBDA)
     return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
 
 

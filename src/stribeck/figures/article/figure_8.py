@@ -18,20 +18,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOAD, ROUGHNESS = 0.1, 1e-4
+LOAD, ROUGHNESS = 0.1, 1e-4  # Groups of the profiles.
+# Speed groups of the profiles, 3.16e-6 to 1e-3 as in the paper, in steps of half a decade.
 SPEEDS = tuple(10.0 ** (exponent / 2) for exponent in range(-11, -5))
-"""Speed groups of the profiles, 3.16e-6 to 1e-3 as in the paper, in steps of half a decade."""
 
-CURVE = 1e-8, 0.1
-CORE = 0.9
-"""Half the width, over a, in which profiles are compared with the limits; the layers at the edges lie outside."""
+CURVE_SPEED_RANGE = 1e-8, 0.1  # Speed groups of the curve.
+CORE_HALF_WIDTH = 0.9  # Half-width [a] in which profiles are compared with the limits; the layers at the edges lie outside.
 
 CYAN = "#56b4e9"
 
 
 def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=len(SPEEDS) + 2)
-    curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=CURVE, points=71)
+    curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=CURVE_SPEED_RANGE, points=71)
     states = [work.solve(speed, LOAD, ROUGHNESS) for speed in SPEEDS]
     smooth = work.solve(SPEEDS[-1], LOAD, 0.0)
     x, inside = np.linspace(-1.6, 1.6, 641), np.linspace(-0.998, 0.998, 499)
@@ -41,7 +40,7 @@ def _compute(report: Report) -> xarray.Dataset:
     )
     dry = hertz.pressure(x)
     rough_contact = boundary.gap.function(Groups(0.0, LOAD, ROUGHNESS), inside)
-    core = np.abs(x) <= CORE
+    core = np.abs(x) <= CORE_HALF_WIDTH
     at_core = np.array([profile.gap[core] for profile in profiles])
     distances = {
         "gap_distance": (at_core / boundary.gap.function(Groups(0.0, LOAD, ROUGHNESS), x[core]) - 1, "rough contact"),
@@ -54,7 +53,8 @@ def _compute(report: Report) -> xarray.Dataset:
     rise = np.diff(contact, axis=0)
     step, place = np.unravel_index(np.argmax(rise), rise.shape)
     finding = (
-        f"inside {CORE} a, gap and contact pressure of the slowest profile are within {100 * furthest['gap_distance'][0]:.0f} "
+        f"inside {CORE_HALF_WIDTH} a, gap and contact pressure of the slowest profile are within "
+        f"{100 * furthest['gap_distance'][0]:.0f} "
         f"% and {furthest['contact_distance'][0]:.2f} p_Hz of the limit at rest, as the fluid pressure, still almost odd in "
         f"x, reaches {fluid[0].max():.2f} p_Hz where it carries {100 * shares[0]:.1f} % of the load; the fluid pressure of "
         f"the fastest is within {furthest['fluid_distance'][-1]:.2f} p_Hz of Hertz, carries {100 * shares[-1]:.1f} % and "
@@ -77,7 +77,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "hertz_pressure": column("x", dry, "Hertz pressure over p_Hz"),
     }
     for name, (_, limit) in distances.items():
-        variables[name] = column("speed", furthest[name], f"largest distance from the {limit}, for |x| < {CORE} a")
+        variables[name] = column("speed", furthest[name], f"largest distance from the {limit}, for |x| < {CORE_HALF_WIDTH} a")
     coords = {
         "curve_speed": column("curve_speed", curve.values, "speed group lambda of the curve"),
         "speed": column("speed", SPEEDS, "speed group lambda of the profiles"),

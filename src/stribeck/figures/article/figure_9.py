@@ -11,8 +11,16 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.rough import mixed, transitions
 from stribeck.contacts.line import Groups
 from stribeck.curves.landmarks import Landmark
-from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, MIN_FILM, draw
-from stribeck.figures.article.stribeck_cases import CASES, LOADS, REPORTED, case_coords, over, report_variables, solved_cases
+from stribeck.figures.article.mixed_panels import MAX_FILM_RATIO, MAX_KAPPA, MIN_FILM_RATIO, draw
+from stribeck.figures.article.stribeck_cases import (
+    CASES,
+    LOADS,
+    REPORTED_LAMBDA,
+    case_coords,
+    over,
+    report_variables,
+    solved_cases,
+)
 from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.quantities.outcome import Outcome
@@ -21,23 +29,21 @@ from stribeck.solver.solve import SolveError
 if TYPE_CHECKING:
     import xarray
 
-SPEEDS = 1e-8, 1e3
+SPEED_RANGE = 1e-8, 1e3  # Speed groups of the curves.
+# Relative roughnesses at which minima are solved, 1e-5 to 1e-1 in half decades.
 KAPPAS = tuple(10.0 ** (exponent / 2) for exponent in range(-10, -1))
-"""Relative roughnesses at which minima are solved, 1e-5 to 1e-1 in half decades."""
 
-WINDOW = 0.5, 2.0
-"""Speeds around the predicted minimum between which it is looked for."""
+SPEED_WINDOW = 0.5, 2.0  # Speeds over the predicted minimum between which the minimum is sought.
 
-NUMBERS = 1e-9, 0.49
-"""Values of k over which Lambda is compared with the reported ranges."""
+WEAKENING_RANGE = 1e-9, 0.49  # Values of k over which Lambda is compared with the reported ranges.
 
-FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
-"""Laws of Lambda at the minimum: by Lambert's W, its expansion, and ours."""
+# Laws of Lambda at the minimum: by Lambert's W, its expansion, and ours.
+LAMBDA_FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
 
 
 def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=len(CASES) + len(LOADS) * len(KAPPAS))
-    curves = solved_cases(work, SPEEDS, points=67)
+    curves = solved_cases(work, SPEED_RANGE, points=67)
     friction = over(curves, "friction")
     laws = {
         "law_large": np.array([mixed.friction.function(curve.groups, film="large") for curve in curves]),
@@ -53,19 +59,21 @@ def _compute(report: Report) -> xarray.Dataset:
     ratio = np.array([[mark.solution.central_separation for mark in row] for row in found])
     lowest = np.array([[mark.friction for mark in row] for row in found])
     film_ratio = FILM_CONSTANT * speeds**0.6 / kappa
-    ratios: dict[str, Array] = {form: np.asarray(transitions.separation_at_minimum.function(at, form=form)) for form in FORMS}
+    ratios: dict[str, Array] = {
+        form: np.asarray(transitions.separation_at_minimum.function(at, form=form)) for form in LAMBDA_FORMS
+    }
     minima = {
         "friction_exact": np.asarray(transitions.friction_at_minimum.function(at, form="exact")),
         "friction_leading": np.asarray(transitions.friction_at_minimum.function(at, form="leading")),
         "friction_printed": np.asarray(transitions.friction_at_minimum.function(at, printed=True)),
         "friction_uniform": np.asarray(transitions.friction_at_minimum.function(at)),
     }
-    numbers = np.geomspace(*NUMBERS, 121)
+    numbers = np.geomspace(*WEAKENING_RANGE, 121)
     # At load 1, beta = mu_0 = 1 the number k stands for the roughness alone.
     alone = (numbers / float(transitions.weakening_number(Groups(1.0, 1.0, 1.0)))) ** 1.5
     against = transitions.separation_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
-    near = (film > MIN_FILM) & (film < LARGEST_FILM) & (relative <= LARGEST_KAPPA)
+    near = (film > MIN_FILM_RATIO) & (film < MAX_FILM_RATIO) & (relative <= MAX_KAPPA)
     finding = _finding(errors, near, ratio, ratios, lowest, minima)
     grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
     variables = {
@@ -96,12 +104,12 @@ def _compute(report: Report) -> xarray.Dataset:
         "kappa": column("kappa", KAPPAS, "relative roughness h_rms/F"),
         "k": column("k", numbers, "k = 2/(9 c^(5/3)) beta h_rms^(2/3) F^(1/3)/mu_0"),
     }
-    reports = "; ".join(REPORTED)
+    reports = "; ".join(REPORTED_LAMBDA)
     return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
 
 
 def _minimum(work: FigureJob, load: float, kappa: float, speed: float) -> Landmark:
-    low, high = WINDOW
+    low, high = SPEED_WINDOW
     found = work.curve(load=load, roughness=kappa * load, speed=(low * speed, high * speed), points=5).minimum
     if found is None:
         where = f"load {load:g}, relative roughness {kappa:g}, speed {low * speed:.3g} to {high * speed:.3g}"
@@ -114,10 +122,11 @@ def _finding(
 ) -> str:
     worst = {name: 100 * np.abs(error[near]).max() for name, error in errors.items()}
     smoothest = 100 * np.abs(errors["large_error"][0][near[0]]).max()
-    exact, expansion, ours = (100 * np.abs(ratios[form] / ratio - 1).max(axis=0) for form in FORMS)
+    exact, expansion, ours = (100 * np.abs(ratios[form] / ratio - 1).max(axis=0) for form in LAMBDA_FORMS)
     corrected, printed, best = (minima[f"friction_{form}"] / lowest for form in ("exact", "printed", "uniform"))
     finding = (
-        f"for film ratios {MIN_FILM:g} to {LARGEST_FILM:g} and kappa up to {LARGEST_KAPPA:g} the paper's friction is up to "
+        f"for film ratios {MIN_FILM_RATIO:g} to {MAX_FILM_RATIO:g} and kappa up to {MAX_KAPPA:g} the paper's friction "
+        "is up to "
         f"{worst['large_error']:.0f} % off ({smoothest:.0f} % at kappa = {KAPPAS[2]:g}), ours {worst['uniform_error']:.0f} %. "
         f"Lambda grows from {ratio.min():.1f} to {ratio.max():.1f}; Lambert's W is within {exact[0]:.1f} % of it at kappa = "
         f"{KAPPAS[0]:g}, {exact[4]:.0f} % at {KAPPAS[4]:g} and {exact[-1]:.0f} % at {KAPPAS[-1]:g}, its expansion within "

@@ -19,34 +19,36 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOAD = 0.1
-KAPPAS = (1e-3, 1e-4)
-"""Relative roughness: that of the panels, and one that shows what is left of the distance at slow speed."""
+LOAD = 0.1  # Load group of the profiles.
+KAPPAS = (1e-3, 1e-4)  # Relative roughness: that of the panels, and one that shows what is left of the distance at slow speed.
 
-NUMBERS = tuple(10.0 ** (exponent / 2) for exponent in range(-4, 4))
-"""Speeds of the profiles, as fluid number lambda/kappa**2: 0.01 to 32, where the fluid carries most of the load."""
+# Fluid numbers lambda/kappa**2 of the profiles: 0.01 to 32, where the fluid carries most of the load.
+FLUID_NUMBERS = tuple(10.0 ** (exponent / 2) for exponent in range(-4, 4))
 
-RTOL = 1e-8
-"""Finer than for other figures: at the slowest speed the part of second order is 1e-3 of the pressure."""
+STATE_RTOL = 1e-8  # Relative tolerance: at the slowest speed the part of second order is 1e-3 of the pressure.
 
-CORE = 0.9
-PARTS = {
+CORE_HALF_WIDTH = 0.9  # Half-width [a] in which profiles are compared with the expansion.
+# Panels: what they show in words, on their axis, and in which power of ten.
+PANEL_PARTS = {
     "first_pressure": ("p_f / lambda, in p_Hz over the speed group", r"$p_f/\lambda$", 3),
     "first_gap": ("odd part of the gap / lambda, in u_Hz over the speed group", r"$\mathrm{Asym}[h]/\lambda$", 0),
     "second_pressure": ("even part of p_f / lambda^2, in p_Hz over its square", r"$\mathrm{Sym}[p_f]/\lambda^2$", 9),
 }
-"""Panels: what they show in words, on their axis, and in which power of ten."""
 
-PANELS = (r"fluid pressure over $\lambda$", r"odd part of the gap over $\lambda$", r"even part of $p_f$ over $\lambda^2$")
+PANEL_LABELS = (
+    r"fluid pressure over $\lambda$",
+    r"odd part of the gap over $\lambda$",
+    r"even part of $p_f$ over $\lambda^2$",
+)
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(KAPPAS) * len(NUMBERS), rtol=RTOL)
+    work = FigureJob(report, steps=len(KAPPAS) * len(FLUID_NUMBERS), rtol=STATE_RTOL)
     x = np.linspace(-1.2, 1.2, 481)
     near = np.abs(x) < 0.999
-    core = np.abs(x) <= CORE
-    speeds = np.array(KAPPAS)[:, None] ** 2 * np.array(NUMBERS)
-    solved, laws = (np.empty((len(PARTS), len(KAPPAS), *shape)) for shape in ((len(NUMBERS), len(x)), (len(x),)))
+    core = np.abs(x) <= CORE_HALF_WIDTH
+    speeds = np.array(KAPPAS)[:, None] ** 2 * np.array(FLUID_NUMBERS)
+    solved, laws = (np.empty((len(PANEL_PARTS), len(KAPPAS), *shape)) for shape in ((len(FLUID_NUMBERS), len(x)), (len(x),)))
     for i, kappa in enumerate(KAPPAS):
         for j, speed in enumerate(speeds[i]):
             solved[:, i, j] = _parts(work.solve(float(speed), LOAD, LOAD * kappa), x)
@@ -55,28 +57,32 @@ def _compute(report: Report) -> xarray.Dataset:
     largest = np.abs(laws[..., core]).max(axis=-1)
     distance = np.abs(solved - laws[:, :, None])[..., core].max(axis=-1) / largest[..., None]
     change = np.abs(solved - solved[:, :, :1])[..., core].max(axis=-1) / largest[..., None]
-    rates = [np.log(change[k, 1, 4] / change[k, 1, 3]) / np.log(NUMBERS[4] / NUMBERS[3]) for k in range(len(PARTS))]
+    rates = [
+        np.log(change[k, 1, 4] / change[k, 1, 3]) / np.log(FLUID_NUMBERS[4] / FLUID_NUMBERS[3])
+        for k in range(len(PANEL_PARTS))
+    ]
     left = [", ".join(f"{100 * value:.1f}" for value in distance[:, i, 0]) for i in range(len(KAPPAS))]
     finding = (
-        f"inside {CORE} a the quantities of panels a, b, c come within {left[0]} % of the formulas as the speed falls, at "
+        f"inside {CORE_HALF_WIDTH} a the quantities of panels a, b, c come within {left[0]} % of the formulas as the "
+        "speed falls, at "
         f"kappa = {KAPPAS[0]:g}, and within {left[1]} % at {KAPPAS[1]:g}: that rest is the price of small kappa and stays at "
         f"any speed. What vanishes with the speed goes as its powers {rates[0]:.2f}, {rates[1]:.2f} and {rates[2]:.2f}. At "
         f"lambda = kappa^2, kappa = {KAPPAS[1]:g}, the formula of a is {100 * distance[0, 1, 4]:.0f} % off and that of c, "
         f"which gives the load, {100 * distance[2, 1, 4]:.0f} %."
     )
     variables = {"speed": column(("kappa", "number"), speeds, "speed group lambda")}
-    for k, (name, (words, *_)) in enumerate(PARTS.items()):
+    for k, (name, (words, *_)) in enumerate(PANEL_PARTS.items()):
         variables[name] = column(("number", "x"), solved[k, 0], f"{words}, kappa = {KAPPAS[0]:g}")
         variables[f"{name}_law"] = column("x", laws[k, 0], f"its formula; nan outside the contact ({words})")
         variables[f"{name}_distance"] = column(
             ("kappa", "number"),
             distance[k],
-            f"largest distance of {name} from its formula for |x| < {CORE} a, over its largest value",
+            f"largest distance of {name} from its formula for |x| < {CORE_HALF_WIDTH} a, over its largest value",
         )
         variables[f"{name}_change"] = column(("kappa", "number"), change[k], f"the same from {name} at the slowest speed")
     coords = {
         "kappa": column("kappa", KAPPAS, "relative roughness kappa"),
-        "number": column("number", NUMBERS, "fluid number lambda/kappa^2"),
+        "number": column("number", FLUID_NUMBERS, "fluid number lambda/kappa^2"),
         "x": column("x", x, "position over a"),
     }
     return dataset(variables, coords, finding=finding, load_group=LOAD, **work.attributes)
@@ -102,7 +108,7 @@ def _laws(groups: Groups, x: Array, near: Flags) -> Array:
     gap = perturbation.gap_first.function(groups, inside)
     first = perturbation.fluid_pressure_first.function(groups, inside)
     both = perturbation.fluid_pressure_second.function(groups, inside)
-    found = np.full((len(PARTS), len(x)), np.nan)
+    found = np.full((len(PANEL_PARTS), len(x)), np.nan)
     found[0, near] = first / speed
     found[1, near] = (gap - perturbation.gap_first.function(groups, -inside)) / (2 * speed)
     found[2, near] = (both - first) / speed**2
@@ -113,7 +119,7 @@ def _draw(data: xarray.Dataset) -> Figure:
     figure = style.new_figure(data, 11.0, 7.0)
     *fields, d = style.panels(figure, 2, 2)
     colours = style.sequence(data.sizes["number"])
-    for axes, which, text, (name, (_, label, power)) in zip(fields, "abc", PANELS, PARTS.items(), strict=True):
+    for axes, which, text, (name, (_, label, power)) in zip(fields, "abc", PANEL_LABELS, PANEL_PARTS.items(), strict=True):
         for colour, speed, values in zip(colours, data.speed.values[0], data[name].values, strict=True):
             axes.plot(data.x, values / 10**power, color=colour, lw=1.3, label=style.power(speed))
         law = data[f"{name}_law"] / 10**power
@@ -128,7 +134,7 @@ def _draw(data: xarray.Dataset) -> Figure:
 
 
 def _draw_distances(axes: Axes, data: xarray.Dataset) -> None:
-    for (name, (_, label, _)), colour in zip(PARTS.items(), (style.FLUID, style.GREEN, style.MARK), strict=True):
+    for (name, (_, label, _)), colour in zip(PANEL_PARTS.items(), (style.FLUID, style.GREEN, style.MARK), strict=True):
         for values, kappa, dashes, face in zip(
             data[f"{name}_distance"].values, data.kappa.values, ("-", style.DOTTED), (colour, "white"), strict=True
         ):
@@ -140,7 +146,7 @@ def _draw_distances(axes: Axes, data: xarray.Dataset) -> None:
     axes.set_ylim(5e-4, 20)
     style.slope(axes, 0.35, 8e-4, 2.0, "2", decades=0.5)
     style.slope(axes, 0.014, 0.0012, 1.0, "1", decades=0.5)
-    style.letter(axes, "+", rf"distance of a, b, c from the formulas, $|x| < {CORE}\,a$")
+    style.letter(axes, "+", rf"distance of a, b, c from the formulas, $|x| < {CORE_HALF_WIDTH}\,a$")
     style.legend(axes, loc="upper left", fontsize=7.5, ncols=2)
 
 

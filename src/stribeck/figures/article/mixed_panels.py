@@ -12,21 +12,23 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MIN_FILM, LARGEST_FILM, LARGEST_KAPPA = 3.0, 20.0, 0.1
-"""Film ratios and relative roughness within which the formulas for friction are compared."""
+MIN_FILM_RATIO = 3.0  # Film ratio above which the formulas for friction are compared.
+MAX_FILM_RATIO = 20.0  # Film ratio below which the formulas for friction are compared.
+MAX_KAPPA = 0.1  # Relative roughness up to which the formulas for friction are compared.
 
-FORMS = {
+# Label and dashes of each law of Lambda at the minimum.
+LAMBDA_STYLES = {
     "exact": (r"Lambert's $W$", style.DASHED),
     "expansion": ("its expansion", style.DOTTED),
     "uniform": ("ours", "-"),
 }
-FRICTIONS = {
+# Label and dashes of the friction at the minimum by each law.
+FRICTION_STYLES = {
     "friction_exact": (r"with Lambert's $W$", style.DASHED),
     "friction_leading": (r"$\Lambda = -\ln k$, power $+2/3$", style.DOTTED),
     "friction_printed": (r"as printed, power $-2/3$", (0, (1, 3))),
     "friction_uniform": ("ours", "-"),
 }
-"""Label and dashes of each law of the minimum."""
 
 LOAD_COLOURS = (style.FLUID, style.CONTACT)
 
@@ -38,10 +40,10 @@ def draw(data: xarray.Dataset) -> Figure:
     for i, look, label in drawn_cases(data):
         x = data.hydrodynamic_friction[i]
         a.loglog(x, data.friction[i], markevery=2, label=label, **look)
-        shown = data.film_ratio[i] > MIN_FILM
+        shown = data.film_ratio[i] > MIN_FILM_RATIO
         a.plot(x.where(shown), data.law_large[i].where(shown), color=style.INK, ls=style.DASHED, lw=1.0, zorder=4)
         a.plot(x.where(shown), data.law_uniform[i].where(shown), color=style.MARK, ls=style.DOTTED, lw=1.6, zorder=5)
-        if float(data["roughness"][i] / data["load"][i]) <= LARGEST_KAPPA:
+        if float(data["roughness"][i] / data["load"][i]) <= MAX_KAPPA:
             for name, dashes in (("large_error", style.DASHED), ("uniform_error", "-")):
                 errors.semilogx(data.film_ratio[i], 100 * data[name][i], color=look["color"], ls=dashes, lw=1.3)
     a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(5e-4, 10), ylim=(2e-4, 10))
@@ -63,7 +65,7 @@ def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
         x = data.minimum_roughness[i]
         axes.semilogx(x, data.separation[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
         axes.plot(x, data.film_ratio_at_minimum[i], "o", color=colour, mfc="white", ms=5)
-        for form, (label, dashes) in FORMS.items():
+        for form, (label, dashes) in LAMBDA_STYLES.items():
             axes.plot(x, data[f"lambda_{form}"][i], color=colour, ls=dashes, lw=1.2, label=label if i else None)
     axes.axhline(float(data.textbook), color=style.GREY, lw=1.2, ls=style.DASHED, label="textbook, Spikes 1997")
     axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0, 19))
@@ -75,7 +77,7 @@ def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
     for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
         x = data.minimum_roughness[i]
         axes.loglog(x, data.minimum_friction[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
-        for name, (label, dashes) in FRICTIONS.items():
+        for name, (label, dashes) in FRICTION_STYLES.items():
             shown = {"color": colour, "ls": dashes, "lw": 1.2, "label": label if i else None}
             axes.plot(x, data[name][i], **shown)
             ratios.loglog(x, data[name][i] / data.minimum_friction[i], **shown)

@@ -16,22 +16,21 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-LOADS = (0.1, 0.01)
-ROUGHNESSES = (1e-5, 1e-4, 1e-3, 1e-2)
+LOADS = (0.1, 0.01)  # Load groups of the curves.
+ROUGHNESSES = (1e-5, 1e-4, 1e-3, 1e-2)  # Roughness groups of the curves.
+# Load and roughness group of each curve.  [BP] name one pair only, load 0.1 with roughness 1e-4 in blue; relative roughness
+# reaches from 1e-4 to the 1 of which they say that the minimum lies near speed 1.
 CASES = tuple((load, roughness) for load in LOADS for roughness in ROUGHNESSES)
-"""Load and roughness group of each curve.  [BP] name one pair only, load 0.1 with roughness 1e-4 in blue, and no table of the
-others; relative roughness reaches from 1e-4 to the 1 of which they say that the minimum lies near speed 1."""
 
-REPORTED = {
+# Ranges of Lambda at the transition in experiments, as the text of [BP] quotes them; the data themselves are not public.
+REPORTED_LAMBDA = {
     "Bongaerts 2007": (0.7, 11.0),
     "Petrova 2019": (0.7, 1.2),
     "Sadowski 2019": (0.9, 2.3),
     "Dong 2023": (16.0, 2736.0),
 }
-"""Ranges of Lambda at the transition in experiments, as the text of [BP] quotes them; the data themselves are not public."""
 
-TEXTBOOK = 3.0
-"""The value of Lambda that textbooks take for all contacts, after Spikes 1997."""
+TEXTBOOK_LAMBDA = 3.0  # Lambda that textbooks take for all contacts, after Spikes 1997.
 
 REPORT_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9", "#8c6d46")
 
@@ -52,11 +51,11 @@ def case_coords() -> dict[str, Column]:
 
 def report_variables() -> dict[str, Column]:
     """Return the reported ranges of Lambda along the dimension ``report``, whose names are in the attribute ``reports``."""
-    low, high = zip(*REPORTED.values(), strict=True)
+    low, high = zip(*REPORTED_LAMBDA.values(), strict=True)
     return {
         "reported_low": column("report", low, "minimum Lambda at the transition that the paper quotes from experiments"),
         "reported_high": column("report", high, "largest Lambda at the transition that the paper quotes from experiments"),
-        "textbook": column((), TEXTBOOK, "Lambda at the transition by textbooks"),
+        "textbook": column((), TEXTBOOK_LAMBDA, "Lambda at the transition by textbooks"),
     }
 
 
