@@ -265,7 +265,7 @@ def test_the_other_forms_are_as_good_as_they_say():
     assert -0.06 < power.min() - 1 < 0 < power.max() - 1 < 0.12
     assert ratio(1e-12, "power") == pytest.approx(1.784, abs=1e-3)
     # The printed prefactor is that of the fit without 2/pi; the printed power has the wrong sign.
-    assert perturbation.POWER * math.pi / 2 == pytest.approx(0.510095, abs=1e-3)
+    assert perturbation.POWER_COEFFICIENT * math.pi / 2 == pytest.approx(0.510095, abs=1e-3)
     assert perturbation.phi(0.1, "printed") == pytest.approx(32.4, abs=0.1)
     assert perturbation.phi(0.1) == pytest.approx(4.65924393e-3, rel=1e-8)
 

@@ -647,7 +647,7 @@ def test_lambda_is_a_function_of_k_in_the_limit_of_small_roughness_only():
 def test_the_branch_of_lambda_ends_at_k_one_half_and_the_minimum_long_before():
     """[BP] Eq. (Lambda_solution): no condition is printed."""
     end = (3 * math.e) ** (-1 / 3)
-    assert transitions.LARGEST_WEAKENING == pytest.approx(end) == pytest.approx(0.4968, abs=1e-4)
+    assert transitions.MAX_WEAKENING == pytest.approx(end) == pytest.approx(0.4968, abs=1e-4)
     ratios = np.linspace(0.01, 5, 4991)
     assert (ratios ** (1 / 3) * np.exp(-ratios)).max() == pytest.approx(end, rel=1e-6)
     rough = sb.Groups(1.0, LOAD, 0.165 * LOAD)

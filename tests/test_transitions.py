@@ -63,13 +63,13 @@ def test_the_film_with_asperities_is_the_law_of_the_paper_where_both_are_small()
 def test_the_contact_share_solves_its_implicit_equation():
     groups = state(4, 1e-3, 1e-2)
     share = mixed.contact_load_share(groups)
-    unsaturated = (share**-mixed.SATURATION - 1) ** (-1 / mixed.SATURATION)
+    unsaturated = (share**-mixed.SATURATION_COEFFICIENT - 1) ** (-1 / mixed.SATURATION_COEFFICIENT)
     central = mixed.contact_load_share(groups, "central")
     ratio = -math.log(central * math.pi / 4 * groups.load**0.5)
     u = groups.speed**0.4
-    outlet = 1 + mixed.OUTLET[0] * u**1.5 + mixed.OUTLET[1] * u * ratio ** (8 / 3)
+    outlet = 1 + mixed.OUTLET_COEFFICIENTS[0] * u**1.5 + mixed.OUTLET_COEFFICIENTS[1] * u * ratio ** (8 / 3)
     assert unsaturated == pytest.approx(
-        central * outlet * math.exp(-mixed.FEEDBACK * unsaturated / groups.speed**0.2), rel=1e-9
+        central * outlet * math.exp(-mixed.FEEDBACK_COEFFICIENT * unsaturated / groups.speed**0.2), rel=1e-9
     )
 
 
@@ -138,7 +138,7 @@ def test_the_expansion_of_lambert_w_nears_it_as_roughness_vanishes():
 
 
 def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
-    limit = transitions.LARGEST_WEAKENING
+    limit = transitions.MAX_WEAKENING
     assert limit == pytest.approx(0.4968, abs=5e-5)
     edge = transitions.roughness_without_minimum(0.1, criterion="weakening")
     for factor, present in ((0.999, True), (1.001, False)):
