@@ -131,10 +131,8 @@ class Table:
         return next(found), next(found)
 
     def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Values:
-        """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth.
-
-        ``slopes`` is 0, 1 for derivatives by the speed alone, or 3.
-        """
+        """Return functions at states inside the box, and 0, 1 (by the speed) or 3 derivatives, as flat arrays."""
+        # A ``log_speed`` of -inf is rest, ``kappa`` 0 a smooth surface.
         states, last = log_speed.size, self.grid.pieces * SEGMENTS
         block = np.full(states, last)
         coordinates, chain = np.empty((3, states)), np.zeros(((0, 1, 1, 6)[slopes], states))
@@ -187,10 +185,8 @@ class Table:
     def _place(
         self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: int
     ) -> tuple[Indices, Array, Array | None]:
-        """Return the block and the local coordinates of states of a region, and what the chain rule needs.
-
-        That is dt/ds, and with three slopes dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa) and dk/dln(kappa), all local.
-        """
+        """Return the block and the local coordinates of states of a region, and the factors of the chain rule."""
+        # The factors are dt/ds, and with three slopes dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa), dk/dln(kappa), all local.
         k, y = region.roughness_coordinate(np.log(kappa)), region.load_coordinate(log_load, kappa)
         ends = self.ends(number, k, y)
         segment = np.maximum((s >= ends).sum(axis=0), 0 if region.has_rest else 1)

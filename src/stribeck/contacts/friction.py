@@ -166,7 +166,7 @@ def sliding_part(slide_to_roll: float) -> float:
 
 
 def coefficients(contact: Contact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
-    """Return boundary_friction and beta as given, else those of the contact, else 1."""
+    """Return boundary_friction and beta as given, by default of the contact, or 1 without a contact."""
     if contact is None and boundary_friction is None and beta is None:
         return 1.0, 1.0
     if boundary_friction is None:

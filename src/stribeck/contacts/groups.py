@@ -249,10 +249,8 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
 
 
 def contact_law(groups: Groups) -> ContactLaw:
-    """Return the contact law of a state: that of its shape, exponential without one, none where the roughness is zero.
-
-    Groups that are columns give the law of stacked states; none or all of these are smooth.
-    """
+    """Return the contact law of a state, or of stacked states from groups that are columns."""
+    # None or all of stacked states are smooth.
     if not np.any(groups.roughness):
         return NoContact()
     if groups.law is None or is_exponential(groups.law):

@@ -74,10 +74,8 @@ def header_words(header: str) -> str:
 
 
 def is_named(header: str, pattern: str) -> bool:
-    """Return whether the words of a header match a pattern.
-
-    What stands before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
-    """
+    """Return whether the words of a header match a pattern."""
+    # A word before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
     parts = (header, re.split(r"[.:]", split_header(header)[0])[-1])
     words = [header_words(part) for part in parts]
     return any(re.fullmatch(pattern, each) for each in (*words, *(_LETTER.sub("", each) for each in words)))

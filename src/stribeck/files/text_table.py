@@ -385,11 +385,9 @@ def _are_pairs(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> bool:
 
 
 def _stack_curves(table: TextTable, labels: tuple[str, ...]) -> TextTable:
-    """Return the table with curves that stand side by side one below another, each with its name in a column.
-
-    Columns before the first label belong to all curves.  Without labels, columns whose names come again in the same order,
-    with other numbers, are curves too.
-    """
+    """Return the table with curves that stand side by side one below another, each with its name in a column."""
+    # Columns before the first label belong to all curves. Without labels, columns whose names come again in the same order,
+    # with different numbers, are curves too.
     width = len(labels) or len(table.header)
     if labels:
         starts = [i for i, label in enumerate(labels) if label]

@@ -79,10 +79,7 @@ def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = F
 
 @contextmanager
 def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Iterator[Path]:
-    """Give a temporary name beside ``path`` to write to, and move it there after success.
-
-    Whatever ends the writing, ``path`` then holds its new content whole, or what it held before.
-    """
+    """Give a temporary name beside ``path`` to write to, and move it there after success: ``path`` is never half written."""
     target = check_writable(path, suffixes, force=force)
     temporary = _temporary_name(target)
     try:

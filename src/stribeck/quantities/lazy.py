@@ -15,10 +15,9 @@ T = TypeVar("T")
 
 
 class cached_property(functools.cached_property[T]):  # noqa: N801
-    """An attribute that is made on its first use, without the lock that Python 3.11 holds meanwhile.
+    """An attribute that is made on its first use, without the lock that Python 3.11 holds meanwhile."""
 
-    A process that is forked while a thread makes one would find that lock taken for good.
-    """
+    # A process that is forked while a thread makes an attribute would find that lock taken for good.
 
     def __get__(self, instance: object, owner: type | None = None) -> T:  # type: ignore[override]
         """Return the attribute."""

@@ -164,10 +164,8 @@ def with_part_value(parts: Any, name: str, value: str | float) -> Any:
 
 
 def _replace_at_path(thing: Any, path: tuple[str, ...], value: float) -> Any:
-    """Return a frozen dataclass with another value at the end of a path of attributes.
-
-    Its arguments are its fields in their order, whatever they are called.
-    """
+    """Return a frozen dataclass with another value at the end of a path of attributes."""
     first, *rest = path
     new = _replace_at_path(getattr(thing, first), tuple(rest), value) if rest else value
+    # The arguments are the fields in their order, whatever they are called.
     return type(thing)(*(new if each.name == first else getattr(thing, each.name) for each in fields(thing)))

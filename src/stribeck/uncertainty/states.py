@@ -170,12 +170,9 @@ class _Samples(NamedTuple):
 def _correct_by_solved_states(
     base: _Samples, places: Array, solved: Callable[[int], Array], friction: Callable[[dict[str, Array]], Array]
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return samples corrected by solved states until the ends of the interval of friction are where solved states have them.
-
-    Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs.  Where they are not
-    as predicted they join the states through which a smooth function corrects the quadratics.  What is not settled in the end
-    is said in notes.
-    """
+    """Return samples corrected until solved states confirm the ends of the interval of friction, and notes where none do."""
+    # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs. A sample that
+    # is not as predicted joins the states through which a smooth function corrects the quadratics.
     from scipy.interpolate import RBFInterpolator
 
     found, known, random = base, dict[int, Array](), np.random.default_rng(SEED)
