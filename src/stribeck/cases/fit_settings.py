@@ -45,7 +45,7 @@ KEYS = (
 )
 TABLES = ("columns", "units", "bounds", "priors", "curves")
 
-MAX_BOUND_FACTOR = 1e6
+MAX_PRIOR_FACTOR = 1e6  # A wider prior knows nothing
 
 
 @dataclass(frozen=True)
@@ -292,7 +292,7 @@ def _prior(name: str, value: Any, inputs: InputTable) -> Prior:
     if not isinstance(value, dict) or set(value) != {"value", "factor"}:
         raise InputError(f"{name} = {show(value)} must be a table such as {{ value = ..., factor = 1.2 }}.")
     factor, median = value["factor"], _value(name, value["value"], inputs)
-    if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= MAX_BOUND_FACTOR:
+    if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= MAX_PRIOR_FACTOR:
         raise InputError(f"{name} has factor = {show(factor)}, which must be a number above 1: 1.2 is 'known within 20 %'.")
     if median == 0:
         raise InputError(f"{name} has value = {show(value['value'])}, which must be positive.")

@@ -28,7 +28,7 @@ __all__ = ["Subject"]
 # Names of the article's own parts, which need no mention
 BASE_MODEL_NAMES = ("", "newtonian", "half-plane", "half-space", "none")
 
-RTOL = 1e-4
+STATE_RTOL = 1e-4  # Tolerance of the states that checks solve
 
 # From the speed of a Newtonian film to that of a thinning one: each step leaves one less the exponent of the error
 MAX_FIXED_POINT_STEPS = 60
@@ -43,7 +43,7 @@ class Tracing(NamedTuple):
 
 
 # By geometry: a ball takes a tenth of a second or more for each state, and its minimum lies where films are a few h_rms.
-TRACING = {"line": Tracing(21, RTOL, None), "point": Tracing(8, 3e-3, (0.3, 16.0))}
+TRACING = {"line": Tracing(21, STATE_RTOL, None), "point": Tracing(8, 3e-3, (0.3, 16.0))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ class Subject:
     @cached_property
     def solution(self) -> Solution:
         """The state."""
-        return self.solved if self.solved is not None else solve(self.contact, rtol=RTOL)
+        return self.solved if self.solved is not None else solve(self.contact, rtol=STATE_RTOL)
 
     @cached_property
     def curve(self) -> StribeckCurve:

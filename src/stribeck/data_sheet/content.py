@@ -35,7 +35,7 @@ from stribeck.uncertainty.result import Uncertainty
 
 __all__ = ["Content", "InputLine", "Lever", "content_of"]
 
-CURVE_POINTS = 41
+CURVE_POINTS = 41  # Points of the curve on the page
 
 LEVER_FRICTION_RATIO = 0.8  # Friction that a lever should reach, relative to the present one
 

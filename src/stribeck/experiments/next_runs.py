@@ -54,8 +54,8 @@ DEFAULT_COST = {"point": 1.0, "load": 2.0, "viscosity": 3.0}  # Cost of a run at
 
 PRIOR_LOG_ERROR = math.log(10)  # Standard error of the logarithm of an input that the data do not constrain: a factor of ten
 
-RTOL = 1e-4
-MAX_RUNS = 50
+STATE_RTOL = 1e-4  # Tolerance of candidate states outside the atlas
+MAX_RUNS = 50  # Runs that are chosen in one call
 
 
 @dataclass(frozen=True)
@@ -315,7 +315,7 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
             _, slopes = friction_sensitivities(contact, definition=fit.definition, method="atlas")
             friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition))
         else:
-            solution, slopes = friction_sensitivities(contact, rtol=RTOL, definition=fit.definition)
+            solution, slopes = friction_sensitivities(contact, rtol=STATE_RTOL, definition=fit.definition)
             friction = solution.friction(definition=fit.definition).total
     except (SolveError, InputError):
         return None

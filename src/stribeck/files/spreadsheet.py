@@ -22,10 +22,10 @@ __all__ = ["SPREADSHEET_ENDINGS", "sheets_of"]
 SPREADSHEET_ENDINGS = (".xlsx", ".xlsm")
 
 # Also the letters in a sheet: many cells may refer to one long text
-MAX_WORKBOOK_BYTES = 20_000_000  # [byte]
+MAX_WORKBOOK_BYTES = 20_000_000
 
 # Size of the parts of a workbook once they are unpacked; a small file may unpack to any size
-MAX_XML_BYTES = 100_000_000  # [byte]
+MAX_XML_BYTES = 100_000_000
 
 MAX_SHEET_CELLS = 2_000_000  # Cells of a sheet, with the empty ones before the last of each row
 

@@ -34,7 +34,7 @@ __all__ = ["TextTable", "comparable", "read_table", "read_two_columns", "values_
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
-MAX_TABLE_BYTES = 20_000_000  # [byte]
+MAX_TABLE_BYTES = 20_000_000
 
 MAX_ROWS = 500_000  # Rows of a table that are read, in about a quarter of a minute
 MAX_CELLS = 4_000_000  # Cells of a table that are read, in about a quarter of a minute

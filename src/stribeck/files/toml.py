@@ -10,13 +10,12 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["parse_toml", "read_toml"]
 
-MAX_TOML_BYTES = 1_000_000  # [byte]
+MAX_TOML_BYTES = 1_000_000
 
-_MAX_DEPTH = 16
-_MAX_KEY_PARTS = 64
+_MAX_DEPTH = 16  # Tables and lists in one another
+_MAX_KEY_PARTS = 64  # For 20 000 parts Python's parser takes half a minute
 
-# For 20 000 parts Python's parser takes half a minute, so that these are looked for before it sees the text.  Texts may
-# hold a few that look like it.
+# Such keys are looked for before the parser sees the text. Texts may hold a few that look alike.
 _PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MAX_KEY_PARTS}}}")
 

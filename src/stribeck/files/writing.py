@@ -18,7 +18,7 @@ PathLike = str | os.PathLike[str]
 
 FULL_DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # Errors of a disk, a quota or a limit that takes no more
 
-PROBE_BYTES = 65536  # [byte]
+PROBE_BYTES = 65536  # Written to find out whether a disk is full
 
 
 class MissingExtraError(InputError, ImportError):

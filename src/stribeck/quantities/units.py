@@ -118,7 +118,7 @@ FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of 
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
-_MAX_UNIT_LETTERS = 40
+_MAX_UNIT_LETTERS = 40  # A longer text is no unit, and slow to parse
 
 
 def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:

@@ -52,7 +52,7 @@ MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid,
 
 SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
-MAX_FILE_BYTES = 1_000_000_000  # [byte]
+MAX_FILE_BYTES = 1_000_000_000
 
 _NO_DATA = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")

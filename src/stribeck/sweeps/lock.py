@@ -20,7 +20,7 @@ __all__ = ["LOCK_FILE", "hold_lock"]
 
 LOCK_FILE = "sweep.lock"
 
-MAX_RECORD_BYTES = 1024  # [byte]
+MAX_RECORD_BYTES = 1024  # Length of a lock's record that is read
 
 
 @contextmanager

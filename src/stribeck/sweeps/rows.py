@@ -24,11 +24,10 @@ from stribeck._types import Array, Flags
 from stribeck.files.reading import read_bounded
 from stribeck.files.writing import FULL_DISK_ERRORS, reason_of
 from stribeck.quantities.units import InputError
+from stribeck.sweeps.seal import MAX_FILE_BYTES
 from stribeck.sweeps.store import TEXT_BYTES, SweepError, describe_store
 
 __all__ = ["Rows", "Writer", "remove_unfinished", "read_rows"]
-
-MAX_CHUNK_BYTES = 100_000  # [byte]
 
 
 @dataclass(frozen=True)
@@ -93,10 +92,10 @@ def read_rows(path: Path) -> Rows:
 def _finished(path: Path, row: int, columns: int) -> tuple[Array, str] | None:
     """Return numbers and text of a state, or None if they are not whole."""
     try:
-        numbers = read_bounded(path / "values" / f"c.{row}.0", MAX_CHUNK_BYTES)
-        flag = read_bounded(path / "done" / f"c.{row}", MAX_CHUNK_BYTES)
+        numbers = read_bounded(path / "values" / f"c.{row}.0", MAX_FILE_BYTES)
+        flag = read_bounded(path / "done" / f"c.{row}", MAX_FILE_BYTES)
         try:
-            said = read_bounded(path / "text" / f"c.{row}.0", MAX_CHUNK_BYTES)
+            said = read_bounded(path / "text" / f"c.{row}.0", MAX_FILE_BYTES)
         except FileNotFoundError:
             said = b""
     except FileNotFoundError:

@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.files.reading import read_bounded
+from stribeck.sweeps.seal import MAX_FILE_BYTES
 
 __all__ = ["RUNS_FILE", "log_run"]
 
 RUNS_FILE = "runs.jsonl"
-
-MAX_LOG_BYTES = 10_000_000  # [byte]
 
 
 @contextmanager
@@ -32,7 +31,7 @@ def log_run(path: Path, **facts: Any) -> Iterator[dict[str, Any]]:
 
 def _lines(path: Path) -> Iterator[dict[str, Any]]:
     try:
-        text = read_bounded(path, MAX_LOG_BYTES).decode("utf-8", errors="replace")
+        text = read_bounded(path, MAX_FILE_BYTES).decode("utf-8", errors="replace")
     except OSError:
         return
     for line in text.splitlines():

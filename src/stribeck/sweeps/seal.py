@@ -13,15 +13,15 @@ from stribeck.files.reading import read_bounded
 from stribeck.files.writing import reason_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["SEALED_FILES", "SUMS_FILE", "read_sealed", "seal"]
+__all__ = ["MAX_FILE_BYTES", "SEALED_FILES", "SUMS_FILE", "read_sealed", "seal"]
 
 SUMS_FILE = "SHA256SUMS"
 
 # What has a checksum
 SEALED_FILES = ("zarr.json", "inputs/zarr.json", "inputs/c/0/0", "values/zarr.json", "text/zarr.json", "done/zarr.json")
 
-MAX_SUMS_BYTES = 10_000
-MAX_BYTES = 2**40  # Size of a file of the store that is certainly wrong
+MAX_FILE_BYTES = 10_000_000  # A larger file of a store, but of its inputs, is none that a sweep wrote
+MAX_INPUTS_BYTES = 2**40
 
 REPAIR_ADVICE = "restore it from a copy, or run the sweep again into a new store"
 
@@ -34,9 +34,9 @@ def seal(store: Path) -> None:
 
 def read_sealed(store: Path, name: str) -> bytes:
     """Return the content of a file of a store, verified."""
-    sums = _read(store, SUMS_FILE, MAX_SUMS_BYTES)
+    sums = _read(store, SUMS_FILE, MAX_FILE_BYTES)
     found = re.search(rf"^([0-9a-f]{{64}})  {re.escape(name)}$", sums.decode("ascii", errors="replace"), re.MULTILINE)
-    content = _read(store, name, MAX_BYTES)
+    content = _read(store, name, MAX_INPUTS_BYTES)
     if found is None or found[1] != _sum(content):
         raise InputError(f"{store} is damaged: {name} in it has changed since it was written; {REPAIR_ADVICE}.")
     return content

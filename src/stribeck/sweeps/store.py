@@ -27,14 +27,12 @@ from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
 from stribeck.sweeps.design import SweepDesign
-from stribeck.sweeps.seal import REPAIR_ADVICE, SEALED_FILES, SUMS_FILE, read_sealed, seal
+from stribeck.sweeps.seal import MAX_FILE_BYTES, REPAIR_ADVICE, SEALED_FILES, SUMS_FILE, read_sealed, seal
 
 __all__ = ["SweepError", "create_or_open", "describe_store", "read_inputs"]
 
 FORMAT = 2
 TEXT_BYTES = 2000  # Length of the text of a state
-
-MAX_DESCRIPTION_BYTES = 10_000_000  # [byte]
 
 DESIGN_FILE = "sweep.toml"
 
@@ -132,7 +130,7 @@ def describe_store(path: PathLike) -> dict[str, Any]:
     store = path_of(path)
     try:
         # Whether this is a store at all, before what is in it is compared with its checksums.
-        known = json.loads(read_bounded(store / "zarr.json", MAX_DESCRIPTION_BYTES))["attributes"]["stribeck_sweep"]
+        known = json.loads(read_bounded(store / "zarr.json", MAX_FILE_BYTES))["attributes"]["stribeck_sweep"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         if (store / SUMS_FILE).exists():
             raise InputError(

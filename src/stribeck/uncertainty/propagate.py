@@ -35,7 +35,7 @@ SEED = 20261122  # Fixed, so that results repeat
 
 STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth of a second or more for each state
 
-CURVE_POINTS = 21
+CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
 
 LOG_STEP = 1e-3  # Of inputs in the differences that find the powers of scales, which are power laws
