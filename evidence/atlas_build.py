@@ -8,7 +8,9 @@ are kept in a folder, so that an interrupted build can resume.  The coefficients
 from __future__ import annotations
 
 import argparse
+import ast
 import hashlib
+import json
 import math
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -20,23 +22,28 @@ from typing import Any
 
 import numpy as np
 
-from evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
+import stribeck
+from evidence.atlas_states import MAX_YIELD_OF_ROUGHNESS, PLANS, SEGMENT_SHARES, Plan, coarse_breaks, law_of, solved
 from stribeck._types import Array
 from stribeck.atlas.grid import (
     BREAK_TERMS,
-    MAX_YIELD_OF_ROUGHNESS,
-    SEGMENT_SHARES,
     SEGMENTS,
     Grid,
     Region,
     breaks_from,
     chebyshev,
     nodes,
-    segment_nodes,
     to_coefficients,
 )
-from stribeck.atlas.table import COEFFICIENT_UNIT, pack, solver_hash
+from stribeck.atlas.table import COEFFICIENT_UNIT
 from stribeck.atlas.tables import TABLES, TableRow
+
+# Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
+# are its own.
+SOLVER_MODULES = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
+
+# Packages whose code changes the numbers
+NUMERIC_PACKAGES = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 
 MIN_COEFFICIENT = 2e-8  # Size of coefficients below which a polynomial is left out.
 
@@ -217,6 +224,61 @@ def main() -> None:
     arguments = parser.parse_args()
     for name in arguments.names:
         build(ROWS[name], arguments.target / ROWS[name].file, arguments.folder, arguments.workers)
+
+
+def segment_nodes(region: Region, ends: Array, power: int = 2) -> Array:
+    """Return the logarithms of the speeds at the nodes of all segments that end at ``ends``."""
+    squared = np.empty(0) if not region.has_rest else ends[0] + 1 / power * np.log(0.5 * (nodes(region.speeds[0]) + 1))
+    others = [
+        low + 0.5 * (nodes(count) + 1) * (high - low)
+        for low, high, count in zip(ends[:-1], ends[1:], region.speeds[1:], strict=True)
+    ]
+    return np.concatenate([squared, *others])
+
+
+def pack(
+    breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any], law: Array | None = None
+) -> dict[str, Any]:
+    """Return the arrays of the file for dense blocks, in whole units of :data:`COEFFICIENT_UNIT`."""
+    joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
+    return {
+        "breaks": np.stack(breaks),
+        "blocks": np.round(joined / COEFFICIENT_UNIT).astype(np.int32),
+        "film": film,
+        "about": np.array(json.dumps(about)),
+        "law": np.empty((2, 0)) if law is None else law,
+    }
+
+
+def solver_sources() -> list[str]:
+    """Return the modules of the solver: :data:`SOLVER_MODULES` and all that these import, at once or on first use, sorted."""
+    found: set[str] = set()
+    waiting = list(SOLVER_MODULES)
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        found.add(name)
+        for node in ast.walk(ast.parse(_source(name))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("stribeck."):
+                module = node.module.removeprefix("stribeck.")
+                inner = [f"{module}.{alias.name}" for alias in node.names]
+                waiting += [each for each in (module, *inner) if each.split(".")[0] in NUMERIC_PACKAGES and _source(each)]
+    return sorted(found)
+
+
+def _source(name: str) -> str:
+    """Return the source of a module of the package, nothing if there is none of this name."""
+    place = Path(stribeck.__file__).parent.joinpath(*name.split("."))
+    return next((path.read_text("utf-8") for path in (place.with_suffix(".py"), place / "__init__.py") if path.exists()), "")
+
+
+def solver_hash() -> str:
+    """Return the SHA-256 of the sources of the solver."""
+    found = hashlib.sha256()
+    for name in solver_sources():
+        found.update(_source(name).encode())
+    return found.hexdigest()
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.grid import MAX_YIELD_OF_ROUGHNESS, MIN_SPEED, SEGMENT_SHARES, Region
+from stribeck.atlas.grid import MIN_SPEED, Region
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TableRow
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import persson_law
@@ -21,6 +21,11 @@ from stribeck.contacts.groups import Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.solver.solve import SolveError, solve
+
+SEGMENT_SHARES = (1.1, 2.6, 6.5, 30.0)  # Minus the logarithms of the contact shares at which the segments of speed end
+
+# Fluid over contact share plus relative growth of the central gap, up to which the coordinate is the squared speed
+MAX_YIELD_OF_ROUGHNESS = 0.2
 
 # Central gaps over the relative roughness at the ends of segments that begin at the smallest speed, where asperities may carry
 # any share already; the last ends with their share, as elsewhere.

@@ -314,7 +314,7 @@ def test_a_table_is_small_and_says_where_it_comes_from(row):
 
 
 def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
-    found = set(atlas_table.solver_sources())
+    found = set(atlas_build.solver_sources())
     assert {"equations.guess", "equations.unknowns", "solver.at_rest", "numerics.newton", "solids.half_plane"} <= found
     assert {"contact_laws.exponential", "fluids.newtonian", "contacts.groups", "equations.error_estimate"} <= found
     assert not any(name.startswith(("quantities", "asymptotics", "curves", "files")) for name in found)
@@ -365,7 +365,7 @@ def test_a_table_is_packed_and_unpacked_within_its_unit():
     ]
     dense = [rng.normal(size=shape) for shape in shapes]
     about = {"functions": list(atlas_table.LINE_FUNCTIONS)}
-    again = atlas_table.unpack(table.grid, atlas_table.pack(table.breaks, dense, table.film, about))
+    again = atlas_table.unpack(table.grid, atlas_build.pack(table.breaks, dense, table.film, about))
     assert again.about == about
     for block, wanted in zip(again.blocks, dense, strict=True):
         if block is not None:

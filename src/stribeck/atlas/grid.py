@@ -36,11 +36,6 @@ MAX_ROUGHNESS_OF_HEAVY = 1e-3  # Relative roughness up to which heavy loads are 
 # yield falls below the minimum speed: this region begins at that.
 MAX_L_OF_HEAVY = -math.log(0.99)
 
-SEGMENT_SHARES = (1.1, 2.6, 6.5, 30.0)  # Minus the logarithms of the contact shares at which the segments of speed end
-
-# Fluid over contact share plus relative growth of the central gap, up to which the coordinate is the squared speed
-MAX_YIELD_OF_ROUGHNESS = 0.2
-
 BREAK_TERMS = 8  # Terms in load and in roughness of the polynomials for the speeds at which segments end
 
 # Segments of speed with a table: the squared speed, two up to the share exp(-1.1), and three beyond; then the film.
@@ -257,13 +252,3 @@ def local(coordinate: Array, pieces: int) -> tuple[Indices, Array]:
 def breaks_from(values: Array) -> Array:
     """Return all ends of segments from b_1 .. b_5 along the first axis: b_1, the middle to b_2, b_2 .. b_5."""
     return np.concatenate([values[:1], 0.5 * (values[:1] + values[1:2]), values[1:]])
-
-
-def segment_nodes(region: Region, ends: Array, power: int = 2) -> Array:
-    """Return the logarithms of the speeds at the nodes of all segments that end at ``ends``."""
-    squared = np.empty(0) if not region.has_rest else ends[0] + 1 / power * np.log(0.5 * (nodes(region.speeds[0]) + 1))
-    others = [
-        low + 0.5 * (nodes(count) + 1) * (high - low)
-        for low, high, count in zip(ends[:-1], ends[1:], region.speeds[1:], strict=True)
-    ]
-    return np.concatenate([squared, *others])

@@ -7,14 +7,11 @@ load and roughness of many states are one matrix, and the sum over them one matr
 
 from __future__ import annotations
 
-import ast
-import hashlib
 import json
 import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -43,13 +40,6 @@ BALL_FUNCTIONS = ("log_odds", "couette", "poiseuille", "published", "central_gap
 FRICTION_RADIUS = 1e3  # Radius of the disc of liquid of which the friction of balls is tabulated [a]
 
 FUNCTIONS = {"line": LINE_FUNCTIONS, "point": BALL_FUNCTIONS}  # What is tabulated, by geometry
-
-# Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
-# are its own.
-SOLVER_MODULES = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
-
-# Packages whose code changes the numbers
-NUMERIC_PACKAGES = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 
 COEFFICIENT_UNIT = 2.0**-25  # Unit of the coefficients in the file, which holds whole numbers
 
@@ -250,20 +240,6 @@ class Table:
                 slopes[0, row] += np.where(early, power, 0.0)
 
 
-def pack(
-    breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any], law: Array | None = None
-) -> dict[str, Any]:
-    """Return the arrays of the file for dense blocks, in whole units of :data:`COEFFICIENT_UNIT`."""
-    joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
-    return {
-        "breaks": np.stack(breaks),
-        "blocks": np.round(joined / COEFFICIENT_UNIT).astype(np.int32),
-        "film": film,
-        "about": np.array(json.dumps(about)),
-        "law": np.empty((2, 0)) if law is None else law,
-    }
-
-
 def unpack(grid: Grid, data: Any) -> Table:
     """Return the table of the arrays of a file."""
     about = json.loads(str(data["about"]))
@@ -280,37 +256,6 @@ def unpack(grid: Grid, data: Any) -> Table:
                 blocks.append(Block.of(dense) if count else None)
                 position += size
     return Table(grid, tuple(data["breaks"]), tuple(blocks), data["film"], about, law)
-
-
-def solver_sources() -> list[str]:
-    """Return the modules of the solver: :data:`SOLVER_MODULES` and all that these import, at once or on first use, sorted."""
-    found: set[str] = set()
-    waiting = list(SOLVER_MODULES)
-    while waiting:
-        name = waiting.pop()
-        if name in found:
-            continue
-        found.add(name)
-        for node in ast.walk(ast.parse(_source(name))):
-            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("stribeck."):
-                module = node.module.removeprefix("stribeck.")
-                inner = [f"{module}.{alias.name}" for alias in node.names]
-                waiting += [each for each in (module, *inner) if each.split(".")[0] in NUMERIC_PACKAGES and _source(each)]
-    return sorted(found)
-
-
-def _source(name: str) -> str:
-    """Return the source of a module of the package, nothing if there is none of this name."""
-    place = Path(__file__).parents[1].joinpath(*name.split("."))
-    return next((path.read_text("utf-8") for path in (place.with_suffix(".py"), place / "__init__.py") if path.exists()), "")
-
-
-def solver_hash() -> str:
-    """Return the SHA-256 of the sources of the solver."""
-    found = hashlib.sha256()
-    for name in solver_sources():
-        found.update(_source(name).encode())
-    return found.hexdigest()
 
 
 @lru_cache(maxsize=16)
