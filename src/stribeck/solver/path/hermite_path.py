@@ -22,6 +22,7 @@ from stribeck.quantities.outcome import Outcome
 __all__ = ["HermitePath", "Knot", "KnotProblem", "interpolate_to"]
 
 WINDOW = 6  # states through which a polynomial goes
+SAFETY = 2.0  # Stated over estimated error of the interpolation: slopes have errors too, see tests/test_point_curve.py
 INSIDE = np.array([0.25, 0.5, 0.75])  # where the error is estimated, in parts of an interval
 
 FIRST_STEP = 0.5  # length of the first step: that of the others follows from the errors
@@ -85,6 +86,11 @@ class HermitePath:
         """Where the solved states are."""
         return np.array([knot.coordinate for knot in self.knots])
 
+    def _propagated(self, first: int, last: int, s: Array) -> Array:
+        """Return what errors of states ``first`` to ``last`` leave at places, in units of the scales, shape (len(s), n)."""
+        at, _ = weights_through(self.coordinates[first : last + 1], s)
+        return np.asarray(np.abs(at) @ np.stack([knot.errors for knot in self.knots[first : last + 1]]))
+
     def _through(self, first: int, last: int, s: Array) -> Array:
         """Return the observables at places by the polynomials through states ``first`` to ``last``, shape (len(s), n)."""
         knots = self.knots[first : last + 1]
@@ -125,13 +131,9 @@ class HermitePath:
         return np.asarray(np.nan_to_num(found, nan=math.inf).max(axis=0))
 
     @cached_property
-    def _errors(self) -> tuple[Array, Array]:
-        """Errors of all intervals: those of the interpolation, and the larger ones of their ends."""
-        count = len(self.knots)
-        if count == 1:
-            return np.zeros((1, len(self.knots[0].values))), self.knots[0].errors[None]
-        ends = np.stack([np.maximum(a.errors, b.errors) for a, b in zip(self.knots, self.knots[1:], strict=False)])
-        return np.stack([self.interpolation_error(k) for k in range(count - 1)]), ends
+    def _between(self) -> Array:
+        """Errors of the interpolation on all intervals over their shape."""
+        return np.stack([self.interpolation_error(k) for k in range(len(self.knots) - 1)])
 
     def _evaluated(self, s: Array) -> tuple[Array, Indices, Array]:
         """Return the observables, the interval of each place, and its part of it."""
@@ -153,8 +155,12 @@ class HermitePath:
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, and their errors in units of the scales."""
         found, where, parts = self._evaluated(s)
-        between, ends = self._errors
-        return found, ends[where] + _shape(np.clip(parts, 0.0, 1.0))[:, None] * between[where]
+        if len(self.knots) == 1:
+            return found, np.repeat(self.knots[0].errors[None], len(s), axis=0)
+        errors = SAFETY * _shape(np.clip(parts, 0.0, 1.0))[:, None] * self._between[where]
+        for k in np.unique(where).tolist():
+            errors[where == k] += self._propagated(*self._window(k, WINDOW), s[where == k])
+        return found, errors
 
     @property
     def expansions(self) -> tuple[Knot, ...]:
