@@ -23,14 +23,12 @@ from stribeck.solver.solve import describe, hertz_solution, solution_of
 
 __all__ = ["Ended", "solve_in_order"]
 
+# Of the way from state to state: its steps, and the degree of the polynomial that predicts them.
 CHAIN_STEPS = Steps(0.5, math.log(10.0), 1e-3, 4)
-"""Of the way from state to state: its steps, and the degree of the polynomial that predicts them."""
 
-LONGEST_JUMP = 5.0
-"""Distance between two states above which a cold start is cheaper than the states between."""
+LONGEST_JUMP = 5.0  # Distance between two states above which a cold start is cheaper than the states between
 
-STRAIGHT = 1e-6
-"""Change of direction below which states lie on a line, so that their polynomial predicts the next one."""
+STRAIGHT = 1e-6  # Change of direction below which states lie on a line, so that their polynomial predicts the next one
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +97,7 @@ def _physics_of(physics: Physics, contact: Contact | None) -> Physics:
     return physics if contact is None or physics["model"] == BASE_MODEL else contact.groups.physics
 
 
-CHAINS = {"line": _cylinders, "point": _balls}
-"""How the states of a chain are solved, by geometry."""
+CHAINS = {"line": _cylinders, "point": _balls}  # How the states of a chain are solved, by geometry
 
 
 class _Chain:

@@ -23,11 +23,9 @@ from stribeck.solver.point.state import PointState
 
 __all__ = ["KeptStates", "between"]
 
-MOST = 120
-"""States that are kept."""
+MOST = 120  # States that are kept
 
-NEAR = 2.0
-"""Largest change of the logarithm of a group within which a state is a start worth having."""
+NEAR = 2.0  # Largest change of the logarithm of a group within which a state is a start worth having
 
 
 def between(one: Any, other: Any, part: float) -> Any:

@@ -28,23 +28,17 @@ from stribeck.solver.point.state import PointState
 
 __all__ = ["PARTS", "STEPS", "Lattice"]
 
-PARTS = ("contact_load_share", "J_couette", "J_poiseuille", "J_pcx")
-"""What is interpolated."""
+PARTS = ("contact_load_share", "J_couette", "J_poiseuille", "J_pcx")  # What is interpolated
 
-STEPS = (0.5, 0.8, 0.4)
-"""Steps of ln(speed), ln(load) and ln(relative roughness)."""
+STEPS = (0.5, 0.8, 0.4)  # Steps of ln(speed), ln(load) and ln(relative roughness)
 
-REACH = math.log(25.0)
-"""Logarithm of the radius up to which integrals are positive [ln a]."""
+REACH = math.log(25.0)  # Logarithm of the radius up to which integrals are positive [ln a]
 
-TINY, FAINT = 1e-250, 1e-13
-"""What stands for shares of asperities and of the fluid that underflow."""
+TINY, FAINT = 1e-250, 1e-13  # What stands for shares of asperities and of the fluid that underflow
 
-STARTS = 16
-"""Solved states that are kept to start from."""
+STARTS = 16  # Solved states that are kept to start from
 
-ON_NODE = 1e-9
-"""Distance in steps below which a place is a node of the lattice."""
+ON_NODE = 1e-9  # Distance in steps below which a place is a node of the lattice
 
 Index = tuple[int, int, int]
 

@@ -15,14 +15,11 @@ from stribeck._types import Array, Indices
 
 __all__ = ["chains_of", "coordinates"]
 
-CHAIN = 40
-"""States of a chain, at most: a cold start costs as much as ten that follow, and a lost worker loses one chain."""
+CHAIN = 40  # States of a chain, at most: a cold start costs as much as ten that follow, and a lost worker loses one chain
 
-LINE = 16
-"""States from which one line of a grid is a chain, or several, of its own; shorter ones are joined."""
+LINE = 16  # States from which one line of a grid is a chain, or several, of its own; shorter ones are joined
 
-LOAD_WEIGHT = 0.3
-"""Of a step in load at fixed relative roughness, against one in speed: it hardly changes the fields."""
+LOAD_WEIGHT = 0.3  # Of a step in load at fixed relative roughness, against one in speed: it hardly changes the fields
 
 
 def coordinates(groups: Array) -> Array:

@@ -25,9 +25,9 @@ from stribeck.solids.half_plane import (
 
 __all__ = ["FineOperators"]
 
+# Nodes that a panel gains where the defect is evaluated. Of the error on a wide panel over which the asperity pressure of a
+# Gaussian surface dies away two see a fifth, four nine tenths, eight no more; an odd number has a node at infinity.
 EXTRA_NODES = 4
-"""Nodes that a panel gains where the defect is evaluated.  Of the error on a wide panel over which the asperity pressure of a
-Gaussian surface dies away two see a fifth, four nine tenths, eight no more; an odd number has a node at infinity."""
 
 
 def _by_highest(s: Array, order: int) -> Array:

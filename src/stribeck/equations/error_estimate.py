@@ -43,30 +43,24 @@ __all__ = [
     "perturbations",
 ]
 
-SAFETY = 2.0
-"""Factor from the estimated to the stated error."""
+SAFETY = 2.0  # Factor from the estimated to the stated error
 
-DEFECT_SAFETY = 3.0
-"""The same for the defect, of which finer nodes see only a part if the pressures need many more."""
+DEFECT_SAFETY = 3.0  # The same for the defect, of which finer nodes see only a part if the pressures need many more
 
+# If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is interpolated
+# itself: its formula is there the difference of nearly equal numbers.
 FLAT = 0.2
-"""If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is
-interpolated itself: its formula is there the difference of nearly equal numbers."""
 
+# Units in the last place by which the residual may be wrong on a whole panel; checked against meshes that should agree.
 ROUNDING_UNITS = 2.0
-"""Units in the last place by which the residual may be wrong on a whole panel; checked against meshes that should agree."""
 
-PATTERNS = 5
-"""Number of patterns of signs: enough for the mean square of their changes within a factor of two."""
+PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
 
-DEVIATIONS = 2.0
-"""Standard deviations of these changes that are stated as the error by rounding."""
+DEVIATIONS = 2.0  # Standard deviations of these changes that are stated as the error by rounding
 
-OFFSET_FLOOR = 1e-3
-"""The error of the offset is relative to it where it exceeds this; it crosses zero."""
+OFFSET_FLOOR = 1e-3  # The error of the offset is relative to it where it exceeds this; it crosses zero
 
-GAP_FLOOR = 1e-3
-"""At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
+GAP_FLOOR = 1e-3  # At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa
 
 SHARES = [ROW[name] for name in ABSOLUTE]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]

@@ -13,8 +13,7 @@ from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
 
 NEWTON_STEPS = 3
-LARGEST_STEP = 0.2
-"""Of the search for the minimum gap, the step in half-widths of a panel."""
+LARGEST_STEP = 0.2  # Of the search for the minimum gap, the step in half-widths of a panel
 
 
 def far_gap(x: Array) -> Array:

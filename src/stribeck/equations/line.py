@@ -44,12 +44,12 @@ from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Equations", "Operators"]
 
+# Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself.
 COLUMNS = 48
-"""Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself."""
 
+# Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
+# there is taken.
 MOST_GROWTH = 10.0
-"""Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
-there is taken."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,8 +33,7 @@ from stribeck.quantities.outputs import ALL_NAMES, NAMES
 
 __all__ = ["ROW", "Observables", "friction_integrals", "friction_scale", "gradients", "observables"]
 
-ROW = {name: row for row, name in enumerate(ALL_NAMES)}
-"""Index of each in such an array."""
+ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
 DRAG = [ROW[name] for name in VISCOUS]

@@ -29,16 +29,14 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 from stribeck.solids.solid import Solid, deflecting
 
-LOAD = 0.5 * np.pi
-"""Load in Hertz units: the integral of the pressure."""
+LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
 
+# Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
+# number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation.
 CELL, IN_CELL = 0.05, 4
-"""Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
-number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation."""
 
-KEPT = 4
-"""Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one."""
+KEPT = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 
 
 class Dilated(NamedTuple):
@@ -264,5 +262,5 @@ def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
 
 
 _IN_CELL = 0.5 * np.cos(np.pi * (np.arange(IN_CELL) + 0.5) / IN_CELL)
+# Coefficients of the polynomial that is one at one of these dilations and zero at the others, a row for each.
 _OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T
-"""Coefficients of the polynomial that is one at one of these dilations and zero at the others, a row for each."""

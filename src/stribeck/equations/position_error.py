@@ -17,11 +17,10 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
 
-SAFETY = 2.0
-"""Factor from the estimated to the stated error; checked against finer meshes."""
+SAFETY = 2.0  # Factor from the estimated to the stated error; checked against finer meshes
 
+# Rounding of a nodal gap, a difference of terms of order one; it differs from node to node and so changes the slope.
 NODAL_ROUNDING = 16 * 2.0**-52
-"""Rounding of a nodal gap, a difference of terms of order one; it differs from node to node and so changes the slope."""
 
 
 def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, depth: Array) -> Array:

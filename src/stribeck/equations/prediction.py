@@ -18,19 +18,19 @@ from stribeck.numerics.panels import Mesh
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.solid import lengths_of
 
+# Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors.
 LARGEST_AMPLIFICATION = 40.0
-"""Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
+# Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
+# frame: the edge of a contact of asperities stays where it is while the exit moves through it.
 FAR_APART = 0.02
-"""Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
-frame: the edge of a contact of asperities stays where it is while the exit moves through it."""
 
+# Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too.
 STAYS = 0.2
-"""Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too."""
 
+# Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
+# that minimum: half way, by `tanh`.
 SHARPNESS = 6.0
-"""Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
-that minimum: half way, by ``tanh``."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,8 +26,7 @@ from stribeck.equations.state import State
 GROUPS = ("speed", "load", "roughness")
 FRICTIONS = ("viscous_published", "viscous_balanced")
 
-STEP = 1e-5
-"""Relative step of the central differences for the direct effect of a group."""
+STEP = 1e-5  # Relative step of the central differences for the direct effect of a group
 
 
 Change = tuple[Model, Model, float]

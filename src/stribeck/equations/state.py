@@ -28,95 +28,76 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
+# Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins.
 WANDERING = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
-"""Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins."""
 
-FULL_STEPS = 25
-"""Steps after which it is: most films take less than 20, and what takes longer goes to and fro."""
+FULL_STEPS = 25  # Steps after which it is: most films take less than 20, and what takes longer goes to and fro
 
-CHORD = 0.25
-"""Contraction of the steps above which a kept factorisation is given up."""
+CHORD = 0.25  # Contraction of the steps above which a kept factorisation is given up
 
-ROUNDING = 1e-9
-"""Relative rounding in the position of a panel."""
+ROUNDING = 1e-9  # Relative rounding in the position of a panel
 
+# Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
 LONG_REACH_ORDER = 14
-"""Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order."""
 
-END_GAIN = 5.0
-"""Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
+END_GAIN = 5.0  # Factor by which the error of the end of a film falls when the panels beside it are halved, at least
 
-END_TAIL = 3.5e-4
-"""Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
+END_TAIL = 3.5e-4  # Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels
 
-REACH_OF_LAYER = 24.0
-"""Distance in thicknesses beyond which pressures on a layer have no effect."""
+REACH_OF_LAYER = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
 
+# Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
+# the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses.
 DRAG_OF_LAYER = 0.02
-"""Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
-the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
 
-UNSEEN = 0.2
-"""Part of the tolerance that errors may take of which the estimate knows nothing."""
+UNSEEN = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
 
-DIED_AWAY = 6.0
-"""Distance in thicknesses of a layer beyond which the gap is that of the layer."""
+DIED_AWAY = 6.0  # Distance in thicknesses of a layer beyond which the gap is that of the layer
 
+# Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there.
 BROKEN = 30.0
-"""Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
 
-FAR_OFF = 512.0
-"""Distance, over the scale of the mesh, up to which panels resolve such a power."""
+FAR_OFF = 512.0  # Distance, over the scale of the mesh, up to which panels resolve such a power
 
+# Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
+# along the path is steeper there than the gap.
 NEAR_MINIMUM, AS_IT_MOVES = 0.05, 30.0
-"""Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
-along the path is steeper there than the gap."""
 
-NODAL_NOISE = 2.0**-48
-"""Rounding of a nodal gap, over that gap: no mesh resolves less."""
+NODAL_NOISE = 2.0**-48  # Rounding of a nodal gap, over that gap: no mesh resolves less
 
+# Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 THINNEST = NODAL_NOISE / ROUNDING_SIZE
-"""Gap from which rounding is more than the steps by which coarse states are found [u_Hz]."""
 
-MOST_NOISE = 0.01
-"""Relative rounding of a gap beyond which it counts as lost."""
+MOST_NOISE = 0.01  # Relative rounding of a gap beyond which it counts as lost
 
-WIDEST_FAR = 0.5
-"""Half-width over the distance of panels on which a broken power is resolved."""
+WIDEST_FAR = 0.5  # Half-width over the distance of panels on which a broken power is resolved
 
+# How often a kink is looked for between so many places of its bracket; then the line through two of them tells.
 KINK_SEARCHES, KINK_PLACES = 2, 17
-"""How often a kink is looked for between so many places of its bracket; then the line through two of them tells."""
 
+# Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
+# asks for no shorter ones.
 SHORTEST_OF_GUESS = 0.1
-"""Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
-asks for no shorter ones."""
 
-COARSE = 1e-3
-"""Tolerance from which a mesh serves to find a state, not to read off drag."""
+COARSE = 1e-3  # Tolerance from which a mesh serves to find a state, not to read off drag
 
-FORGOTTEN = 30.0
-"""Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure."""
+FORGOTTEN = 30.0  # Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure
 
-TAIL_OF_ERROR = 0.2
-"""Tolerance of a mesh for an error of one."""
+TAIL_OF_ERROR = 0.2  # Tolerance of a mesh for an error of one
 
+# Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels].
 SEES_CONTACT = 16.0
-"""Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels]."""
 
-SAME_FRAME = 1.5
-"""Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
+SAME_FRAME = 1.5  # Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made
 
-PLACES = 201
-"""Places between the neighbours of the node with the lowest pressure at which a lower one is sought."""
+PLACES = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
 
-BETWEEN = 3
-"""Places over nodes at which the lowest pressure is sought."""
+BETWEEN = 3  # Places over nodes at which the lowest pressure is sought
 
+# Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike.
 MOST_SUCTION = 0.5
-"""Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike."""
 
-PREDICTION_GOAL = 0.5
-"""Relative error of the predicted gap at which the step of a path is kept."""
+PREDICTION_GOAL = 0.5  # Relative error of the predicted gap at which the step of a path is kept
 
 
 @dataclass(frozen=True, eq=False)

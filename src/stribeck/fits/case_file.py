@@ -30,17 +30,14 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["check_fitted_case", "format_interval", "format_value", "load_fit_case", "write_fitted_case"]
 
-DIGITS = 10
-"""Digits of the values in the file, enough to solve the same state again."""
+DIGITS = 10  # Digits of the values in the file, enough to solve the same state again
 
-AGREEMENT = 1e-8
-"""Relative difference that rounding to these digits may leave."""
+AGREEMENT = 1e-8  # Relative difference that rounding to these digits may leave
 
-TRIAL_FACTOR = 1.01
-"""Factor on free inputs by which it is tried before a fit whether its case can be written."""
+TRIAL_FACTOR = 1.01  # Factor on free inputs by which it is tried before a fit whether its case can be written
 
+# Keys of a table `[surface]` with a measured spectrum, which has no height of its own.
 SPECTRUM = {"spectrum", "wavenumber", "density"}
-"""Keys of a table ``[surface]`` with a measured spectrum, which has no height of its own."""
 
 _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
 

@@ -42,32 +42,24 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["fit"]
 
-LEVELS = (0.682689492137086, 0.95)
-"""Probabilities of the two intervals."""
+LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
+# Places tried before the least squares, those followed, and how far from the case they lie.
 STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
-"""Places tried before the least squares, those followed, and how far from the case they lie."""
 
-FIRST_NOISE = 0.1
-"""Noise with which the search begins where it is not known."""
+FIRST_NOISE = 0.1  # Noise with which the search begins where it is not known
 
-RESTARTS = 4
-"""Better minima on profiles that are followed before the fit counts as lost."""
+RESTARTS = 4  # Better minima on profiles that are followed before the fit counts as lost
 
-ROUNDS = 6
-"""Minima at which states that are read are solved, before all are solved along the rest of the way."""
+ROUNDS = 6  # Minima at which states that are read are solved, before all are solved along the rest of the way
 
-NOTHING = 1e-13
-"""Eigenvalue of the information, over the largest, below which it is rounding."""
+NOTHING = 1e-13  # Eigenvalue of the information, over the largest, below which it is rounding
 
-FLAT = 1e-5
-"""Singular value of the derivatives, over the largest, below which nothing changes along a direction."""
+FLAT = 1e-5  # Singular value of the derivatives, over the largest, below which nothing changes along a direction
 
-SAME = 1e-3
-"""Rise of q up to which two fits are the same."""
+SAME = 1e-3  # Rise of q up to which two fits are the same
 
-WIDEST = 600.0
-"""Half-width of an interval of a logarithm from which it is open."""
+WIDEST = 600.0  # Half-width of an interval of a logarithm from which it is open
 
 Step = Callable[[str, int], object]
 

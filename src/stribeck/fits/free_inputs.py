@@ -15,8 +15,7 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["FreeInput", "free_inputs"]
 
-DEFAULT_FACTOR = 1e3
-"""Bounds of a free input without any of its own: this factor below and above its first value."""
+DEFAULT_FACTOR = 1e3  # Bounds of a free input without any of its own: this factor below and above its first value
 
 
 @dataclass(frozen=True)

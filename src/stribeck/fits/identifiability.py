@@ -19,14 +19,12 @@ from stribeck.fits.model import Prediction
 
 __all__ = ["Unidentifiable", "undetermined"]
 
+# Standard error of a logarithm from which the 95 % interval is wider than a factor of ten.
 WIDEST = math.log(10.0) / (2 * 1.959963984540054)
-"""Standard error of a logarithm from which the 95 % interval is wider than a factor of ten."""
 
-PART_OF = 0.1
-"""Component of a direction, the largest being one, from which an input has a part in it."""
+PART_OF = 0.1  # Component of a direction, the largest being one, from which an input has a part in it
 
-EXACT = 1e-6
-"""Singular value, over the largest, below which no measurement of the kind could tell the inputs apart."""
+EXACT = 1e-6  # Singular value, over the largest, below which no measurement of the kind could tell the inputs apart
 
 
 @dataclass(frozen=True)

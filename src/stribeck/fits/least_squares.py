@@ -17,27 +17,23 @@ from stribeck.solver.solve import SolveError
 
 __all__ = ["MAD", "Minimum", "effective_parameters", "minimise", "settle"]
 
-MAD = 1.482602218505602
-"""Standard deviation over median absolute deviation of a normal distribution."""
+MAD = 1.482602218505602  # Standard deviation over median absolute deviation of a normal distribution
 
+# Relative change of q and absolute change of a logarithm at which the least squares end; solved states are good to 1e-6.
 VALUE_TOLERANCE, PLACE_TOLERANCE = 1e-8, 1e-7
-"""Relative change of q and absolute change of a logarithm at which the least squares end; solved states are good to 1e-6."""
 
 MOST_EVALUATIONS = 200
 
+# Singular value of the derivatives, over the largest, below which a direction is rounding and no step goes along it.
 NO_INFORMATION = 1e-9
-"""Singular value of the derivatives, over the largest, below which a direction is rounding and no step goes along it."""
 
-SETTLED = 1e-4
-"""Relative change of the scale of the noise below which it is settled."""
+SETTLED = 1e-4  # Relative change of the scale of the noise below which it is settled
 
 MOST_ROUNDS = 30
 
-NEAR = 1e-2
-"""Distance to the optimum, in standard errors, below which a fit counts as converged."""
+NEAR = 1e-2  # Distance to the optimum, in standard errors, below which a fit counts as converged
 
-AT_BOUND = 1e-4
-"""Distance of the logarithm of a factor from its bound below which it is at it."""
+AT_BOUND = 1e-4  # Distance of the logarithm of a factor from its bound below which it is at it
 
 
 @dataclass(frozen=True)

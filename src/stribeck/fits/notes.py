@@ -18,8 +18,7 @@ from stribeck.quantities.inputs import LINE
 
 __all__ = ["notes_of", "outcome_of"]
 
-TIED = 0.95
-"""Correlation from which a pair of inputs is named."""
+TIED = 0.95  # Correlation from which a pair of inputs is named
 
 
 def outcome_of(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:

@@ -22,8 +22,7 @@ from stribeck.fits.states.parts import PartsOf
 
 __all__ = ["Objective", "objective"]
 
-CAUCHY = 2.385
-"""Constant c of the robust loss, in standard errors."""
+CAUCHY = 2.385  # Constant c of the robust loss, in standard errors
 
 
 @dataclass(frozen=True)

@@ -37,8 +37,7 @@ __all__ = ["plot_fit", "plot_measurements"]
 POINTS = 121
 
 COLOURS = (INK, CONTACT, FLUID, MARK, "#009e73", "#e69f00")
-MARKERS = ("o", "s", "^", "D", "v", "P")
-"""Of the curves, in turn."""
+MARKERS = ("o", "s", "^", "D", "v", "P")  # Of the curves, in turn
 
 LABELS = {
     "speed": "speed $U$, sum of both surfaces (m/s)",

@@ -21,8 +21,7 @@ from stribeck.quantities.units import InputError
 __all__ = ["Posterior", "draw_posterior"]
 
 SEED = 20_261_121
-MIN_TIMES = 50
-"""Autocorrelation times after which emcee's documentation calls a chain long enough."""
+MIN_TIMES = 50  # Autocorrelation times after which emcee's documentation calls a chain long enough
 
 
 @dataclass(frozen=True, eq=False)

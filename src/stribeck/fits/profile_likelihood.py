@@ -21,23 +21,19 @@ from stribeck.solver.solve import SolveError
 
 __all__ = ["BetterMinimumError", "Ends", "profile_ends"]
 
-ACCURACY = 0.015
-"""What an end may miss, in standard errors."""
+ACCURACY = 0.015  # What an end may miss, in standard errors
 
-ENOUGH = 1e-5
-"""Relative change of q at which a point of a profile is good enough for that."""
+ENOUGH = 1e-5  # Relative change of q at which a point of a profile is good enough for that
 
+# Square root of the fall of q that is left at a point of a profile up to which its derivatives say how far it falls: on
+# profiles of cylinders and balls that cost an end less than a thousandth of a standard error.
 CLOSE = 0.15
-"""Square root of the fall of q that is left at a point of a profile up to which its derivatives say how far it falls: on
-profiles of cylinders and balls that cost an end less than a thousandth of a standard error."""
 
 MOST_TRIALS = 25
 
-BETTER = 1e-3
-"""How much lower q may be elsewhere before the minimum was none."""
+BETTER = 1e-3  # How much lower q may be elsewhere before the minimum was none
 
-LONGEST = 2.0
-"""Longest first step of a logarithm."""
+LONGEST = 2.0  # Longest first step of a logarithm
 
 
 class BetterMinimumError(Exception):

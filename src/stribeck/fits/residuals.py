@@ -18,14 +18,11 @@ __all__ = ["Quality", "excess_of", "judge_residuals"]
 
 DRAWS = 4000
 SEED = 20_261_121
-WAVES = 6
-"""Slowest waves along each curve whose part of the residuals is judged."""
+WAVES = 6  # Slowest waves along each curve whose part of the residuals is judged
 
-SIGNIFICANT = 0.01
-"""Probability below which a test speaks."""
+SIGNIFICANT = 0.01  # Probability below which a test speaks
 
-CLIP = 3.0
-"""Residual, in standard deviations, at which it is cut for the tests of order, so that an outlier is no structure."""
+CLIP = 3.0  # Residual, in standard deviations, at which it is cut for the tests of order, so that an outlier is no structure
 
 
 @dataclass(frozen=True)

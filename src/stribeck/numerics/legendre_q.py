@@ -15,12 +15,11 @@ import scipy
 
 from stribeck._types import Array
 
-UPWARD = 1.5
-"""Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits."""
+UPWARD = 1.5  # Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits
 
+# Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
+# which is 1e-4 or less.
 DECAY = 14.0
-"""Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
-which is 1e-4 or less."""
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:

@@ -40,11 +40,9 @@ FASTER = 4.0  # growth of the part of a monotone step, from one to the next
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
 
-MOST_PLACES = 100
-"""Places at which a function of one unknown is evaluated in search of its root."""
+MOST_PLACES = 100  # Places at which a function of one unknown is evaluated in search of its root
 
-INVERSE_POINTS = 4
-"""Last places through which the next one is interpolated."""
+INVERSE_POINTS = 4  # Last places through which the next one is interpolated
 
 
 class Inverse(Protocol):

@@ -22,20 +22,18 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Indices
 from stribeck.quantities.lazy import cached_property
 
-MAX_PANELS = 128
-"""Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
+MAX_PANELS = 128  # Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator
 
+# Distance over the scale of a mesh below which an edge gives way to a kink: nodes between them are the same to rounding.
 SAME_PLACE = 2.0**-34
-"""Distance over the scale of a mesh below which an edge gives way to a kink: nodes between them are the same to rounding."""
 
-TAIL_HALVINGS = 12
-"""Panels on each side of infinity on which integrands that hold a logarithm there are summed."""
+TAIL_HALVINGS = 12  # Panels on each side of infinity on which integrands that hold a logarithm there are summed
 
+# Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes.
 MARGIN, SHORTEST_PART = 1.05, 0.25
-"""Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes."""
 
+# Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding.
 CLOSEST = 2.0**-40
-"""Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding."""
 
 NOWHERE = np.empty(0)
 

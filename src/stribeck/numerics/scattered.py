@@ -18,8 +18,7 @@ from stribeck._types import Array
 
 __all__ = ["Scattered"]
 
-NUGGET = 1e-8
-"""Variance of what the data err by, in that of the functions: between places that are close this is smoothed."""
+NUGGET = 1e-8  # Variance of what the data err by, in that of the functions: between places that are close this is smoothed
 
 
 @dataclass(eq=False)

@@ -41,17 +41,13 @@ __all__ = [
     "reciprocal",
 ]
 
-LARGEST_RADIUS = 6.0
-"""Radius of series whose higher coefficients vanish."""
+LARGEST_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 
-ROUNDING = 1e-12
-"""Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it."""
+ROUNDING = 1e-12  # Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it
 
-ON_INTERVAL = 12
-"""Values on an interval, unless more are asked for."""
+ON_INTERVAL = 12  # Values on an interval, unless more are asked for
 
-DENOMINATOR = 6
-"""Highest degree of the denominator of an extrapolation."""
+DENOMINATOR = 6  # Highest degree of the denominator of an extrapolation
 
 
 def product_term(a: Array, b: Array, k: int) -> Array:

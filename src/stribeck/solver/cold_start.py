@@ -31,24 +31,21 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.cavities.cavity_length import paths_to_cavity
 from stribeck.solver.homotopy import paths_to_model
 
-RIGID_SPEED = 30.0
-"""Speed group above which the rigid film starts Newton's iteration safely."""
+RIGID_SPEED = 30.0  # Speed group above which the rigid film starts Newton's iteration safely
 
-RIGID_ROUGHNESS = 30.0
-"""Relative roughness above which the rigid contact starts it safely."""
+RIGID_ROUGHNESS = 30.0  # Relative roughness above which the rigid contact starts it safely
 
-RIGID_REACH = 0.7
-"""Logarithm of the factor of the load within which it may start it too."""
+RIGID_REACH = 0.7  # Logarithm of the factor of the load within which it may start it too
 
+# Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading at low
+# speed would cross the sudden hand-over from asperities to film.
 SATURATED_LOAD = 0.5
-"""Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
-at low speed would cross the sudden hand-over from asperities to film."""
 
+# Logarithms of the largest height of a rigid film and of 1 over the smallest: of contacts, then of double precision.
 HEIGHTS = (80.0, 400.0)
-"""Logarithms of the largest height of a rigid film and of 1 over the smallest: of contacts, then of double precision."""
 
+# Newton steps after which a path is given up; no state of the box of :mod:`stribeck.solver.solve` takes more than 300.
 MAX_NEWTON_STEPS = 600
-"""Newton steps after which a path is given up; no state of the box of :mod:`stribeck.solver.solve` takes more than 300."""
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3

@@ -46,62 +46,52 @@ __all__ = ["extended", "paths_to_model", "settled"]
 ORDER = 10
 MESH_TOLERANCE = 1e-3
 NEWTON_TOLERANCE = 1e-5
-FINER = (12, 1e-5)
-"""Nodes per panel and tolerance of the mesh if coarse ones fail."""
+FINER = (12, 1e-5)  # Nodes per panel and tolerance of the mesh if coarse ones fail
 MOST_STEPS = 100
 
-SOON_LOST = 40
-"""The same where a shorter step along a path costs less."""
+SOON_LOST = 40  # The same where a shorter step along a path costs less
 
+# The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones.
 FREE_STEPS = 15
-"""The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones."""
 
-HELD_STEPS = 25
-"""The same with an exit that is given."""
+HELD_STEPS = 25  # The same with an exit that is given
 
-MANY_STEPS = 20
-"""Newton steps after which a state lies on a mesh that was made for another: from there no next one was found."""
+MANY_STEPS = 20  # Newton steps after which a state lies on a mesh that was made for another: from there no next one was found
 
+# Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film.
 MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
-"""Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film."""
 
+# Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too.
 FAR_FROM_GUESS = 1.0
-"""Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too."""
 
+# Relative change of the gap from one mesh to the one made for its state up to which both are the same state: on coarse meshes
+# the exit of a film that carries little may be wrong by many of the film's own lengths.
 SETTLED = 0.2
-"""Relative change of the gap from one mesh to the one made for its state up to which both are the same state: on coarse meshes
-the exit of a film that carries little may be wrong by many of the film's own lengths."""
 
-ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE = 12, 1e-4
-"""Nodes per panel and tolerance of the meshes where these differ."""
+ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE = 12, 1e-4  # Nodes per panel and tolerance of the meshes where these differ
 
-LOOKED_AT = 4001
-"""Points at which the end of the full film is searched."""
+LOOKED_AT = 4001  # Points at which the end of the full film is searched
 
-NEAREST_EXIT = 0.4
-"""No film ends within this part of the half-width from the middle."""
+NEAREST_EXIT = 0.4  # No film ends within this part of the half-width from the middle
 
+# Of a rigid parabola: exit over (2 h_0)**(1/2), flux gap over h_0, and h_0 over lambda where the film carries all.
 RIGID_EXIT, RIGID_FLUX, RIGID_LOAD = 0.4751299, 1.2257484, 0.25968614
-"""Of a rigid parabola: exit over (2 h_0)**(1/2), flux gap over h_0, and h_0 over lambda where the film carries all."""
 
-RIGID_SPEED = 300.0
-"""Speed above which the rigid parabola starts Newton's iteration."""
+RIGID_SPEED = 300.0  # Speed above which the rigid parabola starts Newton's iteration
 
-HEIGHTS = (-400.0, 400.0)
-"""Logarithms of its smallest and largest height."""
+HEIGHTS = (-400.0, 400.0)  # Logarithms of its smallest and largest height
 
 BLENDING = Steps(1.0, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
 
+# Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100.
 MOST_WORK, UNIT_SIZE = 3000.0, 300.0
-"""Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100."""
 
-MOST_WORK_TO_END = 6000.0
-"""The same for all paths of loads together on which the film is to end."""
+MOST_WORK_TO_END = 6000.0  # The same for all paths of loads together on which the film is to end
 
 
+# Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it; the other is for the thinnest.
 FADING, FADING_FAR = 8.0, 24.0
-"""Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it; the other is for the thinnest."""
 
 
 @dataclass
@@ -269,15 +259,15 @@ def _milder(film: Film, part: float) -> Film:
     return film.milder(part)
 
 
+# In the order in which they are tried; the whole change at once is tried on each mesh.
 WAYS: tuple[Way, ...] = (
     (_blend, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0),
     (_milder, ORDER, MESH_TOLERANCE, SOON_LOST, 0.25),
     (_milder, *FINER, MOST_STEPS, 1.0),
 )
-"""In the order in which they are tried; the whole change at once is tried on each mesh."""
 
+# The one that is tried last, where the films of another were lost to rounding.
 TO_THINNEST: Way = (_fade, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0)
-"""The one that is tried last, where the films of another were lost to rounding."""
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:

@@ -26,14 +26,11 @@ __all__ = ["Capacitance", "Preconditioner"]
 
 Single = npt.NDArray[np.float32]
 
-FEW = 0.15
-"""Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve."""
+FEW = 0.15  # Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve
 
-ROOM = 1.2
-"""Room for columns over those of the known nodes, as a few more come with each step."""
+ROOM = 1.2  # Room for columns over those of the known nodes, as a few more come with each step
 
-AT_ONCE = 128
-"""Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again."""
+AT_ONCE = 128  # Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again
 
 
 @dataclass(eq=False)

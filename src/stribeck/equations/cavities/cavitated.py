@@ -32,38 +32,33 @@ from stribeck.numerics.fourier_panels import lobatto, radau
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
 
-MOST_STEPS = 40
-"""Steps after which the iteration is given up."""
+MOST_STEPS = 40  # Steps after which the iteration is given up
 
-MOST_KRYLOV = 60
-"""Steps of GMRES for one of these."""
+MOST_KRYLOV = 60  # Steps of GMRES for one of these
 
-LINEAR = 1e-3
-"""Relative error of a step that GMRES may leave; less near the solution."""
+LINEAR = 1e-3  # Relative error of a step that GMRES may leave; less near the solution
 
-LOOSE = 3e-2
-"""The same while nodes still break or heal."""
+LOOSE = 3e-2  # The same while nodes still break or heal
 
+# Part of the load by which what both pressures carry may miss it, over the tolerance of the gap; and the tolerance above which
+# it may be larger by their ratio, as such a state is there for comparison only.
 BALANCED, STRICT = 5e-3, 1e-6
-"""Part of the load by which what both pressures carry may miss it, over the tolerance of the gap; and the tolerance above
-which it may be larger by their ratio, as such a state is there for comparison only."""
 
-UNSETTLED = 2.0
-"""Error that is left over the size of the last step, where torn nodes changed with it."""
+UNSETTLED = 2.0  # Error that is left over the size of the last step, where torn nodes changed with it
 
+# Part of the film pressure that GMRES may leave over the tolerance of the gap, which counts up to :data:`STRICT`: slow films
+# carry little, and a mesh for comparison would tell their flow worse than it is.
 FLUID = 10.0
-"""Part of the film pressure that GMRES may leave over the tolerance of the gap, which counts up to :data:`STRICT`: slow films
-carry little, and a mesh for comparison would tell their flow worse than it is."""
 
+# Corrections by the last Jacobian of a state that is near but for its load, and the most that GMRES may leave of them.
 MOST_POLISHED, ROUGHEST = 3, 0.3
-"""Corrections by the last Jacobian of a state that is near but for its load, and the most that GMRES may leave of them."""
 
+# Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one.
 FARTHEST, SWEPT = 10, 0.1
-"""Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one."""
 
+# Steps of GMRES for a digit from which the next step makes its own preconditioner; and from which a neighbour's capacitance
+# matrix is factorised anew.
 WORN, STALE = 4.0, 2.0
-"""Steps of GMRES for a digit from which the next step makes its own preconditioner; and from which a neighbour's capacitance
-matrix is factorised anew."""
 
 
 class Passing:

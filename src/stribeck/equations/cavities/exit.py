@@ -25,8 +25,7 @@ from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
 
-STREAKS = 0.18
-"""Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns."""
+STREAKS = 0.18  # Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns
 
 
 @dataclass(frozen=True, eq=False)

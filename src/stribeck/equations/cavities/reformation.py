@@ -30,11 +30,9 @@ from stribeck.quantities.lazy import cached_property
 __all__ = ["ReformingEquations", "outflow"]
 
 
-DOUBT = 0.15
-"""Stated error of the gas over the outflow from its cell."""
+DOUBT = 0.15  # Stated error of the gas over the outflow from its cell
 
-EDGE = 0.5
-"""Stated error of the area of a cavity over that of the cells along its edge."""
+EDGE = 0.5  # Stated error of the area of a cavity over that of the cells along its edge
 
 
 def edge_of(torn: Flags) -> Flags:

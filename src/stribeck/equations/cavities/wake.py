@@ -19,8 +19,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Indices
 from stribeck.numerics.fourier_panels import PolarMesh
 
-POINTS, WEIGHTS = legendre.leggauss(12)
-"""Gauss points of an integral over the angles of the wake on one ring."""
+POINTS, WEIGHTS = legendre.leggauss(12)  # Gauss points of an integral over the angles of the wake on one ring
 
 
 @dataclass(frozen=True, eq=False)

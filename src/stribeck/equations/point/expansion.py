@@ -22,12 +22,11 @@ from stribeck.numerics.series import implicit_series, interval
 
 __all__ = ["Expanded", "as_row", "corrected_once", "expand", "from_row"]
 
-SAMPLES = 20
-"""Places at which the equations are evaluated."""
+SAMPLES = 20  # Places at which the equations are evaluated
 
+# Weight of one order between states over that of the order before, as the distance of states is near the radius of
+# convergence; and the largest residual that GMRES may leave in any.
 WEIGHT, LOOSEST = 0.4, 1e-4
-"""Weight of one order between states over that of the order before, as the distance of states is near the radius of
-convergence; and the largest residual that GMRES may leave in any."""
 
 SHARE = SMOOTH.index("contact_load_share")
 

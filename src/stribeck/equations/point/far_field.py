@@ -23,11 +23,9 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 
-DEFLECTION = 4.0 / (3.0 * math.pi)
-"""b: the deflection under the load, far away, times the distance."""
+DEFLECTION = 4.0 / (3.0 * math.pi)  # b: the deflection under the load, far away, times the distance
 
-POINTS = 40
-"""Gauss points of the integrals from the rim to infinity."""
+POINTS = 40  # Gauss points of the integrals from the rim to infinity
 
 
 def particular(

@@ -23,36 +23,28 @@ from stribeck.equations.point.system import Equations, Linear, Unknowns
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
 
-MAX_KRYLOV = 60
-"""Steps of GMRES for one step of Newton's iteration."""
+MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
 
+# Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it.
 WORN, WORN_NEAR = 12, 16
-"""Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it."""
 
-WIDEST = 16
-"""Band of a new preconditioner if one with a narrower band does not serve."""
+WIDEST = 16  # Band of a new preconditioner if one with a narrower band does not serve
 
-MOST_POOR = 4
-"""Steps that such a one may leave poorly solved."""
+MOST_POOR = 4  # Steps that such a one may leave poorly solved
 
-NEAR = 0.03
-"""Size of a step below which the solution is near."""
+NEAR = 0.03  # Size of a step below which the solution is near
 
-SMALLEST_PART = 1e-6
-"""A step damped below this part of Newton's makes no progress."""
+SMALLEST_PART = 1e-6  # A step damped below this part of Newton's makes no progress
 
-LINEAR = 3e-2
-"""Relative error of a Newton step that GMRES may leave."""
+LINEAR = 3e-2  # Relative error of a Newton step that GMRES may leave
 
-ACCEPTED = 0.1
-"""Error above which a kept preconditioner is given up."""
+ACCEPTED = 0.1  # Error above which a kept preconditioner is given up
 
+# Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
+# hundredths of it.
 FAR = 100.0
-"""Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
-hundredths of it."""
 
-BENDING = 3.0
-"""Factor from the square of a step to the error after it, if no two steps are known to measure it."""
+BENDING = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,68 +27,55 @@ from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.plane import BODIES
 
-EDGE = 0.6
-"""Width of the smallest panel over that of the edge layer."""
+EDGE = 0.6  # Width of the smallest panel over that of the edge layer
 
-GROWTH = 2.5
-"""Ratio of the widths of neighbouring panels."""
+GROWTH = 2.5  # Ratio of the widths of neighbouring panels
 
-REACH = 50.0
-"""Radius of the rim over the scale of the contact."""
+REACH = 50.0  # Radius of the rim over the scale of the contact
 
+# Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
+# the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim.
 THINNED_BEYOND, TORN_BEYOND, MOST_FARTHER = 1e-3, 1e-7, 6
-"""Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
-the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim."""
 
+# Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
+# break and heal by chance. The friction that is lost beyond a nearer rim is stated.
 FAINTEST = 1e-9
-"""Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
-break and heal by chance.  The friction that is lost beyond a nearer rim is stated."""
 
-POWER_FARTHER = 1
-"""Panels beyond the usual rim for a power law."""
+POWER_FARTHER = 1  # Panels beyond the usual rim for a power law
 
-FILM_ROUNDS = 20
-"""Iterations for a film that is thinned by its own shear rate."""
+FILM_ROUNDS = 20  # Iterations for a film that is thinned by its own shear rate
 
-FAR_PANELS = 2
-"""Panels in ln r beyond twice the scale."""
+FAR_PANELS = 2  # Panels in ln r beyond twice the scale
 
-CAVITY_GROWTH = 1.5
-"""Largest width of far panels over their radius where a film may form anew."""
+CAVITY_GROWTH = 1.5  # Largest width of far panels over their radius where a film may form anew
 
+# Width of the far panels over the widest panel that a body allows near the contact, or over their radius, if larger.
 FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
-"""Width of the far panels over the widest panel that a body allows near the contact, or over their radius, if larger."""
 
-MOST_BYTES = 670_000_000
-"""Memory that operators and preconditioner of a mesh may take."""
+MOST_BYTES = 670_000_000  # Memory that operators and preconditioner of a mesh may take
 
-KEPT_BYTES = 120_000_000
-"""Memory of the operators that are kept for later states."""
+KEPT_BYTES = 120_000_000  # Memory of the operators that are kept for later states
 
-EDGE_PRESSURE = 0.2
-"""Contact pressure at which the decay at the edge is read [p_Hz]."""
+EDGE_PRESSURE = 0.2  # Contact pressure at which the decay at the edge is read [p_Hz]
 
 
+# Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4.
 SIDE_LOBES = 7.5
-"""Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4."""
 
-MOST_MODES = 200
-"""The most modes of a mesh."""
+MOST_MODES = 200  # The most modes of a mesh
 
-COARSEST = 0.25
-"""Modes over those of the minimum film with which the other observables are good to 1e-2."""
+COARSEST = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
 
+# A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
+# of an edge fall with 4.4**-n on the panels that lead to it.
 UNRESOLVED = 2.6
-"""A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square
-root of an edge fall with 4.4**-n on the panels that lead to it."""
 
-NARROWEST, MOST_SPLITS = 1e-3, 16
-"""Width below which panels are not split [a], and the largest number of splits."""
+NARROWEST, MOST_SPLITS = 1e-3, 16  # Width below which panels are not split [a], and the largest number of splits
 
 
+# Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
+# this part of it at least; and by how many of them the rings between may be wider than those that the line crosses.
 PLACED, SPARE, KEPT = 1 / 64, 0.25, 6.0
-"""Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
-this part of it at least; and by how many of them the rings between may be wider than those that the line crosses."""
 
 
 class MeshTooLargeError(Exception):
@@ -180,14 +167,11 @@ def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
     return low
 
 
-RIGID_CAVITATED = 0.2249
-"""Height of a rigid ball over the square of the speed group, for a film that ends at ambient pressure."""
+RIGID_CAVITATED = 0.2249  # Height of a rigid ball over the square of the speed group, for a film that ends at ambient pressure
 
-RIGID_SUCTION = 0.1
-"""Largest suction behind a rigid ball times its height to the power 3/2, over the speed group."""
+RIGID_SUCTION = 0.1  # Largest suction behind a rigid ball times its height to the power 3/2, over the speed group
 
-QUIET = 0.03
-"""Suction at the rim over that of a cavity, at most."""
+QUIET = 0.03  # Suction at the rim over that of a cavity, at most
 
 
 def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[float, float]:

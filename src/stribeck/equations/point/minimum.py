@@ -10,14 +10,11 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 
-STEPS = 12
-"""Newton steps towards a minimum."""
+STEPS = 12  # Newton steps towards a minimum
 
-SETTLED = 1e-7
-"""Length of the last step over the spacing of nodes: the next would change the value by its square only."""
+SETTLED = 1e-7  # Length of the last step over the spacing of nodes: the next would change the value by its square only
 
-CANDIDATES = 3
-"""Number of nodes from which the search starts: the lowest of those below their neighbours."""
+CANDIDATES = 3  # Number of nodes from which the search starts: the lowest of those below their neighbours
 
 
 @dataclass(frozen=True)

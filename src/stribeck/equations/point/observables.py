@@ -29,6 +29,10 @@ from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_ax
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
 
+# Names of the observables. `minimum_radius` [a] and `minimum_angle` [radian, 0 downstream on the middle line, at most pi by
+# symmetry] place the minimum of the gap; `minimum_gap_on_axis` is that of the middle line. The J are the finite parts of the
+# friction integrals, `lim J(r < X) - (16/15) pi lambda ln X`; J_balanced is the force on the flat, J_published that on the
+# ball without the contact pressure along x, which is J_pcx.
 OBSERVABLES = (
     "contact_load_share",
     "fluid_load_share",
@@ -45,19 +49,11 @@ OBSERVABLES = (
     "J_published",
     "J_pcx",
 )
-"""Names of the observables.
 
-``minimum_radius`` [a] and ``minimum_angle`` [radian, 0 downstream on the middle line, at most pi by symmetry] place
-the minimum of the gap; ``minimum_gap_on_axis`` is that of the middle line.  The J are the finite parts of the friction
-integrals, ``lim J(r < X) - (16/15) pi lambda ln X``; J_balanced is the force on the flat, J_published that on the ball
-without the contact pressure along x, which is J_pcx.
-"""
-
+# Those that are no smooth functions of the unknowns: the place of the minimum jumps.
 MINIMA = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
-"""Those that are no smooth functions of the unknowns: the place of the minimum jumps."""
 
-SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)
-"""All others, which have a series."""
+SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)  # All others, which have a series
 
 # Friction integrals of FrictionWithin by name: what a film has up to where the liquid ends.
 WITHIN = ("within_couette", "within_poiseuille", "within_edge")

@@ -14,8 +14,8 @@ from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 
+# The flow in the plane, by the kind of film.
 PLANES: dict[type, Callable[[Any], PlaneFilm]] = {Newtonian: NewtonianPlane, ShearThinning: ThinningPlane}
-"""The flow in the plane, by the kind of film."""
 
 
 def plane_of(film: Film) -> PlaneFilm:

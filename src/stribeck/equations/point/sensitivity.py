@@ -30,15 +30,13 @@ Direction = Callable[[float], Groups]
 Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 """Observables of a state by name."""
 
-STEP = 1e-4
-"""Step of the logarithm of a group in the central differences of the residual, whose error is its square."""
+STEP = 1e-4  # Step of the logarithm of a group in the central differences of the residual, whose error is its square
 
-CHANGE = 1e-4
-"""Largest relative change of the gap in those of the observables along the change of the unknowns."""
+CHANGE = 1e-4  # Largest relative change of the gap in those of the observables along the change of the unknowns
 
+# Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
+# single precision, and the next round removes the error that it leaves.
 TOLERANCE, MOST, FINEST = 1e-6, 90, 1e-18
-"""Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
-single precision, and the next round removes the error that it leaves."""
 
 
 def log_derivatives(

@@ -33,14 +33,11 @@ from stribeck.solids.half_space import deflections_from_beyond, tilt_from_beyond
 from stribeck.solids.plane import BODIES
 from stribeck.solids.solid import Solid
 
-LOAD = 2.0 * np.pi / 3.0
-"""Load in Hertz units: the integral of the pressure."""
+LOAD = 2.0 * np.pi / 3.0  # Load in Hertz units: the integral of the pressure
 
-USUAL_LIQUID = 25.0
-"""Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]."""
+USUAL_LIQUID = 25.0  # Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]
 
-OFFSET_STEP = 1e-4
-"""Step of the offset over the square of the rim, in a central difference whose error is its square."""
+OFFSET_STEP = 1e-4  # Step of the offset over the square of the rim, in a central difference whose error is its square
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,36 +33,31 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import RateLaw
 
+# Gauss points on each side of the smallest stress: the fewest with which columns of very different rates differ by this part
+# from those of the next rule but one.
 POINTS, ALIKE = (14, 20, 28, 40, 56), 1e-8
-"""Gauss points on each side of the smallest stress: the fewest with which columns of very different rates differ by this part
-from those of the next rule but one."""
 
+# Slips, rates that the pressure gradient alone would make at the walls, and angles between them, of these columns.
 SAMPLE = np.array(
     [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
 ).T
-"""Slips, rates that the pressure gradient alone would make at the walls, and angles between them, of these columns."""
 
-SPACING = 0.0025
-"""Of the table of a law in ln(stress): cubics between its points are good to 1e-13."""
+SPACING = 0.0025  # Of the table of a law in ln(stress): cubics between its points are good to 1e-13
 
+# Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate; and
+# the highest rate of the table.
 NEWTONIAN, WITHOUT_PLATEAU, HIGHEST = 1e-9, 1e-60, 1e13
-"""Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate;
-and the highest rate of the table."""
 
+# Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below.
 POWER = 1e-2
-"""Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below."""
 
-CLOSE = 1e-7
-"""Size of the last step over the largest stress: the next would be below rounding."""
+CLOSE = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
 
-NEAR = 0.3
-"""Change of the stress over the largest stress up to which first order is a good start."""
+NEAR = 0.3  # Change of the stress over the largest stress up to which first order is a good start
 
-LONGEST = 1.0
-"""Step over the largest stress at most."""
+LONGEST = 1.0  # Step over the largest stress at most
 
-OVERSHOT = 0.9
-"""Slope of the potential after a step, over that before it, from which the step was too long."""
+OVERSHOT = 0.9  # Slope of the potential after a step, over that before it, from which the step was too long
 
 MOST_STEPS = 80
 

@@ -28,26 +28,23 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 from stribeck.quantities.lazy import cached_property
 
+# Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end.
 ANGLES, MOST_DEGREE, ROUNDS, ALIKE = 20, 5, 40, 1e-9
-"""Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end."""
 
+# Factor of the sources that a power of v needs, over the lost part, below which it is left out: near a power with which the
+# pressure falls without sources, rounds go astray.
 RESONANT = 20.0
-"""Factor of the sources that a power of v needs, over the lost part, below which it is left out: near a power with which the
-pressure falls without sources, rounds go astray."""
 
-LEAST = 1e-9
-"""Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves."""
+LEAST = 1e-9  # Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves
 
-FIRST_ORDER = 1e-6
-"""Lost part at which its power is read."""
+FIRST_ORDER = 1e-6  # Lost part at which its power is read
 
 
+# Stated error of the friction over the speed, the lost part at the rim and the offset over the square of the rim; it is up to
+# 5 for Cross's law with powers from 0.1 to 0.8.
 OFFSET = 12.0
-"""Stated error of the friction over the speed, the lost part at the rim and the offset over the square of the rim; it is up to
-5 for Cross's law with powers from 0.1 to 0.8."""
 
-ROLLING = 0.3
-"""Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness."""
+ROLLING = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
 
 
 def lost(law: RateLaw, rate: float) -> float:

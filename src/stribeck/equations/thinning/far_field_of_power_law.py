@@ -31,19 +31,18 @@ from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.quantities.lazy import cached_property
 
+# Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends.
 ANGLES, STEPS, ALIKE = 64, 40, 1e-11
-"""Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends."""
 
-DIFFERENCE, PART = 1e-6, 1e-3
-"""Step of the derivative by a coefficient, and change of the gap for that by the offset."""
+DIFFERENCE, PART = 1e-6, 1e-3  # Step of the derivative by a coefficient, and change of the gap for that by the offset
 
+# Smallest stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same over
+# the square of the part by which the gap differs.
 KNOWN, SECOND = 3e-6, 50.0
-"""Smallest stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same
-over the square of the part by which the gap differs."""
 
 
+# Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is.
 STEEP, NEAR = 0.2, 1.5
-"""Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is."""
 
 
 class _Similar(NamedTuple):

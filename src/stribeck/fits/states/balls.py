@@ -24,20 +24,17 @@ if TYPE_CHECKING:
 __all__ = ["OnState", "curve_parts", "kept_balls", "lattice_parts"]
 
 
-LATTICE_RTOL = 3e-4
-"""Tolerance of the states of a lattice."""
+LATTICE_RTOL = 3e-4  # Tolerance of the states of a lattice
 
 
-LATTICE_ERROR = 3e-3
-"""Largest relative error of the parts read off a lattice of balls; 2e-3 was found in the middle of a cell."""
+LATTICE_ERROR = 3e-3  # Largest relative error of the parts read off a lattice of balls; 2e-3 was found in the middle of a cell
 
 
+# Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness).
 FINE_STEPS = (0.3, 1.0, 1.0)
-"""Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness)."""
 
 
-CLOSE = 0.01
-"""Logarithm of a load or a roughness up to which a solved curve of a ball serves, to first order."""
+CLOSE = 0.01  # Logarithm of a load or a roughness up to which a solved curve of a ball serves, to first order
 
 
 OnState = Callable[[int], object]

@@ -27,12 +27,11 @@ from stribeck.solver.solve import SolveError, stated_errors
 __all__ = ["kept_parts", "solved_parts"]
 
 
+# Rows up to which each state is solved from one before, with a mesh of its own in memory; more are solved as a curve.
 MOST_KEPT = 60
-"""Rows up to which each state is solved from one before, with a mesh of its own in memory; more are solved as a curve."""
 
 
-NEAR = 0.3
-"""Largest change of a logarithm over which a single state is solved from another, if one more can be kept."""
+NEAR = 0.3  # Largest change of a logarithm over which a single state is solved from another, if one more can be kept
 
 
 def solved_parts(definition: Definition, rtol: float) -> PartsOf:

@@ -25,12 +25,10 @@ if TYPE_CHECKING:
 __all__ = ["Ways", "atlas_or", "atlas_parts", "between", "in_atlas", "ways_of"]
 
 
-FAR_DOUBT = 1e-2
-"""Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`."""
+FAR_DOUBT = 1e-2  # Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`
 
 
-BALL_RTOL = 1e-4
-"""Smallest tolerance of solved balls in the values that a fit returns: far below what rigs resolve."""
+BALL_RTOL = 1e-4  # Smallest tolerance of solved balls in the values that a fit returns: far below what rigs resolve
 
 
 class Ways(NamedTuple):
@@ -100,5 +98,5 @@ def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state
     return Ways(Made(atlas_or, lattice, definition) if in_atlas(model) else lattice, solved)
 
 
+# The ways by geometry.
 WAYS: dict[str, Callable[[FrictionModel, Definition, float, OnState], Ways]] = {"line": _of_cylinder, "point": _of_ball}
-"""The ways by geometry."""

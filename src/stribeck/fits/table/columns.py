@@ -24,8 +24,8 @@ Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_leng
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
 
+# Headers of a speed that say that it is the sum.
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}
-"""Headers of a speed that say that it is the sum."""
 
 _FRICTION = (
     r"(?:(?:mean|average|avg|median|dynamic|kinetic|sliding|measured) )*"
@@ -38,12 +38,12 @@ _ERROR = (
     r"(?:err(?:or)?|uncertainty|s ?d|std|sem|st ?dev|std ?(?:dev|deviation|error)|standard (?:deviation|error)|sigma|stabw)"
 )
 
-MADE = {"speed": MADE_SPEED, "friction": MADE_FRICTION}
-"""Headers of columns that were made of others."""
+MADE = {"speed": MADE_SPEED, "friction": MADE_FRICTION}  # Headers of columns that were made of others
 
 _HERSEY = r"hersey(?: (?:number|no|parameter))?"
 _ETA_U_F = r"eta u(?: r)? (?:f|w|load)(?: n)?"
 
+# What the words of a header mean, in lower case; in other languages [fit.columns] says it.
 WORDS = {
     "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|[uv] (?:s|sl|slide|sliding|rel)|(?:gleit)?geschwindigkeit|"
     + "|".join(SUMS),
@@ -58,15 +58,14 @@ WORDS = {
     for row in ROWS
     if not row.derived and row.name not in ("speed", "boundary_friction")
 }
-"""What the words of a header mean, in lower case; in other languages [fit.columns] says it."""
 
+# Headers of a speed that is taken where there is none by a plainer name.
 OTHER_SPEED = (
     r"(?:(?:mean|average|avg) (?=linear|sliding|tangential))?"
     r"(?:(?:max|maximum|peak|linear|lin|sliding|tangential|circumferential|actual|measured|set|nominal|target|track|test|table|"
     r"stage|stroke) )+(?:speed|velocity|vel)|vel|(?:mean|average|avg) (?:speed|velocity)|"
     r"(?:speed|velocity) (?:mean|average|avg)"
 )
-"""Headers of a speed that is taken where there is none by a plainer name."""
 
 PLUS_MINUS = {"±", "+/-", "+-"}
 

@@ -18,29 +18,23 @@ from stribeck.files.cells import rows_listed
 
 __all__ = ["Averaged", "Row", "average_repeats"]
 
-SAME_SPEED = 0.01
-"""Relative difference up to which speeds are the same point."""
+SAME_SPEED = 0.01  # Relative difference up to which speeds are the same point
 
-LARGEST_NOISE = 0.02
-"""Noise of a speed that a drive may have; what changes by more is set."""
+LARGEST_NOISE = 0.02  # Noise of a speed that a drive may have; what changes by more is set
 
-DEVIATIONS = 4.0
-"""Standard deviations of the noise of a speed within which rows belong to one step."""
+DEVIATIONS = 4.0  # Standard deviations of the noise of a speed within which rows belong to one step
 
+# Way from end to end over the way from row to row, from which a speed is ramped: 1 on a ramp, 1/2 for three rows of noise.
 RAMP_SHARE = 0.75
-"""Way from end to end over the way from row to row, from which a speed is ramped: 1 on a ramp, 1/2 for three rows of noise."""
 
-FEWEST = 3
-"""Repeats from which their scatter is an error, and rows from which a setting is one."""
+FEWEST = 3  # Repeats from which their scatter is an error, and rows from which a setting is one
 
-FEWEST_BLOCKS = 8
-"""Blocks of a series from which the correlation of neighbours is estimated."""
+FEWEST_BLOCKS = 8  # Blocks of a series from which the correlation of neighbours is estimated
 
-SMALL_PROBABILITY = 0.01
-"""Probability below which the scatter of one step is its own and not that of all."""
+SMALL_PROBABILITY = 0.01  # Probability below which the scatter of one step is its own and not that of all
 
+# Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in.
 RUN_IN, CLEAR = 0.03, 3.0
-"""Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in."""
 
 Row = tuple[str, int, float, float, float, dict[str, float]]
 

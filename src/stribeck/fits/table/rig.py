@@ -23,19 +23,19 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_SPEED", "RIG", "prepared", "temperature_note"]
 
+# What a column of a rig may be beside those of a friction curve.
 RIG = (
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
     *("friction_force", "normal_force", "torque", "run"),
 )
-"""What a column of a rig may be beside those of a friction curve."""
 
 FORCES = frozenset({"friction_force", "torque"})
-SPEEDS = frozenset({"entrainment_speed", "sliding_speed", "surface_speeds", "rotation"})
-"""What friction and speed are made of."""
+SPEEDS = frozenset({"entrainment_speed", "sliding_speed", "surface_speeds", "rotation"})  # What friction and speed are made of
 
 _FORCE_OF = r"(?:(?:normal|ball|contact|vertical|applied|nominal|set|target|actual|measured|axial|mean|average|test) )"
 _SPEED = r"(?:speed|velocity)"
 
+# What the words of a header mean, in lower case.
 PATTERNS = {
     "entrainment_speed": rf"(?:mean|average)(?: (?:entrain\w*|rolling|surface))? {_SPEED}|"
     rf"(?:entrain\w*|rolling)(?: \w+)? {_SPEED}|{_SPEED} (?:mean|rolling)",
@@ -50,17 +50,16 @@ PATTERNS = {
     r"rotation|drehzahl|rotational frequency",
     "torque": r"(?:friction(?:al)? |reib|dreh)?(?:torque|moment)",
 }
-"""What the words of a header mean, in lower case."""
 
+# Names of the radius or diameter of a track, in a header or in text above it.
 TRACK = (
     r"(?:(?:ball|disc|disk|wear|sliding|test|friction) )*track (?:radius|diameter|dia|r|d)|"
     r"(?:radius|diameter|dia) of (?:the )?(?:\w+ )?track|(?:reib|lauf|kreis)?(?:spur|bahn)(?:radius|durchmesser)|radius|r"
 )
-"""Names of the radius or diameter of a track, in a header or in text above it."""
 
-ARM = r"(?:(?:torque|lever|moment|force|friction) )?arm(?: length)?|hebelarm"
-"""Names of the arm of a torque."""
+ARM = r"(?:(?:torque|lever|moment|force|friction) )?arm(?: length)?|hebelarm"  # Names of the arm of a torque
 
+# Dimension of what a rig writes; a column of another one is something else.
 DIMENSIONS_OF = {
     "entrainment_speed": "speed",
     "sliding_speed": "speed",
@@ -70,19 +69,15 @@ DIMENSIONS_OF = {
     "rotation": "rotation",
     "torque": "torque",
 }
-"""Dimension of what a rig writes; a column of another one is something else."""
 
-UNITS = {"speed": "mm/s", "force": "N", "rotation": "rpm", "torque": "mN m"}
-"""Units of examples."""
+UNITS = {"speed": "mm/s", "force": "N", "rotation": "rpm", "torque": "mN m"}  # Units of examples
 
-MADE_SPEED = "sum of speeds [m/s]"
-"""Header of the column of the speed that was made of others."""
+MADE_SPEED = "sum of speeds [m/s]"  # Header of the column of the speed that was made of others
 
-MADE_FRICTION = "friction of forces"
-"""Header of the column of friction that was made of forces."""
+MADE_FRICTION = "friction of forces"  # Header of the column of friction that was made of forces
 
+# Headers of the columns of what is constant along each curve, made of columns that were measured.
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
-"""Headers of the columns of what is constant along each curve, made of columns that were measured."""
 
 _STATED = re.compile(
     r"(?P<name>[^\d:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
@@ -93,17 +88,14 @@ _IN_BRACKETS = re.compile(
     r"\s*(?:at )?(?P<name>[A-Za-z ]+?)\s*[=:]?\s*(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*(?P<unit>[A-Za-zµμ]+)\s*"
 )
 
+# Units of temperatures, and how they are printed.
 TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K", "°F": "°F", "ºC": "°C"}
-"""Units of temperatures, and how they are printed."""
 
-TEMPERATURE_TOLERANCE = 0.1
-"""Difference of temperatures that a sentence does not tell apart."""
+TEMPERATURE_TOLERANCE = 0.1  # Difference of temperatures that a sentence does not tell apart
 
-ROLLING_RATIO = 0.005
-"""Slide-to-roll ratio up to which it is that of pure rolling: what drives hold a ratio within."""
+ROLLING_RATIO = 0.005  # Slide-to-roll ratio up to which it is that of pure rolling: what drives hold a ratio within
 
-NEXT_LEVEL = 1.1
-"""Ratio of neighbouring values from which they belong to two settings, and not to the noise of one."""
+NEXT_LEVEL = 1.1  # Ratio of neighbouring values from which they belong to two settings, and not to the noise of one
 
 
 class Prepared(NamedTuple):

@@ -15,11 +15,9 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["without_stops"]
 
-REST_SPEED = 1e-9
-"""Speed over the largest of the file below which it is zero but for rounding."""
+REST_SPEED = 1e-9  # Speed over the largest of the file below which it is zero but for rounding
 
-CODES = (-999.0, -9999.0, -99999.0)
-"""Numbers that programs write where there is none."""
+CODES = (-999.0, -9999.0, -99999.0)  # Numbers that programs write where there is none
 
 
 @dataclass(frozen=True)

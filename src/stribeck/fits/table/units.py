@@ -10,11 +10,10 @@ from stribeck.quantities.units import InputError, to_si
 
 __all__ = ["BARE", "DIMENSION", "has_dimension", "si_factor"]
 
-BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
-"""Units of a friction coefficient."""
+BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a friction coefficient
 
+# Dimension of what a column may hold beside inputs of the contact.
 DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
-"""Dimension of what a column may hold beside inputs of the contact."""
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 

@@ -16,8 +16,7 @@ __all__ = ["Values"]
 
 THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?$")
 
-LARGEST_FRICTION = 10.0
-"""Friction coefficient from which percent are suspected."""
+LARGEST_FRICTION = 10.0  # Friction coefficient from which percent are suspected
 
 
 class Values:

@@ -34,32 +34,25 @@ from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
-DEGREE = 8
-"""Degree of the panels of a first state."""
+DEGREE = 8  # Degree of the panels of a first state
 
-TOLERANCE = 1e-4
-"""Relative error of the gap that its iteration may leave."""
+TOLERANCE = 1e-4  # Relative error of the gap that its iteration may leave
 
+# Angular modes of the first trial: the steps cost as their square, and a state on few shows how many more it needs.
 FEW_MODES = 16
-"""Angular modes of the first trial: the steps cost as their square, and a state on few shows how many more it needs."""
 
-MAX_STEPS = 25
-"""Newton steps after which a first guess is given up."""
+MAX_STEPS = 25  # Newton steps after which a first guess is given up
 
-STEEPNESS = 4.0
-"""Film thickness over the decay of the cushion that stands for the film in a first guess."""
+STEEPNESS = 4.0  # Film thickness over the decay of the cushion that stands for the film in a first guess
 
+# The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's.
 FAST, SLOW = 30.0, 1e-3
-"""The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's."""
 
-MOST_ROUNDS = 8
-"""Times that the panels of a first guess are split."""
+MOST_ROUNDS = 8  # Times that the panels of a first guess are split
 
-MILDER = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)
-"""Steps in the part of the fluid's own law."""
+MILDER = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own law
 
-LONGEST_PATH = 60
-"""States on a path after which it is given up."""
+LONGEST_PATH = 60  # States on a path after which it is given up
 
 
 def first_modes(speed: float, law: ContactLaw, model: Model) -> int:
