@@ -43,7 +43,7 @@ ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_g
 
 
 class Lookup(NamedTuple):
-    """What was read off the table of states, flat arrays."""
+    """Values read off a table, as flat arrays over the states."""
 
     table: TableRow
     speed: Array
@@ -95,7 +95,7 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
 
 
 class FrictionReading(NamedTuple):
-    """What the friction of states is made of, flat arrays; derivatives by ln(speed), ln(load), ln(roughness) as wanted."""
+    """Contact share and viscous parts of the friction of states, flat arrays, with derivatives by the logarithms of groups."""
 
     speed: Array
     load: Array

@@ -28,18 +28,18 @@ from stribeck.atlas.grid import (
     local,
 )
 
-# What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
-# :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
-# segments end at, the logarithm of the power of the speed with which the fluid's share begins is taken off the first.
+# Tabulated functions of the line, in the order of the table: the logarithms of fluid over contact share, of both viscous
+# frictions over :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the
+# first end of a segment, the logarithm of the power of the speed with which the fluid's share begins is taken off the first.
 LINE_FUNCTIONS = ("log_odds", "viscous_published", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
 
-# What is tabulated of balls: as of the line, with the logarithms of the two parts and the published sum of the friction
+# Tabulated functions of balls: as of the line, with the logarithms of the two parts and the published sum of the friction
 # integral over lambda, up to the radius :data:`FRICTION_RADIUS`.
 BALL_FUNCTIONS = ("log_odds", "couette", "poiseuille", "published", "central_gap", "minimum_gap", "deflection")
 
 FRICTION_RADIUS = 1e3  # Radius of the disc of liquid of which the friction of balls is tabulated [a]
 
-FUNCTIONS = {"line": LINE_FUNCTIONS, "point": BALL_FUNCTIONS}  # What is tabulated, by geometry
+FUNCTIONS = {"line": LINE_FUNCTIONS, "point": BALL_FUNCTIONS}  # By geometry
 
 COEFFICIENT_UNIT = 2.0**-25  # Unit of the coefficients in the file, which holds whole numbers
 
@@ -48,10 +48,10 @@ CHUNK_STATES = 1024  # States that are summed at once: their polynomials then fi
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """What was read off the table for many states."""
+    """Values of functions of a table at many states."""
 
     values: Array  # The wanted of :data:`LINE_FUNCTIONS`
-    slopes: Array | None  # Their derivatives by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
+    slopes: Array | None  # Derivatives of the values by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
     film: Array  # Where no asperities are left: there the first function, if wanted, is infinite
 
 
@@ -100,7 +100,7 @@ class Block:
 class Table:
     """A whole table; :func:`load_table` reads one that comes with the package."""
 
-    grid: Grid  # Its coordinates and blocks
+    grid: Grid  # Coordinates and blocks
     breaks: tuple[Array, ...]  # For each region the coefficients of the logarithms of the speeds b_1 .. b_5
     blocks: tuple[Block | None, ...]  # For each piece its segments; none where a region does not begin at rest
     film: Array  # Smooth films along the logarithm of the speed, without the first function

@@ -44,14 +44,14 @@ BOX_RTOL = 1e-12  # Relative excess over an end of a box that is rounding
 class TableRow:
     """One table of the atlas: for which contacts it holds, between which groups, and how well."""
 
-    name: str  # Its name
+    name: str  # Name of the table
     geometry: Geometry  # A cylinder or a ball
     law: str  # Name of the contact law
-    cavitation: Cavitation  # How the film ends
+    cavitation: Cavitation  # Cavitation of the film
     box: Box  # Smallest and largest `speed`, `load` and `relative_roughness` [-]
     error: float  # Relative error of the friction that is stated, above the largest of its certificate in docs/atlas.md
     file: str  # Name of the file
-    grid: Grid  # Its coordinates and blocks
+    grid: Grid  # Coordinates and blocks
 
     @property
     def model(self) -> Model:
@@ -60,7 +60,7 @@ class TableRow:
 
     @property
     def functions(self) -> tuple[str, ...]:
-        """What is tabulated."""
+        """Names of the tabulated functions."""
         return FUNCTIONS[self.geometry]
 
     @property

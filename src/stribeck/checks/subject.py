@@ -37,8 +37,8 @@ MAX_FIXED_POINT_STEPS = 60
 class Tracing(NamedTuple):
     """How the curve of one geometry is traced, on which the minimum and the transitions are looked for and then located."""
 
-    points: int  # Its points
-    rtol: float  # Tolerance of its states
+    points: int  # Points of the curve
+    rtol: float  # Tolerance of the states
     films: tuple[float, float] | None
 
 
@@ -53,8 +53,8 @@ class Subject:
     contact: Contact  # The contact
     facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.quantities.facts.ROWS` in SI units
     definition: Definition = "balanced"  # Definition of the viscous friction
-    solved: Solution | None = None  # Its state, if that is known already
-    traced: StribeckCurve | None = None  # Its curve over the speed, likewise
+    solved: Solution | None = None  # State of the contact, if already solved
+    traced: StribeckCurve | None = None  # Curve of the contact over the speed, if already solved
     on_point: Callable[[int, int], object] | None = None
 
     @cached_property

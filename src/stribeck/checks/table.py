@@ -31,10 +31,10 @@ EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")  # What a ch
 class Row:
     """One check."""
 
-    name: str  # What is checked
+    name: str  # Name of the check
     check: Callable[[Subject], Check | None]  # Returns the :class:`Check` of a :class:`Subject`, or None if it does not apply
-    effort: Effort  # What must be solved for it
-    missing: str = ""  # The fact that it needs; empty if none
+    effort: Effort  # States that must be solved for the check
+    missing: str = ""  # Fact that the check needs; empty if none
 
 
 # All checks, cheapest first.

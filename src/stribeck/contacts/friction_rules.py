@@ -34,7 +34,7 @@ COMPLEX_STEP = 1e-30  # Step along the imaginary axis, whose derivatives are exa
 
 
 class FrictionRule(NamedTuple):
-    """What the friction of one geometry is made of."""
+    """Observables, inputs and scales of the friction of one geometry."""
 
     inputs: Mapping[str, Callable[[Contact | None], float]]
     exponents: Mapping[str, Mapping[str, float]]  # Exponents of inputs of the contact in those of them that are ratios

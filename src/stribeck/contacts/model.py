@@ -16,7 +16,7 @@ __all__ = ["BASE_MODEL", "Model"]
 
 @dataclass(frozen=True)
 class Model:
-    """What the film and the bodies are; by default those of the article."""
+    """Film, cavitation and bodies, by default of the article."""
 
     film: Film = Newtonian()  # The fluid, in Hertz units
     cavitation: Cavitation = Cavitation.NONE  # How the film ends behind the contact

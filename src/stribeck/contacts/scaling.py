@@ -21,7 +21,7 @@ from typing import Literal
 
 __all__ = ["SCALINGS", "Geometry", "Scaling"]
 
-Geometry = Literal["line", "point"]  # What touches: a cylinder or a ball
+Geometry = Literal["line", "point"]  # A cylinder or a ball
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Scaling:
     roughness_exponent: float  # e and 2e
     slope_factor: float  # c
     hersey_power: int  # Power of a/R in the Hersey number over the speed group
-    hersey_divisor: float  # What that is divided by
+    hersey_divisor: float  # Divisor of the Hersey number
 
 
 # The geometries by name: a cylinder, whose load is per unit length, and a ball.

@@ -13,7 +13,7 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["Heading", "Line", "headings_in"]
 
-# What separates columns, beside white space: what comes first here wins where a line has several.
+# Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
 
 WIDE_SPACE = "  "  # Separates names of several words in columns that are aligned by spaces
@@ -25,10 +25,10 @@ MAX_HEADING_LINES = 4  # Lines above rows of numbers that may name columns, unit
 class Line:
     """A line that is not empty."""
 
-    number: int  # Its row in the file
-    text: str  # Its text, without the sign of a comment
-    comment: bool  # Whether it began with one
-    numbers: int  # How many of its cells are numbers
+    number: int  # Row in the file
+    text: str  # Text without the sign of a comment
+    comment: bool  # Whether the line began with the sign of a comment
+    numbers: int  # Number of cells that are numbers
 
     @classmethod
     def of(cls, number: int, text: str) -> Self:
@@ -50,7 +50,7 @@ class Heading:
     at: int  # Place of the names among the lines
     first: int  # Place of the first line that belongs to the table
     below: int  # Place of the first line below the heading
-    separator: str  # What separates the columns; empty for white space
+    separator: str  # Separator of the columns; empty for white space
     names: tuple[str, ...]  # The names, empty for a column without one
     units: tuple[str, ...] = ()  # Units below the names; empty if there are none
     labels: tuple[str, ...] = ()  # Names of curves above the names or below them; empty if there are none

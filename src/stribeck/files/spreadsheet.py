@@ -82,7 +82,7 @@ def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[t
 
 
 class _Handler:
-    """What is done with the elements of a part of a workbook; names come without their namespace."""
+    """Handler of the elements of a part of a workbook, whose names come without a namespace."""
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         """Take the beginning of an element."""

@@ -61,11 +61,11 @@ class TextTable:
     header: tuple[str, ...]  # Names of the columns; empty for a column without a name
     rows: tuple[tuple[str, ...], ...]  # The cells, one for each column
     numbers: tuple[int, ...]  # Row of the file in which each stands, counted from 1
-    separator: str  # What separates the columns, in words
+    separator: str  # Separator of the columns, in words
     units_row: tuple[str, ...] = ()  # A row of units below the header; empty if there is none
     written: tuple[str, ...] = ()  # Names of the columns as the file has them
     above: tuple[tuple[int, str], ...] = ()  # Number and text of each row above the header
-    notes: tuple[str, ...] = ()  # What was left out and put together, one sentence each
+    notes: tuple[str, ...] = ()  # Notes on rows and columns that were left out or put together, one sentence each
 
     def unit(self, name: str) -> str:
         """Return the unit of a column: that in its header, or in the row of units."""

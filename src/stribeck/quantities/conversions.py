@@ -24,9 +24,9 @@ __all__ = ["CONVERSIONS", "GIVEN", "Conversion", "Given", "GivenInput", "convert
 class GivenInput:
     """One input as a data sheet has it."""
 
-    name: str  # Its name, kind and an example
-    dimension: str  # Its name, kind and an example
-    typical: str  # Its name, kind and an example
+    name: str  # Name in Python and files
+    dimension: str  # Kind of quantity
+    typical: str  # Example with a unit
     usual: tuple[float, float] = (0.0, math.inf)  # Range in which the conversion holds, in SI units
 
 
@@ -35,8 +35,8 @@ class Conversion:
     """How an input of a contact follows from others."""
 
     of: str  # The input that follows
-    inputs: tuple[GivenInput, ...]  # What it follows from, all together
-    value: Callable[..., float]  # Its value from theirs, in SI units
+    inputs: tuple[GivenInput, ...]  # Inputs that are converted, all together
+    value: Callable[..., float]  # Value of the result from the inputs, in SI units
     formula: str  # For people
     source: str  # For people
     error: float = 0.0  # Standard error of the formula itself over the value

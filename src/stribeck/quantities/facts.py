@@ -20,8 +20,8 @@ __all__ = ["FACTS", "ROWS", "Fact", "fact_values"]
 class Fact:
     """One fact that checks ask for."""
 
-    name: str  # Its name, in Python and in the table `[check]`
-    label: str  # What people call it
+    name: str  # Name in Python and in the table `[check]`
+    label: str  # Name in sentences
     dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
     typical: str  # A value, and of what it is
     source: str  # A value, and of what it is

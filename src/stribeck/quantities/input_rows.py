@@ -16,8 +16,8 @@ __all__ = ["OTHER_BODY", "POINT_ROWS", "ROWS", "Input"]
 class Input:
     """One input of a contact: all that any part of the package needs to know of it."""
 
-    name: str  # Its name, in Python, case files, on the command line, in fits, sweeps and files
-    label: str  # What people call it
+    name: str  # Name in Python, case files, on the command line, in fits, sweeps and files
+    label: str  # Name in sentences
     symbol: str  # TeX
     dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
     typical: str  # A value of a laboratory's contact, and where that is from
@@ -33,7 +33,7 @@ class Input:
     follows_surface: bool = False  # Whether it follows from the roughness of the surface, and no hand can turn it alone
     derived: bool = False  # Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`
     optional: bool = False  # Whether a contact does without it
-    default: float | None = None  # What it then has, None if nothing
+    default: float | None = None  # Value of an optional input that is not given
     known: int = 9  # Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs
 
 

@@ -37,10 +37,10 @@ class Alternative:
     """Inputs that may be given in place of another."""
 
     of: str  # The input that a contact keeps
-    inputs: tuple[str, ...]  # What may be given instead, all together
-    value: Callable[..., float]  # Its value from theirs, in SI units
-    meaning: str  # What the kept input is, for sentences
-    hint: str = ""  # What to know if one of several is missing
+    inputs: tuple[str, ...]  # Inputs that may be given instead, all together
+    value: Callable[..., float]  # Value of the kept input from those given, in SI units
+    meaning: str  # Meaning of the kept input, for sentences
+    hint: str = ""  # Advice if one of several inputs is missing
     other: tuple[str, ...] = ()  # Inputs of a second body, which may be given besides, all together
 
 
@@ -69,7 +69,7 @@ class InputTable:
     geometry: str  # The geometry
     contact: str  # Name of its contact in Python
     rows: tuple[Input, ...]  # All inputs
-    alternatives: tuple[Alternative, ...]  # What may be given in place of some
+    alternatives: tuple[Alternative, ...]  # Inputs that may be given in place of some rows
 
     @cached_property
     def quantities(self) -> dict[str, Input]:

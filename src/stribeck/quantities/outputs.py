@@ -44,11 +44,11 @@ UNIT_SUFFIXES = {
 class Observable:
     """One number that a solved state has."""
 
-    name: str  # Its name, in Python, files, sweeps and JSON
-    label: str  # What reports call it
-    meaning: str  # What it is, in a file
-    scale: Scale = "number"  # What returns it to SI: nothing, the Hertz indentation, half-width or pressure, or beta
-    film: str = ""  # Its name in SI units; empty if files hold it in Hertz units alone
+    name: str  # Name in Python, files, sweeps and JSON
+    label: str  # Name in reports
+    meaning: str  # Meaning, for files
+    scale: Scale = "number"  # Unit of the number: none, the Hertz indentation, half-width or pressure, or beta
+    film: str = ""  # Name in SI units; empty if files hold Hertz units alone
     error: Literal["relative", "absolute", ""] = "relative"
     listed: bool = True  # Whether files and reports show it; the two viscous frictions enter friction
 

@@ -23,8 +23,8 @@ class PartInput(Input):
     path: tuple[str, ...]  # Attributes that lead from the parts of a contact to the number
     table: str  # Where a case file has it
     key: str  # Where a case file has it
-    range: tuple[float, float] = (0.0, float("inf"))  # What a fit may make of it; without bounds of its own, positive numbers
-    of: str  # What has such a number, for sentences
+    range: tuple[float, float] = (0.0, float("inf"))  # Bounds of a fit
+    of: str  # Laws that have such a number, for sentences
 
 
 _ROWS = (

@@ -16,11 +16,11 @@ __all__ = ["ByValue", "Card", "Shown", "brief_text", "equal_values"]
 
 @dataclass(frozen=True)
 class Card:
-    """What a result shows of itself."""
+    """The lines that a result shows: headline, rows and notes."""
 
-    headline: str  # What it is, in a line
+    headline: str  # Meaning of the result, in a line
     rows: Sequence[tuple[str, str]]  # Name and value of what matters
-    notes: Sequence[str] = ()  # What to know before using it, in sentences
+    notes: Sequence[str] = ()  # Limits of the result, in sentences
 
 
 class Shown:

@@ -25,10 +25,10 @@ OnRow = Callable[[int, Array, str], object]
 class Chain:
     """States to solve one after the other, in a form that travels to other processes."""
 
-    rows: tuple[int, ...]  # Their numbers in the sweep
+    rows: tuple[int, ...]  # Numbers of the states in the sweep
     groups: tuple[tuple[float, float, float], ...]  # Speed, load and roughness group of each
     inputs: dict[str, tuple[float, ...]]
-    si: bool  # Which of the two
+    si: bool  # Whether the inputs are in SI units
     rtol: float  # Relative tolerance of each state
     physics: Physics  # Contact law and geometry of all, and the model of the first
     parts: Parts = BASE_PARTS  # Fluid, cavitation, flow factors, solid and motion of all contacts

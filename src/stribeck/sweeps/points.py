@@ -24,10 +24,10 @@ RANDOM_KINDS: tuple[Kind, ...] = KINDS[2:]  # Kinds of design whose number of po
 
 @dataclass(frozen=True)
 class Axis:
-    """What one input takes in a design: values that are listed, or a range."""
+    """Values of one input in a design: a list or a range."""
 
     name: str  # The input
-    values: tuple[float, ...] = ()  # What is listed; empty for a range
+    values: tuple[float, ...] = ()  # Values of a list; empty for a range
     low: float = math.nan  # Ends of a range
     high: float = math.nan  # Ends of a range
     points: int = 0  # Values on a range in a grid; 0 where the design draws them

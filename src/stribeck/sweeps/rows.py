@@ -32,11 +32,11 @@ __all__ = ["Rows", "Writer", "remove_unfinished", "read_rows"]
 
 @dataclass(frozen=True)
 class Rows:
-    """What a store holds of its states."""
+    """Values, flags and texts of the states of a store."""
 
-    values: Array  # Their numbers, nan where a state is not finished
-    done: Flags  # Which are finished
-    texts: tuple[str, ...]  # What there is to say about each
+    values: Array  # Numbers of each state, nan where a state is not finished
+    done: Flags  # Whether each state is finished
+    texts: tuple[str, ...]  # Message on each state
 
 
 class Writer:

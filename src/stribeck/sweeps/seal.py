@@ -17,7 +17,7 @@ __all__ = ["MAX_FILE_BYTES", "SEALED_FILES", "SUMS_FILE", "read_sealed", "seal"]
 
 SUMS_FILE = "SHA256SUMS"
 
-# What has a checksum
+# Files with a checksum
 SEALED_FILES = ("zarr.json", "inputs/zarr.json", "inputs/c/0/0", "values/zarr.json", "text/zarr.json", "done/zarr.json")
 
 MAX_FILE_BYTES = 10_000_000  # A larger file of a store, but of its inputs, is none that a sweep wrote

@@ -19,7 +19,7 @@ __all__ = ["COEFFICIENTS", "GROUPS", "axis_of", "design_problems", "file_model",
 MAX_STATES = 1_000_000
 
 GROUPS = ("speed", "load", "roughness")
-COEFFICIENTS = ("boundary_friction", "beta")  # What friction needs beside groups
+COEFFICIENTS = ("boundary_friction", "beta")  # Inputs of friction beside groups
 
 
 @functools.cache

@@ -68,7 +68,7 @@ def solve_in_process(path: Path, chains: Chains, finished: Finished, pause: Paus
 
 
 class _Process:
-    """What a worker process knows besides its chain."""
+    """State that a worker process keeps between chains."""
 
     write: Writer
     stop: Event

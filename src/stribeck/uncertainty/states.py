@@ -143,7 +143,7 @@ def _by_quadratics(
 
 
 class _Samples(NamedTuple):
-    """What solved states and samples have in common: logarithms and log odds, which are nearly quadratic in the inputs."""
+    """Logarithms and log odds of states, which are nearly quadratic in the inputs."""
 
     y: Array
     sign: float
