@@ -133,7 +133,7 @@ def stacked(layout, gap, pressure, offset, flux_gap, leaving, dilation):
 )
 def test_the_inverse_undoes_the_derivative_of_the_residual(film, growth, cavitation, stiffening, monkeypatch):
     """The last by LU factors of all unknowns, as where a thin film is compressed."""
-    monkeypatch.setattr(line, "MOST_GROWTH", growth)
+    monkeypatch.setattr(line, "MAX_LOG_GROWTH", growth)
     mesh = replace(stiffening.mesh, restart=0.25)
     operators = Operators(mesh, Model(film, cavitation, cavity_pressure=-0.02))
     equations = Equations(operators, 1e-3, stiffening.equations.law, stiffening.flux_gap**2)

@@ -15,7 +15,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
 from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
-from stribeck.equations.point.sensitivity import STEP
+from stribeck.equations.point.sensitivity import LOG_STEP
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.quantities.part_inputs import part_names
 from stribeck.solver.point.path import next_state
@@ -88,7 +88,7 @@ def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], G
     for name in (*names, *part_names(contact)):
         if models_at_both_sides(contact, name) is not None:
             # Where an end of what it may be is nearer than the step, differentiated one step inside.
-            found[name] = partial(along, name, sum(admissible_steps(contact, name, STEP, STEP)))
+            found[name] = partial(along, name, sum(admissible_steps(contact, name, LOG_STEP, LOG_STEP)))
     return found
 
 

@@ -25,7 +25,15 @@ from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.enriched import FineOperators
 from stribeck.equations.film import gradient_in_film, slopes_in_film
 from stribeck.equations.line import LOAD
-from stribeck.equations.observables import DRAG, ROW, Observables, drag_scales, friction_integrals, friction_scale, gradients
+from stribeck.equations.observables import (
+    DRAG_ROWS,
+    ROW,
+    Observables,
+    drag_scales,
+    friction_integrals,
+    friction_scale,
+    gradients,
+)
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
@@ -34,7 +42,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
 
 __all__ = [
-    "GAPS",
+    "GAP_ROWS",
     "GAP_FLOOR",
     "ErrorEstimate",
     "FineOperators",
@@ -49,23 +57,23 @@ DEFECT_SAFETY = 3.0  # The same for the defect, of which finer nodes see only a 
 
 # If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is interpolated
 # itself: its formula is there the difference of nearly equal numbers.
-FLAT = 0.2
+CANCELLATION_BELOW = 0.2
 
 # Units in the last place by which the residual may be wrong on a whole panel; checked against meshes that should agree.
 ROUNDING_UNITS = 2.0
 
-PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
+SIGN_PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
 
-DEVIATIONS = 2.0  # Standard deviations of these changes that are stated as the error by rounding
+ROUNDING_DEVIATIONS = 2.0  # Standard deviations of these changes that are stated as the error by rounding
 
 OFFSET_FLOOR = 1e-3  # The error of the offset is relative to it where it exceeds this; it crosses zero
 
 GAP_FLOOR = 1e-3  # At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa
 
-SHARES = [ROW[name] for name in ABSOLUTE]
-GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
-FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
-POSITIONS = [ROW[row.name] for row in RUPTURE_ROWS]
+SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
+GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
+FRICTION_ROWS = [ROW["viscous_published"], ROW["viscous_balanced"]]
+POSITION_ROWS = [ROW[row.name] for row in RUPTURE_ROWS]
 
 
 @dataclass(frozen=True)
@@ -107,13 +115,13 @@ class ErrorEstimate:
     def at_nodes(self) -> float:
         """The part of it by mesh and iteration at the nodes; that of the ends of a film is :attr:`of_ends`."""
         relative = self.discretisation / self.scales
-        relative[POSITIONS[0] :] = math.nan
+        relative[POSITION_ROWS[0] :] = math.nan
         return float(np.nanmax(relative))
 
     @property
     def of_ends(self) -> float:
         """The error of the ends of a film; zero where it has none."""
-        return float(np.nanmax(self.discretisation[POSITIONS[0] :], initial=0.0))
+        return float(np.nanmax(self.discretisation[POSITION_ROWS[0] :], initial=0.0))
 
     @property
     def floor(self) -> float:
@@ -125,7 +133,7 @@ class ErrorEstimate:
 class Perturbations:
     """Possible errors of states.
 
-    ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
+    ``unknowns``, shape (1 + SIGN_PATTERNS, rows, unknowns), are changes by defect and rounding, the defect first;
     ``friction``, shape (2 or 3, rows), is by how much the friction integrals change on the finer nodes: both definitions of
     the film of the article, all three of others.
     """
@@ -147,7 +155,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
     known = equations.fluid_pressure(y) if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
-    flat = np.asarray((np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2))
+    flat = np.asarray((np.abs(h - h_star) < CANCELLATION_BELOW * h).reshape(len(y), coarse.panels, -1).all(axis=2))
     settled = _settled(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
 
     slopes = gradient_in_film(film, integral, gap, fluid, h_star)
@@ -178,7 +186,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
     pressure = equations.law.pressure(gap) + unresolved
     deflection = fine.deflection(pressure, op, d)
-    residual = np.empty((1 + PATTERNS, *y.shape))
+    residual = np.empty((1 + SIGN_PATTERNS, *y.shape))
     parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
     weights = fine.weights(op)
     load = pressure @ weights
@@ -202,7 +210,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    known_friction = observed[:, FRICTION if op.is_base_model else DRAG].T
+    known_friction = observed[:, FRICTION_ROWS if op.is_base_model else DRAG_ROWS].T
     if not equations.is_sliding:
         friction = known_friction
     elif op.is_base_model:
@@ -286,10 +294,10 @@ def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array
 
 @lru_cache(maxsize=64)
 def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
-    """Return fixed patterns of signs, each constant on a panel, shape (PATTERNS, fields + numbers)."""
-    signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (PATTERNS, panels + numbers))
+    """Return fixed patterns of signs, each constant on a panel, shape (SIGN_PATTERNS, fields + numbers)."""
+    signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (SIGN_PATTERNS, panels + numbers))
     nodal = np.repeat(signs[:, numbers:], order, axis=1)
-    return np.hstack([nodal, np.zeros((PATTERNS, fields - panels * order)), signs[:, :numbers]])
+    return np.hstack([nodal, np.zeros((SIGN_PATTERNS, fields - panels * order)), signs[:, :numbers]])
 
 
 def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
@@ -308,19 +316,19 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
         d, exits = states.equations.dilation(states.y), states.y[:, states.equations.layout.exit.start]
         stretch = stretch if d is None else d[:, 0]
         centres, positions = -exits / stretch, (positions - exits) / stretch
-    effects[:, FRICTION if op.is_base_model else DRAG, 0] += changed.friction.T
+    effects[:, FRICTION_ROWS if op.is_base_model else DRAG_ROWS, 0] += changed.friction.T
     interpolation = np.zeros_like(values)
-    interpolation[:, GAPS] = interpolation_errors(states, positions, centres).T
+    interpolation[:, GAP_ROWS] = interpolation_errors(states, positions, centres).T
     scales = np.abs(values)
     if not op.is_base_model:
-        scales[:, POSITIONS] = np.maximum(1.0, scales[:, POSITIONS])
-        scales[:, DRAG] = drag_scales(values)
-    scales[:, SHARES] = 1.0
+        scales[:, POSITION_ROWS] = np.maximum(1.0, scales[:, POSITION_ROWS])
+        scales[:, DRAG_ROWS] = drag_scales(values)
+    scales[:, SHARE_ROWS] = 1.0
     scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
     if not states.equations.is_sliding:
-        scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay_length)
+        scales[:, GAP_ROWS] = np.maximum(scales[:, GAP_ROWS], GAP_FLOOR * states.equations.law.decay_length)
     scales[scales == 0] = 1.0
-    rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
+    rounding = ROUNDING_DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
     gap = states.y[:, states.equations.layout.gap]
     minimum = ROW["minimum_gap"]
     depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)

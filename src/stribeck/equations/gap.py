@@ -13,7 +13,7 @@ from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
 
 NEWTON_STEPS = 3
-LARGEST_STEP = 0.2  # Of the search for the minimum gap, the step in half-widths of a panel
+MAX_STEP_RATIO = 0.2  # Of the search for the minimum gap, the step in half-widths of a panel
 
 
 def far_gap(x: Array) -> Array:
@@ -93,7 +93,7 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
         far = mesh.scale**2 + x * x
         slope += 2 * d * x / far
         curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / max(curvature, abs(slope) / LARGEST_STEP, 1e-300)
+        step = -slope / max(curvature, abs(slope) / MAX_STEP_RATIO, 1e-300)
         s = min(1.0, max(-1.0, s + step))
     x = c + d * s
     return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
@@ -120,7 +120,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
         far = mesh.scale**2 + x * x
         slope = np.einsum("rn,rn->r", basis[:, :-1], slopes) + 2 * d * x / far
         bend = np.einsum("rn,rn->r", basis[:, :-2], bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
+        step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / MAX_STEP_RATIO), 1e-300)
         s = np.minimum(np.maximum(s + step, -1.0), 1.0)
     x = c + d * s
     value = np.einsum("rn,rn->r", _powers(s - origin, order), polynomial) + np.log(mesh.scale**2 + x * x)

@@ -45,11 +45,11 @@ from stribeck.quantities.lazy import cached_property
 __all__ = ["LOAD", "Equations", "Operators"]
 
 # Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself.
-COLUMNS = 48
+BLOCK_COLUMNS = 48
 
 # Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
 # there is taken.
-MOST_GROWTH = 10.0
+MAX_LOG_GROWTH = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +210,7 @@ class Equations:
         if not self.film.uses_pressure:
             return False
         slopes = slopes_in_film(self.film, integral, y[..., at.gap], y[..., at.pressure], y[..., at.flux_gap])
-        return bool(np.max(np.abs(self.speed * integral(by_pressure_of(slopes)))) > MOST_GROWTH)
+        return bool(np.max(np.abs(self.speed * integral(by_pressure_of(slopes)))) > MAX_LOG_GROWTH)
 
     def jacobian(self, y: Array, units: Array | None = None, volterra: Volterra | None = None) -> Array:
         """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``.
@@ -378,9 +378,9 @@ def _combined(out: Array, first: Array, by_first: Array, second: Array, by_secon
 
     A few columns at a time are computed side by side in memory; in ``out``, whose columns have more rows, steps take longer.
     """
-    scratch = np.empty((2, COLUMNS, len(out)))
-    for start in range(0, len(out), COLUMNS):
-        part = slice(start, start + COLUMNS)
+    scratch = np.empty((2, BLOCK_COLUMNS, len(out)))
+    for start in range(0, len(out), BLOCK_COLUMNS):
+        part = slice(start, start + BLOCK_COLUMNS)
         found, taken = (each[: len(out) - start].T for each in scratch)
         np.multiply(first[:, part], by_first[part], out=found)
         np.multiply(second[:, part], by_second[part], out=taken)

@@ -36,7 +36,7 @@ __all__ = ["ROW", "Observables", "friction_integrals", "friction_scale", "gradie
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
-DRAG = [ROW[name] for name in VISCOUS]
+DRAG_ROWS = [ROW[name] for name in VISCOUS]
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,11 @@ class Observables:
 
 
 def drag_scales(values: Array) -> Array:
-    """Return what the tolerance of each drag is relative to, in the order of :data:`DRAG`; ``values`` has shape (..., rows).
+    """Return the scale of the tolerance of each drag, in the order of :data:`DRAG_ROWS`; ``values`` has shape (..., rows).
 
     Rolling friction has another sign on the other wall, and passes through zero: both count by the larger of them.
     """
-    found = np.abs(values[..., DRAG])
+    found = np.abs(values[..., DRAG_ROWS])
     published, balanced, upper = found[..., 0], found[..., 1], found[..., 2]
     np.fmax(balanced, upper, out=balanced)
     upper[...] = balanced
@@ -80,8 +80,8 @@ def drag_scales(values: Array) -> Array:
 
 def drag_parts(values: Array) -> Array:
     """Return the drags over these scales, and one for all else; an error over that is relative to the observable itself."""
-    parts, sizes, scales = np.ones_like(values), np.abs(values[..., DRAG]), drag_scales(values)
-    parts[..., DRAG] = np.divide(sizes, scales, out=np.ones_like(sizes), where=sizes > 0)
+    parts, sizes, scales = np.ones_like(values), np.abs(values[..., DRAG_ROWS]), drag_scales(values)
+    parts[..., DRAG_ROWS] = np.divide(sizes, scales, out=np.ones_like(sizes), where=sizes > 0)
     return parts
 
 

@@ -34,9 +34,9 @@ LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
 # Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
 # number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation.
-CELL, IN_CELL = 0.05, 4
+DILATION_CELL, DILATIONS_PER_CELL = 0.05, 4
 
-KEPT = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
+MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 
 
 class Dilated(NamedTuple):
@@ -222,13 +222,17 @@ class Operators:
         """Return D in a frame dilated by d, or its derivative by the logarithm of d."""
         if isinstance(self.model.solid, HalfPlane):
             return np.zeros((1, self.mesh.size)) if derivative else self.deflection
-        place = np.log(d) / CELL
+        place = np.log(d) / DILATION_CELL
         if not np.isfinite(place):  # of a series beyond its radius, which shows in the gap
             return np.full((self.mesh.size, self.mesh.size), np.nan)
         cell = round(place)
         at = place - cell
-        weights = _OF_CELL @ (np.arange(IN_CELL) * at ** np.maximum(np.arange(IN_CELL) - 1, 0) / CELL) if derivative else None
-        weights = _OF_CELL @ at ** np.arange(IN_CELL) if weights is None else weights
+        weights = (
+            _OF_CELL @ (np.arange(DILATIONS_PER_CELL) * at ** np.maximum(np.arange(DILATIONS_PER_CELL) - 1, 0) / DILATION_CELL)
+            if derivative
+            else None
+        )
+        weights = _OF_CELL @ at ** np.arange(DILATIONS_PER_CELL) if weights is None else weights
         return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
 
 
@@ -248,19 +252,19 @@ class OperatorsOfRows(Operators):
         return self._deflecting(pressure)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MAX_CELLS)
 def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
     """Return D at the dilations of a cell, each the deflection in x over d but for the logarithm of d.
 
     Kept for the last alone: they fill more memory than all else of a mesh.
     """
     found = []
-    for d in np.exp(CELL * (cell + _IN_CELL)).tolist():
+    for d in np.exp(DILATION_CELL * (cell + _IN_CELL)).tolist():
         dilated = replace(mesh, edges=d * mesh.edges, restart=d * mesh.restart)
         found.append(solid.deflection(dilated) / d + math.log(d) / math.pi * mesh.weights)
     return np.stack(found)
 
 
-_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(IN_CELL) + 0.5) / IN_CELL)
+_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(DILATIONS_PER_CELL) + 0.5) / DILATIONS_PER_CELL)
 # Coefficients of the polynomial that is one at one of these dilations and zero at the others, a row for each.
 _OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T

@@ -19,18 +19,18 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.solids.solid import lengths_of
 
 # Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors.
-LARGEST_AMPLIFICATION = 40.0
+MAX_AMPLIFICATION = 40.0
 
 # Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
 # frame: the edge of a contact of asperities stays where it is while the exit moves through it.
-FAR_APART = 0.02
+MIN_DISTANCE_RATIO = 0.02
 
 # Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too.
-STAYS = 0.2
+FIXED_FRAME_BELOW = 0.2
 
 # Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
 # that minimum: half way, by `tanh`.
-SHARPNESS = 6.0
+BLEND_WIDTH = 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,14 +64,14 @@ class Extrapolation:
         before, last = self.states[-2:]
         if not last.equations.operators.has_exit:
             return False
-        if self.restart == math.inf and max(exits) - min(exits) > FAR_APART:
+        if self.restart == math.inf and max(exits) - min(exits) > MIN_DISTANCE_RATIO:
             return True
         x = last.mesh.nodes
         in_frame, in_place = (
             np.abs(before.fields(at)[0] - last.log_gap(last.mesh)).max()
             for at in (self._in_frame(before, x), _at_place(last, before, x))
         )
-        return bool(in_place < STAYS * in_frame)
+        return bool(in_place < FIXED_FRAME_BELOW * in_frame)
 
     @cached_property
     def _moved(self) -> Array | None:
@@ -85,7 +85,7 @@ class Extrapolation:
             return None
         lowest = np.array([minimum_gap(s.mesh, s.gap)[0] for s in self.states])
         moved = np.asarray(lowest - self.weights @ lowest)
-        return moved if SHARPNESS * np.abs(moved).max() < self._edge[1] else None
+        return moved if BLEND_WIDTH * np.abs(moved).max() < self._edge[1] else None
 
     @cached_property
     def _edge(self) -> tuple[float, float]:
@@ -144,7 +144,7 @@ class Extrapolation:
         if self._moved is None:
             return [x] * len(self.states)
         middle, distance = self._edge
-        with_edge = 0.5 * (1 + np.tanh(SHARPNESS * ((x - middle) / distance - 0.5)))
+        with_edge = 0.5 * (1 + np.tanh(BLEND_WIDTH * ((x - middle) / distance - 0.5)))
         return [x + moved * with_edge for moved in self._moved]
 
     def _in_frame(self, state: State, x: Array) -> Array:
@@ -162,7 +162,7 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
     for first in range(len(history) - 1):
         points = history[first:]
         weights = extrapolation_weights([c for c, _ in points], s)
-        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
+        if np.abs(weights).sum() <= MAX_AMPLIFICATION:
             return Extrapolation(weights, [state for _, state in points])
     return history[-1][1]
 

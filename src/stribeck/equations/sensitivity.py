@@ -26,7 +26,7 @@ from stribeck.equations.state import State
 GROUPS = ("speed", "load", "roughness")
 FRICTIONS = ("viscous_published", "viscous_balanced")
 
-STEP = 1e-5  # Relative step of the central differences for the direct effect of a group
+LOG_STEP = 1e-5  # Relative step of the central differences for the direct effect of a group
 
 
 Change = tuple[Model, Model, float]
@@ -55,13 +55,13 @@ def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, A
 def _direct(state: State) -> Array:
     """Return the derivatives of observables with respect to the logarithms of the groups, at fixed unknowns."""
     steps = np.eye(len(GROUPS))
-    logs = STEP * np.concatenate([0.0 * steps[:1], -steps, steps])
+    logs = LOG_STEP * np.concatenate([0.0 * steps[:1], -steps, steps])
     moved: dict[str, Any] = {name: getattr(state.groups, name) * np.exp(logs[:, [k]]) for k, name in enumerate(GROUPS)}
     groups, load = replace(state.groups, **moved), float(state.groups.load)
     equations = replace(state.equations, speed=groups.speed, law=contact_law(groups))
     values = _values(equations, np.tile(state.y, (len(logs), 1)), load)
     behind, ahead = np.split(values[1:], 2)
-    found = (ahead - behind).T / (2 * STEP)
+    found = (ahead - behind).T / (2 * LOG_STEP)
     found[1:, GROUPS.index("load")] += 0.5 * values[0, 1:]  # friction goes with the root of the load
     return np.asarray(found)
 

@@ -22,82 +22,88 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
-from stribeck.numerics.newton import ROUNDING_SIZE, Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import NOWHERE, Mesh, adapt, base_edges, graded, highest_degree, ungraded
+from stribeck.numerics.newton import ROUNDING_STEP, Inverse, Root, StepControl, root_find
+from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
 # Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins.
-WANDERING = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
+RETRY_MONOTONE_AFTER = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
 
-FULL_STEPS = 25  # Steps after which it is: most films take less than 20, and what takes longer goes to and fro
+MONOTONE_AFTER_STEPS = 25  # Steps after which it is: most films take less than 20, and what takes longer goes to and fro
 
-CHORD = 0.25  # Contraction of the steps above which a kept factorisation is given up
+CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
 
-ROUNDING = 1e-9  # Relative rounding in the position of a panel
+ROUNDING_RTOL = 1e-9  # Relative rounding in the position of a panel
 
 # Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
 LONG_REACH_ORDER = 14
 
-END_GAIN = 5.0  # Factor by which the error of the end of a film falls when the panels beside it are halved, at least
+END_RESOLUTION_GAIN = (
+    5.0  # Factor by which the error of the end of a film falls when the panels beside it are halved, at least
+)
 
-END_TAIL = 3.5e-4  # Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels
+END_TAIL_RTOL = (
+    3.5e-4  # Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels
+)
 
-REACH_OF_LAYER = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
+LAYER_DOMAIN_RADIUS = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
 
 # Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
 # the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses.
-DRAG_OF_LAYER = 0.02
+LAYER_DRAG_FRACTION = 0.02
 
-UNSEEN = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
+UNESTIMATED_RTOL_FRACTION = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
 
-DIED_AWAY = 6.0  # Distance in thicknesses of a layer beyond which the gap is that of the layer
+LAYER_DECAY = 6.0  # Distance in thicknesses of a layer beyond which the gap is that of the layer
 
 # Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there.
-BROKEN = 30.0
+FRACTIONAL_DECAY_FACTOR = 30.0
 
-FAR_OFF = 512.0  # Distance, over the scale of the mesh, up to which panels resolve such a power
+FRACTIONAL_DECAY_RADIUS = 512.0  # Distance, over the scale of the mesh, up to which panels resolve such a power
 
 # Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
 # along the path is steeper there than the gap.
-NEAR_MINIMUM, AS_IT_MOVES = 0.05, 30.0
+MINIMUM_ZONE, MOVING_MINIMUM_FACTOR = 0.05, 30.0
 
 NODAL_NOISE = 2.0**-48  # Rounding of a nodal gap, over that gap: no mesh resolves less
 
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
-THINNEST = NODAL_NOISE / ROUNDING_SIZE
+MIN_GAP = NODAL_NOISE / ROUNDING_STEP
 
-MOST_NOISE = 0.01  # Relative rounding of a gap beyond which it counts as lost
+MAX_NODAL_NOISE = 0.01  # Relative rounding of a gap beyond which it counts as lost
 
-WIDEST_FAR = 0.5  # Half-width over the distance of panels on which a broken power is resolved
+MAX_FAR_PANEL = 0.5  # Half-width over the distance of panels on which a broken power is resolved
 
 # How often a kink is looked for between so many places of its bracket; then the line through two of them tells.
-KINK_SEARCHES, KINK_PLACES = 2, 17
+KINK_SEARCHES, KINK_SCAN_POINTS = 2, 17
 
 # Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
 # asks for no shorter ones.
-SHORTEST_OF_GUESS = 0.1
+MIN_PANEL_RATIO_OF_GUESS = 0.1
 
-COARSE = 1e-3  # Tolerance from which a mesh serves to find a state, not to read off drag
+COARSE_RTOL = 1e-3  # Tolerance from which a mesh serves to find a state, not to read off drag
 
-FORGOTTEN = 30.0  # Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure
+MEMORY_DECAY = 30.0  # Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure
 
-TAIL_OF_ERROR = 0.2  # Tolerance of a mesh for an error of one
+TAIL_RTOL_FRACTION = 0.2  # Tolerance of a mesh for an error of one
 
 # Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels].
-SEES_CONTACT = 16.0
+EXIT_PANEL_MAX = 16.0
 
-SAME_FRAME = 1.5  # Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made
+MAX_FRAME_RATIO = (
+    1.5  # Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made
+)
 
-PLACES = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
+SCAN_POINTS = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
 
-BETWEEN = 3  # Places over nodes at which the lowest pressure is sought
+SCAN_REFINEMENTS = 3  # Places over nodes at which the lowest pressure is sought
 
 # Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike.
-MOST_SUCTION = 0.5
+MAX_SUCTION_RATIO = 0.5
 
-PREDICTION_GOAL = 0.5  # Relative error of the predicted gap at which the step of a path is kept
+PREDICTION_RTOL_FRACTION = 0.5  # Relative error of the predicted gap at which the step of a path is kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +192,7 @@ class State:
         operators = self.equations.operators
         if not operators.has_exit or operators.has_reformation:
             return False
-        return bool(-self.fluid_pressure.min() > MOST_SUCTION * self.fluid_pressure.max())
+        return bool(-self.fluid_pressure.min() > MAX_SUCTION_RATIO * self.fluid_pressure.max())
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
@@ -209,7 +215,7 @@ class State:
     @property
     def effort(self) -> float:
         """What :func:`continuation.march` steers by: 4 where the cubic prediction was as good as wanted."""
-        return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_GOAL)
+        return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_RTOL_FRACTION)
 
     @cached_property
     def _log_gap(self) -> Array:
@@ -231,8 +237,8 @@ class State:
         nodes, pressure = self.mesh.nodes, self.fluid_pressure
         lowest = int(np.argmin(pressure))
         low, high = float(nodes[max(lowest - 1, 0)]), float(nodes[min(lowest + 1, nodes.size - 1)])
-        between = float(self.mesh.interpolate(pressure, np.linspace(low, high, PLACES)).min())
-        return min(between, float(self.mesh.to_order(pressure, BETWEEN * self.mesh.order).min()))
+        between = float(self.mesh.interpolate(pressure, np.linspace(low, high, SCAN_POINTS)).min())
+        return min(between, float(self.mesh.to_order(pressure, SCAN_REFINEMENTS * self.mesh.order).min()))
 
     @cached_property
     def _nodal(self) -> Array:
@@ -308,11 +314,11 @@ def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Arr
     count = len(values)
     row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
     if not len(row):
-        return NOWHERE
+        return NO_PLACES
     each = np.arange(len(row))
     low, high = x[at], x[at + 1]
     for _ in range(KINK_SEARCHES):
-        within = np.linspace(low, high, KINK_PLACES)
+        within = np.linspace(low, high, KINK_SCAN_POINTS)
         values = crossing(within.ravel()).reshape(count, *within.shape)[row, :, each].T
         at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
         low, high = within[at, each], within[at + 1, each]
@@ -336,7 +342,7 @@ def mesh_for(
     cavitation = groups.model.cavitation
     film = groups.model.film
     plateau, broken = fall_of(film, float(groups.speed))
-    turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE)
+    turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE_RTOL)
     jump, closed_at = jump_of(film), closed_gap(film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
@@ -349,14 +355,14 @@ def mesh_for(
     minimum_position = guess.minimum_position / to_guess
     strict = gap_tolerance
     if spread > 0:
-        strict = max(gap_tolerance / AS_IT_MOVES, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
+        strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
     lift = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
-    if closed_at is not None and tolerance < COARSE and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
+    if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
         sheared = float(guess.mesh.weights @ (1 / guess.gap))
 
     def asked(lengths: Array) -> Array:
@@ -386,24 +392,24 @@ def mesh_for(
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
+        at_centre = np.abs(centres - centre) <= (1 + ROUNDING_RTOL) * half_widths
         read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
         read_off &= stretch[:, 0] == 1.0
-        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, NEAR_MINIMUM))
+        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, MINIMUM_ZONE))
         weight = max(0.1, tolerance / profile_tolerance)
         parts = tolerance / np.where(moving, strict, gap_tolerance)
         shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
         if broken and stretch[0, 0] != 1.0:
-            fields[0] *= BROKEN
-        if broken and tolerance < COARSE and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
-            fields.append(asked(np.minimum(half_widths / (WIDEST_FAR * np.abs(centres)), half_widths / (2 * scale))))
+            fields[0] *= FRACTIONAL_DECAY_FACTOR
+        if broken and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
+            fields.append(asked(np.minimum(half_widths / (MAX_FAR_PANEL * np.abs(centres)), half_widths / (2 * scale))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
-            fields.append(asked(wrong / (tolerance / TAIL_OF_ERROR) ** 2))
+            fields.append(asked(wrong / (tolerance / TAIL_RTOL_FRACTION) ** 2))
         # Beside the place where the last path closes no load feels the gradient, but drag does.
         if sheared and stretch[0, 0] == 1.0:
             full = (flat < 0) | (flat > restart) if ends else np.ones_like(flat, dtype=bool)
@@ -414,7 +420,7 @@ def mesh_for(
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
             kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_RTOL_FRACTION) ** 2)
             fields.append(asked(np.sqrt(wrong)))
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
@@ -424,42 +430,42 @@ def mesh_for(
 
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
-        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
-        allowed = UNSEEN * (tolerance / TAIL_OF_ERROR) ** 2
-        dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) / allowed) ** 0.25
-        reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(DIED_AWAY * thickness, dragged))
-    if tolerance < COARSE:
-        reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
+        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_RTOL_FRACTION / tolerance
+        allowed = UNESTIMATED_RTOL_FRACTION * (tolerance / TAIL_RTOL_FRACTION) ** 2
+        dragged = reach * (LAYER_DRAG_FRACTION * min(1.0, float(central_gap.max())) / allowed) ** 0.25
+        reach = max(reach, min(reach + LAYER_DOMAIN_RADIUS * thickness, carried), min(LAYER_DECAY * thickness, dragged))
+    if tolerance < COARSE_RTOL:
+        reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if broken else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
-        reach = max(reach, FORGOTTEN * max(memories))
+        reach = max(reach, MEMORY_DECAY * max(memories))
     places: list[float] = []
     start = guess.mesh if anew and isinstance(guess, State) else None
     if ends:
         places = [0.0] if restart == math.inf else [0.0, restart]
         reach = 2 * max(reach, places[-1])
     if ends and start is not None:
-        lengths = {x * to_guess: math.inf if x else SEES_CONTACT * scale * to_guess for x in places}
+        lengths = {x * to_guess: math.inf if x else EXIT_PANEL_MAX * scale * to_guess for x in places}
         start = replace(start, edges=ungraded(start.edges, lengths) / to_guess)
-    kinks = NOWHERE
-    if (broken or closed_at is not None) and tolerance < COARSE:
+    kinks = NO_PLACES
+    if (broken or closed_at is not None) and tolerance < COARSE_RTOL:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > restart)] if ends else x
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
     # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
-    known_on = getattr(guess, "known_on", None) if tolerance >= COARSE else None
-    shortest = None if known_on is None else lambda x: SHORTEST_OF_GUESS * known_on(x * to_guess) / to_guess
+    known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
+    shortest = None if known_on is None else lambda x: MIN_PANEL_RATIO_OF_GUESS * known_on(x * to_guess) / to_guess
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
-    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
+    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL_RTOL / tolerance) / math.log(END_RESOLUTION_GAIN)))
     return replace(graded(mesh, places, levels), restart=restart)
 
 
 def _cavity_on_mesh(guess: Guess) -> float:
     """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
     length = guess.dilation * guess.restart
-    near = 1 / SAME_FRAME < guess.dilation < SAME_FRAME and math.log2(guess.restart).is_integer()
+    near = 1 / MAX_FRAME_RATIO < guess.dilation < MAX_FRAME_RATIO and math.log2(guess.restart).is_integer()
     return guess.restart if near else 2.0 ** round(math.log2(length))
 
 
@@ -495,12 +501,12 @@ def solve_state(
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)
     thinnest = float(start[equations.layout.gap].min())
-    if thinnest < THINNEST:  # steps of that size are rounding
-        tolerance = max(tolerance, min(NODAL_NOISE / thinnest, MOST_NOISE))
-    thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD)
-    full = replace(control, max_steps=min(max_steps, FULL_STEPS)) if thins else control
+    if thinnest < MIN_GAP:  # steps of that size are rounding
+        tolerance = max(tolerance, min(NODAL_NOISE / thinnest, MAX_NODAL_NOISE))
+    thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD_CONTRACTION)
+    full = replace(control, max_steps=min(max_steps, MONOTONE_AFTER_STEPS)) if thins else control
     root = root_find(equations, start, full, kept)
-    if thins and root.outcome in WANDERING:
+    if thins and root.outcome in RETRY_MONOTONE_AFTER:
         spent = root.steps
         root = root_find(equations, start, replace(control, monotone=True))
         root = replace(root, steps=spent + root.steps)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from stribeck._types import Array
 from stribeck.quantities.outcome import Outcome
 
-FASTEST_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
+MAX_STEP_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
 
 
 class State(Protocol):
@@ -124,7 +124,7 @@ def march(
                 del ahead[0]
             if on_point is not None:
                 on_point(s, state)
-            factor = min(FASTEST_GROWTH, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
+            factor = min(MAX_STEP_GROWTH, max(1.0 / MAX_STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
             if factor < 1.0:
                 length = max(steps.shortest, factor * step)
             elif may_grow:  # a step cut short by a target does not shorten the next one

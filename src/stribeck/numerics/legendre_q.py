@@ -15,11 +15,13 @@ import scipy
 
 from stribeck._types import Array
 
-UPWARD = 1.5  # Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits
+UPWARD_RECURRENCE_BELOW = (
+    1.5  # Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits
+)
 
 # Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
 # which is 1e-4 or less.
-DECAY = 14.0
+DECAY_DIGITS = 14.0
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
@@ -37,14 +39,14 @@ def ring_functions(radius: Array, source: Array, difference: Array, count: int) 
     if count == 1:
         return found
     by_distance = np.argsort(xi)
-    upward = int(np.searchsorted(xi[by_distance], UPWARD / count))
+    upward = int(np.searchsorted(xi[by_distance], UPWARD_RECURRENCE_BELOW / count))
     near = by_distance[:upward]
     found[:, near] = _upward(chi[near], first[near], second[near], count)
     start = upward
     while start < xi.size:  # groups in which the start of the downward recurrence differs by a factor of two at most
         stop = int(np.searchsorted(xi[by_distance], 2.0 * xi[by_distance[start]], side="right"))
         group = by_distance[start:stop]
-        found[:, group] = _downward(chi[group], first[group], count, int(DECAY / xi[group[0]]) + 2)
+        found[:, group] = _downward(chi[group], first[group], count, int(DECAY_DIGITS / xi[group[0]]) + 2)
         start = stop
     return found
 

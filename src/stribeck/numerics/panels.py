@@ -25,17 +25,17 @@ from stribeck.quantities.lazy import cached_property
 MAX_PANELS = 128  # Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator
 
 # Distance over the scale of a mesh below which an edge gives way to a kink: nodes between them are the same to rounding.
-SAME_PLACE = 2.0**-34
+PLACE_RTOL = 2.0**-34
 
 TAIL_HALVINGS = 12  # Panels on each side of infinity on which integrands that hold a logarithm there are summed
 
 # Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes.
-MARGIN, SHORTEST_PART = 1.05, 0.25
+SPLIT_MARGIN, MIN_SPLIT_FRACTION = 1.05, 0.25
 
 # Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding.
-CLOSEST = 2.0**-40
+MIN_DISTANCE_RATIO = 2.0**-40
 
-NOWHERE = np.empty(0)
+NO_PLACES = np.empty(0)
 
 
 class MeshTooLargeError(Exception):
@@ -293,7 +293,7 @@ def adapt(
     tolerance: float,
     start: Mesh | None = None,
     anew: bool = True,
-    places: Array = NOWHERE,
+    places: Array = NO_PLACES,
     shortest: Callable[[Array], Array] | None = None,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields.
@@ -320,7 +320,7 @@ def adapt(
         reach = float(edges[-1])
         inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
-    near = SAME_PLACE * scale
+    near = PLACE_RTOL * scale
     places = np.sort(places[(np.abs(places) > near) & (np.abs(places) < edges[-1] - near)])
     places = places[np.diff(places, prepend=-np.inf) > near]
     apart = (np.abs(edges[:, None] - places) > near).all(axis=1)
@@ -352,7 +352,7 @@ def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
 
     Zero and ``places`` stay edges.
     """
-    counts = np.fmin(1.0, np.fmax(SHORTEST_PART, MARGIN * tails ** (1 / (order - 1))))
+    counts = np.fmin(1.0, np.fmax(MIN_SPLIT_FRACTION, SPLIT_MARGIN * tails ** (1 / (order - 1))))
     fixed = [0, *(np.flatnonzero(np.isin(edges[1:-1], np.append(places, 0.0))) + 1), len(edges) - 1]
     found = []
     for first, last in pairwise(fixed):
@@ -366,7 +366,7 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
 
     They take the place of edges that rounding alone keeps apart from them: nodes between the two would be the same.
     """
-    apart = [np.abs(mesh.edges - place) > CLOSEST * abs(place) for place in places]
+    apart = [np.abs(mesh.edges - place) > MIN_DISTANCE_RATIO * abs(place) for place in places]
     edges = np.unique(np.concatenate([mesh.edges[np.all(apart, axis=0)], places]))
     halvings = 0.5 ** np.arange(1, levels + 1)
     added = [edges]
@@ -374,7 +374,7 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         at = int(np.searchsorted(edges, place))
         for side in (-1, 1):
             steps = (edges[at + side] - place) * halvings
-            added.append(place + steps[np.abs(steps) > CLOSEST * abs(place)])
+            added.append(place + steps[np.abs(steps) > MIN_DISTANCE_RATIO * abs(place)])
     return replace(mesh, edges=np.unique(np.concatenate(added)))
 
 

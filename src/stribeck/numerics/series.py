@@ -41,13 +41,15 @@ __all__ = [
     "reciprocal",
 ]
 
-LARGEST_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
+MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 
-ROUNDING = 1e-12  # Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it
+COEFFICIENT_NOISE = (
+    1e-12  # Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it
+)
 
-ON_INTERVAL = 12  # Values on an interval, unless more are asked for
+INTERVAL_ORDER = 12  # Values on an interval, unless more are asked for
 
-DENOMINATOR = 6  # Highest degree of the denominator of an extrapolation
+PADE_DENOMINATOR_DEGREE = 6  # Highest degree of the denominator of an extrapolation
 
 
 def product_term(a: Array, b: Array, k: int) -> Array:
@@ -131,7 +133,7 @@ class Samples:
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
 
 
-def interval(reach: float, count: int = ON_INTERVAL, degree: int | None = None) -> Samples:
+def interval(reach: float, count: int = INTERVAL_ORDER, degree: int | None = None) -> Samples:
     """Return the samples of a real function up to a distance ``reach``, for the polynomial of a degree nearest to its values.
 
     It goes through all of them by default.  A degree hardly above the orders asked for leaves out more of what is not smooth.
@@ -169,14 +171,14 @@ def implicit_series(
     return found
 
 
-def radius(coefficients: Array, reach: float = 1.0, rounding: float = ROUNDING) -> float:
+def radius(coefficients: Array, reach: float = 1.0, rounding: float = COEFFICIENT_NOISE) -> float:
     """Return about the radius of convergence of series: that by which their coefficients fall."""
     order = len(coefficients) - 1
     size = np.abs(coefficients[1:]).reshape(order, -1).max(axis=1)
     k = np.arange(order // 2 + 1, order + 1)
     told = k[size[k - 1] > rounding * reach ** -k.astype(float)]
     return float(
-        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=LARGEST_RADIUS)
+        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=MAX_RADIUS)
     )
 
 
@@ -187,7 +189,7 @@ def beyond(series: Array, t: float) -> tuple[Array, float]:
     """
     order = len(series) - 1
     scaled = series * (t ** np.arange(order + 1.0))[:, None]
-    degree = min(DENOMINATOR, (order - 1) // 2)
+    degree = min(PADE_DENOMINATOR_DEGREE, (order - 1) // 2)
     if degree < 2:
         return np.asarray(scaled.sum(axis=0)), 0.0
     best, other = _rational(scaled, degree, products := scaled @ scaled.T), _rational(scaled, degree - 1, products)

@@ -31,7 +31,7 @@ from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_o
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
-from stribeck.equations.state import THINNEST, State, is_thinning, mesh_for, solve_state
+from stribeck.equations.state import MIN_GAP, State, is_thinning, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
@@ -292,7 +292,7 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
 
 def is_lost_to_rounding(path: Path[State]) -> bool:
     """Return whether a path ends before its end, at a film of which rounding leaves few digits."""
-    return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < THINNEST
+    return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < MIN_GAP
 
 
 def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:

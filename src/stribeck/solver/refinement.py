@@ -14,7 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_GAIN, State, fall_of, is_rough, mesh_for, solve_state
+from stribeck.equations.state import END_RESOLUTION_GAIN, State, fall_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -143,7 +143,7 @@ def tolerance_factor(excess: float) -> float:
 
 def halvings_for(excess: float) -> int:
     """Return how many halvings of the panels at the film's ends reduce their error by a factor."""
-    return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_GAIN))
+    return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_RESOLUTION_GAIN))
 
 
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:

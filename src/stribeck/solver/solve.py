@@ -21,7 +21,7 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.error_estimate import SAFETY
 from stribeck.equations.observables import Observables, drag_parts
-from stribeck.equations.state import THINNEST, State
+from stribeck.equations.state import MIN_GAP, State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
@@ -250,7 +250,7 @@ def _refine_in_stages(start: State, groups: Groups, rtol: float) -> RefinedState
             best = found if _stated_error(found) < _stated_error(best) else best
     if guess is not start:
         point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
-    is_rounding = point.outcome is Outcome.ROUNDING or (best.state is not None and float(best.state.gap.min()) < THINNEST)
+    is_rounding = point.outcome is Outcome.ROUNDING or (best.state is not None and float(best.state.gap.min()) < MIN_GAP)
     # Rounding grows with the nodes: where it is what is left, a coarse mesh may know more.
     return replace(best, outcome=Outcome.ROUNDING) if is_rounding and _stated_error(best) < _stated_error(point) else point
 

@@ -26,11 +26,13 @@ __all__ = ["Capacitance", "Preconditioner"]
 
 Single = npt.NDArray[np.float32]
 
-FEW = 0.15  # Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve
+REFACTOR_FRACTION = (
+    0.15  # Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve
+)
 
-ROOM = 1.2  # Room for columns over those of the known nodes, as a few more come with each step
+STORAGE_GROWTH = 1.2  # Room for columns over those of the known nodes, as a few more come with each step
 
-AT_ONCE = 128  # Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again
+BLOCK_COLUMNS = 128  # Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again
 
 
 @dataclass(eq=False)
@@ -57,13 +59,13 @@ class Capacitance:
             return
         before, self.nodes = self.nodes.size, np.append(self.nodes, new)
         if not self.room or self.room[0].shape[1] < self.nodes.size:
-            wide = int(ROOM * self.nodes.size)
+            wide = int(STORAGE_GROWTH * self.nodes.size)
             rooms = [np.empty((self.mesh.size + last, wide), dtype=np.float32) for last in (1, 0, 0)]
             for new_room, old_room in zip(rooms, self.room, strict=False):
                 new_room[:, :before] = old_room[:, :before]
             self.room = rooms
-        for start in range(before, self.nodes.size, AT_ONCE):
-            some = slice(start, min(start + AT_ONCE, self.nodes.size))
+        for start in range(before, self.nodes.size, BLOCK_COLUMNS):
+            some = slice(start, min(start + BLOCK_COLUMNS, self.nodes.size))
             for each, part in zip(self.room, self._answers(linear, self.nodes[some]), strict=True):
                 each[:, some] = part
         self.answers, self.totals, self.gaps = (each[:, : self.nodes.size] for each in self.room)
@@ -99,7 +101,7 @@ class Capacitance:
         if self.last is not None:
             before = np.zeros(torn.size, dtype=bool)
             before[self.last.columns] = True
-            if (before != torn).sum() <= FEW * self.last.columns.size:
+            if (before != torn).sum() <= REFACTOR_FRACTION * self.last.columns.size:
                 return Preconditioner(self, linear, self.last, np.flatnonzero(torn & ~before), np.flatnonzero(before & ~torn))
         self.last = _Factors(np.flatnonzero(torn), None)
         if self.last.columns.size:

@@ -25,40 +25,41 @@ from scipy.sparse.linalg import splu
 from stribeck._types import Array, Flags
 from stribeck.equations.cavities.capacitance import Capacitance, Preconditioner
 from stribeck.equations.damping import longest_step
-from stribeck.equations.point.iteration import SMALLEST_PART, Iterated, step_size
+from stribeck.equations.point.iteration import MIN_STEP_FRACTION, Iterated, step_size
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import LOAD, Equations, Linear, Unknowns
 from stribeck.numerics.fourier_panels import lobatto, radau
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
 
-MOST_STEPS = 40  # Steps after which the iteration is given up
+MAX_STEPS = 40  # Steps after which the iteration is given up
 
-MOST_KRYLOV = 60  # Steps of GMRES for one of these
+MAX_KRYLOV_STEPS = 60  # Steps of GMRES for one of these
 
-LINEAR = 1e-3  # Relative error of a step that GMRES may leave; less near the solution
+GMRES_RTOL = 1e-3  # Relative error of a step that GMRES may leave; less near the solution
 
-LOOSE = 3e-2  # The same while nodes still break or heal
+GMRES_RTOL_ACTIVE_SET = 3e-2  # The same while nodes still break or heal
 
 # Part of the load by which what both pressures carry may miss it, over the tolerance of the gap; and the tolerance above which
 # it may be larger by their ratio, as such a state is there for comparison only.
-BALANCED, STRICT = 5e-3, 1e-6
+LOAD_RTOL_FACTOR, STRICT_RTOL = 5e-3, 1e-6
 
-UNSETTLED = 2.0  # Error that is left over the size of the last step, where torn nodes changed with it
+CONTRACTION_ACTIVE_SET = 2.0  # Error that is left over the size of the last step, where torn nodes changed with it
 
-# Part of the film pressure that GMRES may leave over the tolerance of the gap, which counts up to :data:`STRICT`: slow films
+# Part of the film pressure that GMRES may leave over the tolerance of the gap, which counts up to :data:`STRICT_RTOL`: slow
+# films
 # carry little, and a mesh for comparison would tell their flow worse than it is.
-FLUID = 10.0
+PRESSURE_RTOL_FACTOR = 10.0
 
 # Corrections by the last Jacobian of a state that is near but for its load, and the most that GMRES may leave of them.
-MOST_POLISHED, ROUGHEST = 3, 0.3
+MAX_CORRECTIONS, MAX_CORRECTION_RESIDUAL = 3, 0.3
 
 # Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one.
-FARTHEST, SWEPT = 10, 0.1
+MAX_FRONT_NODES, FRONT_STEP = 10, 0.1
 
 # Steps of GMRES for a digit from which the next step makes its own preconditioner; and from which a neighbour's capacitance
 # matrix is factorised anew.
-WORN, STALE = 4.0, 2.0
+REBUILD_PRECONDITIONER_AT, REFACTOR_AT = 4.0, 2.0
 
 
 class Passing:
@@ -178,7 +179,7 @@ def swept(gas: Array, now: Flags, before: Flags) -> Flags:
     passed on to torn neighbours, whose gas it fills.
     """
     stays, left, given = before & now, gas.copy(), np.where(before & ~now, gas, 0.0)
-    for _ in range(FARTHEST):
+    for _ in range(MAX_FRONT_NODES):
         if not given.any():
             break
         to = np.pad(stays, 1).astype(float)
@@ -200,7 +201,7 @@ def iterate_cavitated(
     tolerance: float,
     band: int,
     kept: Capacitance | None = None,
-    max_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
 ) -> Iterated:
     """Return the state of the discrete complementarity problem nearest to ``start``."""
     law, least = equations.law, equations.least
@@ -213,7 +214,7 @@ def iterate_cavitated(
     def now_torn(linear: TornLinear, flow: Array) -> Flags:
         gas = linear.passing.gas(flow) * linear.passing.weights
         found = np.asarray(gas / linear.stiffness > y.fluid - least)
-        return swept(gas, found, linear.torn) if size <= SWEPT and equations.spread is None else found
+        return swept(gas, found, linear.torn) if size <= FRONT_STEP and equations.spread is None else found
 
     def ended(outcome: Outcome) -> Iterated:
         return Iterated(complementary(y, torn, least), outcome, steps, krylov, factorisations, left, kept)
@@ -230,26 +231,28 @@ def iterate_cavitated(
             if kept is None:
                 kept = Capacitance(BandedModes(linear, band), equations.operators.mesh, y.gap.shape)
                 factorisations += 1
-            wanted = LOOSE
+            wanted = GMRES_RTOL_ACTIVE_SET
             if same:
-                wanted = min(LOOSE, max(LINEAR * min(1.0, size / LOOSE), 0.3 * tolerance / size))
+                wanted = min(
+                    GMRES_RTOL_ACTIVE_SET, max(GMRES_RTOL * min(1.0, size / GMRES_RTOL_ACTIVE_SET), 0.3 * tolerance / size)
+                )
             precondition = kept.of(linear)
-            solved = gmres(linear.product, precondition, right, wanted, MOST_KRYLOV)
+            solved = gmres(linear.product, precondition, right, wanted, MAX_KRYLOV_STEPS)
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
             step = linear.changes(solved.x, residual[0])
             part = longest_step(law, y.gap, step.gap)
-            if not part >= SMALLEST_PART:
+            if not part >= MIN_STEP_FRACTION:
                 return ended(Outcome.STALLED)
             size = step_size(law, y.gap, step.gap)
             y = y.moved(step, part)
             if part == 1.0:  # what GMRES leaves of a pressure in the cavity would break or heal nodes that hardly flow
                 y = replace(y, fluid=np.where(torn, least, y.fluid))
             steps += 1
-            if solved.steps > -WORN * math.log10(wanted):
+            if solved.steps > -REBUILD_PRECONDITIONER_AT * math.log10(wanted):
                 kept = None
-            elif kept.last is before and solved.steps > -STALE * math.log10(wanted):
+            elif kept.last is before and solved.steps > -REFACTOR_AT * math.log10(wanted):
                 kept.last = None
             size = size if part == 1.0 else max(size, 1.0)
             residual = equations.residual(y)
@@ -257,13 +260,13 @@ def iterate_cavitated(
             same = bool((now == torn).all())
             torn = now
             # Where a few nodes still break or heal the next step is smaller than this one.
-            rest = solved.left if same else UNSETTLED
+            rest = solved.left if same else CONTRACTION_ACTIVE_SET
             left = 3.0 * size * size + rest * size
             # At slow speed the film pressure is small: a step may be small for the gap and not for the pressure.
             missed = rest * float(np.abs(step.fluid).max() / max(y.fluid.max(), np.finfo(float).tiny))
-            near = part == 1.0 and left <= tolerance and missed <= FLUID * min(tolerance, STRICT)
+            near = part == 1.0 and left <= tolerance and missed <= PRESSURE_RTOL_FACTOR * min(tolerance, STRICT_RTOL)
             if near:
-                least_load = BALANCED * tolerance * max(1.0, tolerance / STRICT) * LOAD
+                least_load = LOAD_RTOL_FACTOR * tolerance * max(1.0, tolerance / STRICT_RTOL) * LOAD
                 y, residual, more = balanced(linear, precondition, complementary(y, torn, least), least_load)
                 krylov += more
                 if abs(residual[2]) <= least_load:
@@ -288,11 +291,11 @@ def balanced(
     """
     equations, torn, steps = linear.equations, y.fluid <= linear.least, 0
     residual = equations.residual(y)
-    for _ in range(MOST_POLISHED):
+    for _ in range(MAX_CORRECTIONS):
         if not abs(residual[2]) > unbalanced:
             break
-        wanted = max(LINEAR, min(ROUGHEST, 0.3 * unbalanced / abs(residual[2])))
-        solved = gmres(linear.product, precondition, linear.sources(residual, 0.0), wanted, MOST_KRYLOV)
+        wanted = max(GMRES_RTOL, min(MAX_CORRECTION_RESIDUAL, 0.3 * unbalanced / abs(residual[2])))
+        solved = gmres(linear.product, precondition, linear.sources(residual, 0.0), wanted, MAX_KRYLOV_STEPS)
         steps += solved.steps
         y = complementary(y.moved(linear.changes(solved.x, residual[0]), 1.0), torn, linear.least)
         residual = equations.residual(y)

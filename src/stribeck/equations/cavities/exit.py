@@ -25,7 +25,9 @@ from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
 
-STREAKS = 0.18  # Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns
+STREAK_ERROR_FACTOR = (
+    0.18  # Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,4 +80,4 @@ class CavitatedEquations(TornEquations):
     def shear_doubt(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h: streaks begin at a line that is known to a spacing."""
         mesh = self.operators.mesh
-        return STREAKS / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))
+        return STREAK_ERROR_FACTOR / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))

@@ -30,9 +30,9 @@ from stribeck.quantities.lazy import cached_property
 __all__ = ["ReformingEquations", "outflow"]
 
 
-DOUBT = 0.15  # Stated error of the gas over the outflow from its cell
+VOID_ERROR_FACTOR = 0.15  # Stated error of the gas over the outflow from its cell
 
-EDGE = 0.5  # Stated error of the area of a cavity over that of the cells along its edge
+AREA_ERROR_FACTOR = 0.5  # Stated error of the area of a cavity over that of the cells along its edge
 
 
 def edge_of(torn: Flags) -> Flags:
@@ -91,14 +91,14 @@ class ReformingEquations(TornEquations):
         With shear flow streaks may fill less than the whole width from the line of rupture on, which lies between nodes.
         """
         at_edge = np.maximum(0.0, 1.0 - self.film.filled(y.gap)) / y.gap * edge_of(y.fluid <= self.least)
-        return self.gas_doubt(y) + EDGE * float((at_edge @ self.operators.mesh.area_weights).sum())
+        return self.gas_doubt(y) + AREA_ERROR_FACTOR * float((at_edge @ self.operators.mesh.area_weights).sum())
 
     def gas_doubt(self, y: Unknowns) -> float:
         """Return an estimate of that by the gas: a part of the outflow, as cells do not resolve it."""
         torn, mesh = y.fluid <= self.least, self.operators.mesh
         released = np.where(torn, self.flow(y.gap, y.fluid, y.offset) / self.passing(torn).weights, 0.0)
         lost = self.film.filled(y.gap) * released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
-        return DOUBT * abs(float((lost @ mesh.area_weights).sum()))
+        return VOID_ERROR_FACTOR * abs(float((lost @ mesh.area_weights).sum()))
 
     def shear_missing(self, y: Unknowns) -> Array:
         """Return the shear over h that is missing on each ring in the dry streaks of the cavity, shape (rings,).

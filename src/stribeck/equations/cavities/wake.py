@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Indices
 from stribeck.numerics.fourier_panels import PolarMesh
 
-POINTS, WEIGHTS = legendre.leggauss(12)  # Gauss points of an integral over the angles of the wake on one ring
+GAUSS_POINTS, GAUSS_WEIGHTS = legendre.leggauss(12)  # Gauss points of an integral over the angles of the wake on one ring
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +73,12 @@ def shear_missing(
     line = rupture_line(mesh, gap, fluid)
     if line is None:
         return found
-    angle = 0.5 * line.angles[:, None] * (1.0 + POINTS)
+    angle = 0.5 * line.angles[:, None] * (1.0 + GAUSS_POINTS)
     coefficients = mesh.to_modes @ np.log(gap[:, line.rings])
     waves = np.cos(angle[:, :, None] * np.arange(mesh.modes))
     h = np.exp(np.matmul(waves, coefficients.T[:, :, None])[:, :, 0])
     r = mesh.radii[line.rings]
     at_line = line.gap_at(r[:, None] * np.sin(angle))
     wet = np.minimum(1.0, filled(at_line) * at_line / h)
-    found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ WEIGHTS * line.angles * r  # both halves of the plane
+    found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ GAUSS_WEIGHTS * line.angles * r  # both halves of the plane
     return found

@@ -22,13 +22,13 @@ from stribeck.numerics.series import implicit_series, interval
 
 __all__ = ["Expanded", "as_row", "corrected_once", "expand", "from_row"]
 
-SAMPLES = 20  # Places at which the equations are evaluated
+SAMPLE_COUNT = 20  # Places at which the equations are evaluated
 
 # Weight of one order between states over that of the order before, as the distance of states is near the radius of
 # convergence; and the largest residual that GMRES may leave in any.
-WEIGHT, LOOSEST = 0.4, 1e-4
+ORDER_RATIO, MAX_GMRES_RTOL = 0.4, 1e-4
 
-SHARE = SMOOTH.index("contact_load_share")
+SHARE_COLUMN = SMOOTH.index("contact_load_share")
 
 
 class Expanded(NamedTuple):
@@ -61,7 +61,7 @@ def expand(
 ) -> Expanded | None:
     """Return the series of a state whose film does not break."""
     op, mesh, shape = equations.operators, equations.operators.mesh, y.gap.shape
-    samples, linear = interval(reach, SAMPLES), Linear(equations, y)
+    samples, linear = interval(reach, SAMPLE_COUNT), Linear(equations, y)
     around = [beside(equations, groups_at(t)) for t in samples.places.tolist()]
     powers, nodes = samples.powers(order), y.gap.size
 
@@ -85,7 +85,7 @@ def expand(
         nonlocal found_orders
         bent = r[:nodes].reshape(shape)
         right = linear.right((bent, r[nodes:-1].reshape(shape), float(r[-1])))
-        x = solved(linear, preconditioner, right, min(LOOSEST, tolerance * WEIGHT**-found_orders))
+        x = solved(linear, preconditioner, right, min(MAX_GMRES_RTOL, tolerance * ORDER_RATIO**-found_orders))
         found_orders += 1
         if x is None:
             raise ArithmeticError
@@ -99,14 +99,14 @@ def expand(
             return None
         each = [smooth_observables(one, from_row(w, shape)) for one, w in zip(around, powers @ unknowns, strict=True)]
         values = np.array([[one[name] for name in SMOOTH] for one in each])
-        found, logs = samples.taylor(values, order), samples.taylor(np.log(values[:, SHARE]), order)
+        found, logs = samples.taylor(values, order), samples.taylor(np.log(values[:, SHARE_COLUMN]), order)
     return Expanded(unknowns, found, logs if np.isfinite(logs).all() else np.full_like(logs, np.nan))
 
 
 def corrected_once(equations: Equations, y: Unknowns, preconditioner: BandedModes) -> Array | None:
     """Return the observables, by :data:`SMOOTH`, after one Newton step; None where GMRES does not find it."""
     linear, residual = Linear(equations, y), equations.residual(y)
-    x = solved(linear, preconditioner, linear.right(residual), LOOSEST)
+    x = solved(linear, preconditioner, linear.right(residual), MAX_GMRES_RTOL)
     if x is None:
         return None
     values = smooth_observables(equations, y.moved(linear.changes(x, residual[0]), 1.0))

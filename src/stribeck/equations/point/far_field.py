@@ -23,13 +23,13 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 
-DEFLECTION = 4.0 / (3.0 * math.pi)  # b: the deflection under the load, far away, times the distance
+DEFLECTION_COEFFICIENT = 4.0 / (3.0 * math.pi)  # b: the deflection under the load, far away, times the distance
 
-POINTS = 40  # Gauss points of the integrals from the rim to infinity
+GAUSS_POINTS = 40  # Gauss points of the integrals from the rim to infinity
 
 
 def particular(
-    r: Array, offset: float, speed: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION
+    r: Array, offset: float, speed: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION_COEFFICIENT
 ) -> tuple[Array, Array]:
     """Return the factor of cos(theta) in the first part, and its derivative in r."""
     rigid = offset + 0.5 * r * r
@@ -47,7 +47,7 @@ def rates(modes: int) -> Array:
 @cache
 def _rule() -> tuple[Array, Array]:
     """Return the Gauss rule of the integrals, on 0 to 1."""
-    t, w = legendre.leggauss(POINTS)
+    t, w = legendre.leggauss(GAUSS_POINTS)
     return 0.5 * (t + 1.0), 0.5 * w
 
 
@@ -58,7 +58,12 @@ def logarithms(rim: float, speed: float, far: FarFilm = FULL_FAR_FILM) -> tuple[
 
 
 def tails(
-    rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION
+    rim: float,
+    offset: float,
+    speed: float,
+    pressure: float,
+    far: FarFilm = FULL_FAR_FILM,
+    bulge: float = DEFLECTION_COEFFICIENT,
 ) -> tuple[float, float, float]:
     """Return the parts of shear, pressure flow and moment beyond the rim, without the logarithms at infinity.
 

@@ -229,4 +229,4 @@ def is_isotropic(factors: FlowFactors) -> bool:
     return getattr(factors, "gamma", 1.0) == 1.0 and not getattr(factors, "friction_factors", False)
 
 
-PLAIN = PlainPlane()  # The fluid of the article
+ISOVISCOUS_PLANE = PlainPlane()  # The fluid of the article

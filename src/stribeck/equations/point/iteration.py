@@ -26,25 +26,25 @@ from stribeck.quantities.outcome import Outcome
 MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
 
 # Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it.
-WORN, WORN_NEAR = 12, 16
+REBUILD_AT, REBUILD_AT_NEAR_SOLUTION = 12, 16
 
-WIDEST = 16  # Band of a new preconditioner if one with a narrower band does not serve
+MAX_BAND = 16  # Band of a new preconditioner if one with a narrower band does not serve
 
-MOST_POOR = 4  # Steps that such a one may leave poorly solved
+MAX_POOR_STEPS = 4  # Steps that such a one may leave poorly solved
 
-NEAR = 0.03  # Size of a step below which the solution is near
+NEAR_SOLUTION_STEP = 0.03  # Size of a step below which the solution is near
 
-SMALLEST_PART = 1e-6  # A step damped below this part of Newton's makes no progress
+MIN_STEP_FRACTION = 1e-6  # A step damped below this part of Newton's makes no progress
 
-LINEAR = 3e-2  # Relative error of a Newton step that GMRES may leave
+GMRES_RTOL = 3e-2  # Relative error of a Newton step that GMRES may leave
 
-ACCEPTED = 0.1  # Error above which a kept preconditioner is given up
+ACCEPTED_RESIDUAL = 0.1  # Error above which a kept preconditioner is given up
 
 # Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
 # hundredths of it.
-FAR = 100.0
+DIVERGED_RESIDUAL = 100.0
 
-BENDING = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
+MAX_CURVATURE = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,10 +108,10 @@ def iterate(
             right = linear.right(residual)
             if not np.isfinite(right).all():
                 return ended(Outcome.NOT_FINITE)
-            wanted = min(LINEAR, 0.1 * size) if size < NEAR else LINEAR
+            wanted = min(GMRES_RTOL, 0.1 * size) if size < NEAR_SOLUTION_STEP else GMRES_RTOL
             solved = None
             if preconditioner is not None:
-                solved = _solved(linear, preconditioner, right, residual[0], wanted, 2 * WORN_NEAR)
+                solved = _solved(linear, preconditioner, right, residual[0], wanted, 2 * REBUILD_AT_NEAR_SOLUTION)
                 krylov += solved.steps
                 if not solved.accepted:
                     solved = None
@@ -121,16 +121,16 @@ def iterate(
                 solved = _solved(linear, preconditioner, right, residual[0], wanted, MAX_KRYLOV)
                 krylov += solved.steps
                 poor += not solved.accepted
-                if widened and poor > MOST_POOR:
+                if widened and poor > MAX_POOR_STEPS:
                     return ended(Outcome.SINGULAR)
-                if not solved.accepted and band < min(WIDEST, preconditioner.shape[0] - 1):
-                    band, widened, preconditioner = WIDEST, True, None
+                if not solved.accepted and band < min(MAX_BAND, preconditioner.shape[0] - 1):
+                    band, widened, preconditioner = MAX_BAND, True, None
                     continue
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
             step = solved.step
             part = longest_step(law, y.gap, step.gap)
-            if not part >= SMALLEST_PART:
+            if not part >= MIN_STEP_FRACTION:
                 return ended(Outcome.STALLED)
             before, size = size, step_size(law, y.gap, step.gap)
             if not math.isfinite(size):
@@ -140,11 +140,11 @@ def iterate(
             if part < 1.0:
                 size, preconditioner = max(size, 1.0), None
                 continue
-            bending = max(BENDING, min(100.0, size / before**2)) if math.isfinite(before) else BENDING
+            bending = max(MAX_CURVATURE, min(100.0, size / before**2)) if math.isfinite(before) else MAX_CURVATURE
             left = bending * size * size + solved.missed
-            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= FAR * tolerance):
+            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= DIVERGED_RESIDUAL * tolerance):
                 return ended(Outcome.CONVERGED)
-            if solved.steps > (WORN_NEAR if size < NEAR else WORN):
+            if solved.steps > (REBUILD_AT_NEAR_SOLUTION if size < NEAR_SOLUTION_STEP else REBUILD_AT):
                 preconditioner = None
         return ended(Outcome.STEP_LIMIT)
 
@@ -180,5 +180,5 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Ar
         if missed <= wanted * size or steps >= most:
             # The correction is accurate to the contraction of GMRES, which is far below one.
             x = x + correction
-            return _Step(x, linear.changes(x, shape), steps + 1, 0.1 * missed, missed <= max(wanted, ACCEPTED) * size)
+            return _Step(x, linear.changes(x, shape), steps + 1, 0.1 * missed, missed <= max(wanted, ACCEPTED_RESIDUAL) * size)
         tolerance = max(1e-9, 0.1 * wanted * size / missed)

@@ -20,28 +20,28 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
 from stribeck.equations.thinning.column import has_viscosity_at_rest
-from stribeck.equations.thinning.far_field import ROLLING, far_rate, lost
+from stribeck.equations.thinning.far_field import ROLLING_ERROR_FACTOR, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.plane import BODIES
 
-EDGE = 0.6  # Width of the smallest panel over that of the edge layer
+EDGE_WIDTH_RATIO = 0.6  # Width of the smallest panel over that of the edge layer
 
-GROWTH = 2.5  # Ratio of the widths of neighbouring panels
+PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
 
-REACH = 50.0  # Radius of the rim over the scale of the contact
+RIM_RADIUS = 50.0  # Radius of the rim over the scale of the contact
 
 # Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
 # the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim.
-THINNED_BEYOND, TORN_BEYOND, MOST_FARTHER = 1e-3, 1e-7, 6
+THINNING_AT_RIM, CAVITY_DRAG_AT_RIM, MAX_RIM_DOUBLINGS = 1e-3, 1e-7, 6
 
 # Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
 # break and heal by chance. The friction that is lost beyond a nearer rim is stated.
-FAINTEST = 1e-9
+MIN_RIM_PRESSURE = 1e-9
 
-POWER_FARTHER = 1  # Panels beyond the usual rim for a power law
+POWER_LAW_DOUBLINGS = 1  # Panels beyond the usual rim for a power law
 
 FILM_ROUNDS = 20  # Iterations for a film that is thinned by its own shear rate
 
@@ -50,11 +50,11 @@ FAR_PANELS = 2  # Panels in ln r beyond twice the scale
 CAVITY_GROWTH = 1.5  # Largest width of far panels over their radius where a film may form anew
 
 # Width of the far panels over the widest panel that a body allows near the contact, or over their radius, if larger.
-FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
+FAR_PANEL_WIDTH, FAR_PANEL_GROWTH = 4.0, 0.6
 
-MOST_BYTES = 670_000_000  # Memory that operators and preconditioner of a mesh may take
+MAX_BYTES = 670_000_000  # Memory that operators and preconditioner of a mesh may take
 
-KEPT_BYTES = 120_000_000  # Memory of the operators that are kept for later states
+MAX_CACHED_BYTES = 120_000_000  # Memory of the operators that are kept for later states
 
 EDGE_PRESSURE = 0.2  # Contact pressure at which the decay at the edge is read [p_Hz]
 
@@ -62,24 +62,24 @@ EDGE_PRESSURE = 0.2  # Contact pressure at which the decay at the edge is read [
 # Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4.
 SIDE_LOBES = 7.5
 
-MOST_MODES = 200  # The most modes of a mesh
+MAX_MODES = 200  # The most modes of a mesh
 
-COARSEST = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
+MAX_PANEL_WIDTH = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
 
 # A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
 # of an edge fall with 4.4**-n on the panels that lead to it.
-UNRESOLVED = 2.6
+MIN_NODES_PER_LAYER = 2.6
 
-NARROWEST, MOST_SPLITS = 1e-3, 16  # Width below which panels are not split [a], and the largest number of splits
+MIN_PANEL_WIDTH, MAX_SPLITS = 1e-3, 16  # Width below which panels are not split [a], and the largest number of splits
 
 
 # Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
 # this part of it at least; and by how many of them the rings between may be wider than those that the line crosses.
-PLACED, SPARE, KEPT = 1 / 64, 0.25, 6.0
+EDGE_GRID, EDGE_MARGIN, MAX_EDGE_RATIO = 1 / 64, 0.25, 6.0
 
 
 class MeshTooLargeError(Exception):
-    """A mesh would take more than :data:`MOST_BYTES`."""
+    """A mesh would take more than :data:`MAX_BYTES`."""
 
     outcome = Outcome.MESH_LIMIT
 
@@ -105,11 +105,11 @@ class Resolution:
         w = width
         while inner[-1] - w > 0.3 * w:
             inner.append(inner[-1] - w)
-            w *= GROWTH
+            w *= PANEL_GROWTH
         w = width
         while outer[-1] + 1.4 * w < 2.0:
             outer.append(outer[-1] + w)
-            w *= GROWTH
+            w *= PANEL_GROWTH
         near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), self._far
         scale = 2.0**self.doublings
         near = np.unique(np.concatenate([near * scale, [r for r in (*self.splits, *self.closing) if 0.0 < r < 2.0 * scale]]))
@@ -123,14 +123,14 @@ class Resolution:
 
     def _widest_far(self, radii: Array, widest: float) -> Array:
         """Return the largest width of far panels from these radii on."""
-        of_body = np.maximum(FAR_WIDTH * widest, FAR_GROWTH * radii)
+        of_body = np.maximum(FAR_PANEL_WIDTH * widest, FAR_PANEL_GROWTH * radii)
         return np.minimum(of_body, self.far_growth * radii)
 
     @property
     def _far(self) -> Array:
         """Radii of the far panels over the scale."""
-        ratio = (REACH / 2.0) ** (1.0 / FAR_PANELS)
-        return np.append(np.geomspace(2.0, REACH, FAR_PANELS + 1), REACH * ratio ** np.arange(1, self.farther + 1))
+        ratio = (RIM_RADIUS / 2.0) ** (1.0 / FAR_PANELS)
+        return np.append(np.geomspace(2.0, RIM_RADIUS, FAR_PANELS + 1), RIM_RADIUS * ratio ** np.arange(1, self.farther + 1))
 
     def coarser(self) -> Resolution:
         """Return a resolution coarser in radius and angle, whose results show the error of this one's."""
@@ -150,7 +150,7 @@ def film_speed(speed: float, model: Model) -> float:
         return speed
     found = speed
     for _ in range(FILM_ROUNDS):  # a thinner film is sheared faster
-        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING) / film_scale(found)])
+        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING_ERROR_FACTOR) / film_scale(found)])
         found = math.sqrt(found * speed * float(film.law.stress(rate)[0][0] / rate[0]))
     return found
 
@@ -171,7 +171,7 @@ RIGID_CAVITATED = 0.2249  # Height of a rigid ball over the square of the speed 
 
 RIGID_SUCTION = 0.1  # Largest suction behind a rigid ball times its height to the power 3/2, over the speed group
 
-QUIET = 0.03  # Suction at the rim over that of a cavity, at most
+RIM_SUCTION = 0.03  # Suction at the rim over that of a cavity, at most
 
 
 def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[float, float]:
@@ -185,19 +185,19 @@ def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[fl
         height = max(height, decay)
     scale = math.sqrt(1.0 + 2.0 * height)
     scale = 1.0 if scale < 1.5 else scale
-    return min(0.5, EDGE * max(speed**0.4, decay ** (2.0 / 3.0))), scale
+    return min(0.5, EDGE_WIDTH_RATIO * max(speed**0.4, decay ** (2.0 / 3.0))), scale
 
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
     """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
-    return fewest_modes(speed, law) > MOST_MODES
+    return fewest_modes(speed, law) > MAX_MODES
 
 
 def fewest_modes(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> float:
     """Return the number of modes with which all but the minimum of a film that is thicker than roughness is good to 1e-2."""
-    width = layout(speed, law, model)[0] / EDGE
+    width = layout(speed, law, model)[0] / EDGE_WIDTH_RATIO
     is_smooth = film_scale(film_speed(speed, model)) > float(np.max(law.decay_length))
-    return COARSEST * SIDE_LOBES * width**-0.675 if is_smooth else 0.0
+    return MAX_PANEL_WIDTH * SIDE_LOBES * width**-0.675 if is_smooth else 0.0
 
 
 def lift(speed: float, model: Model) -> float:
@@ -226,26 +226,26 @@ def farther_panels(speed: float, model: Model) -> int:
     film, needed = model.film, 0.0
     if not speed > 0.0:
         return 0
-    ratio = REACH / 2.0
+    ratio = RIM_RADIUS / 2.0
     if isinstance(film, ShearThinning):
         # A film that ends has no far film that thins.
         per_panel = 1.0 if model.cavitation is Cavitation.EXIT else ratio ** (2.0 / FAR_PANELS)
-        most = TORN_BEYOND if model.cavitation is Cavitation.EXIT else THINNED_BEYOND
-        for needed in range(MOST_FARTHER if has_viscosity_at_rest(film.law) else POWER_FARTHER + 1):
-            part = lost(film.law, far_rate(film.law, film.slide, speed, REACH * ratio ** (needed / FAR_PANELS)))
+        most = CAVITY_DRAG_AT_RIM if model.cavitation is Cavitation.EXIT else THINNING_AT_RIM
+        for needed in range(MAX_RIM_DOUBLINGS if has_viscosity_at_rest(film.law) else POWER_LAW_DOUBLINGS + 1):
+            part = lost(film.law, far_rate(film.law, film.slide, speed, RIM_RADIUS * ratio ** (needed / FAR_PANELS)))
             if part <= most * per_panel**needed:
                 break
     if model.cavitation is Cavitation.EXIT:
-        needed = min(needed, math.floor(_panels_to((speed / FAINTEST) ** (1 / 3))))
+        needed = min(needed, math.floor(_panels_to((speed / MIN_RIM_PRESSURE) ** (1 / 3))))
     if model.cavity_pressure < 0.0:
-        radius = (0.8 * speed / (QUIET * -model.cavity_pressure)) ** (1 / 3)
+        radius = (0.8 * speed / (RIM_SUCTION * -model.cavity_pressure)) ** (1 / 3)
         needed = max(needed, _panels_to(radius))
-    return int(np.clip(math.ceil(needed), 0, MOST_FARTHER))
+    return int(np.clip(math.ceil(needed), 0, MAX_RIM_DOUBLINGS))
 
 
 def _panels_to(radius: float) -> float:
     """Return how many panels beyond the usual rim reach to a radius."""
-    return FAR_PANELS * math.log(radius / REACH) / math.log(REACH / 2.0)
+    return FAR_PANELS * math.log(radius / RIM_RADIUS) / math.log(RIM_RADIUS / 2.0)
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw, least: float = -0.4) -> bool:
@@ -265,11 +265,11 @@ def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: 
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
     near = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9)
-    narrowest = np.full(mesh.panels, NARROWEST)
+    narrowest = np.full(mesh.panels, MIN_PANEL_WIDTH)
     for inner, outer in zip(found.closing[::2], found.closing[1::2], strict=True):  # a kink, which no halves resolve
-        narrowest[(mesh.edges[:-1] >= inner) & (mesh.edges[1:] <= outer)] = 4.0 * PLACED
-    poor = np.flatnonzero(near & (tail > UNRESOLVED**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
-    if poor.size == 0 or len(found.splits) > MOST_SPLITS:
+        narrowest[(mesh.edges[:-1] >= inner) & (mesh.edges[1:] <= outer)] = 4.0 * EDGE_GRID
+    poor = np.flatnonzero(near & (tail > MIN_NODES_PER_LAYER**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
+    if poor.size == 0 or len(found.splits) > MAX_SPLITS:
         return found
     middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
     return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
@@ -283,16 +283,16 @@ def with_closing(found: Resolution, mesh: PolarMesh, gap: Array) -> Resolution:
     """
     closed_at = closed_gap(found.model.film)
     crossed = [] if closed_at is None else rings_crossed(mesh, gap, closed_at)
-    step = PLACED * 2.0**found.doublings
+    step = EDGE_GRID * 2.0**found.doublings
     known = list(zip(found.closing[::2], found.closing[1::2], strict=True))
     if len(known) == len(crossed) and all(
-        a <= inner and outer <= b and b - a <= outer - inner + KEPT * step
+        a <= inner and outer <= b and b - a <= outer - inner + MAX_EDGE_RATIO * step
         for (a, b), (inner, outer) in zip(known, crossed, strict=True)
     ):
         return found
     edges: list[float] = []
     for inner, outer in crossed:
-        low, high = step * math.floor(inner / step - SPARE), step * math.ceil(outer / step + SPARE)
+        low, high = step * math.floor(inner / step - EDGE_MARGIN), step * math.ceil(outer / step + EDGE_MARGIN)
         if edges and low <= edges[-1]:
             edges[-1] = high
         else:
@@ -342,7 +342,7 @@ def operators_of(found: Resolution, mesh: PolarMesh | None = None) -> Operators:
     operators = Operators(found.mesh if mesh is None else mesh, found.model.solid)
     with _lock:
         operators = _kept.setdefault(found, operators)
-        while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > KEPT_BYTES:
+        while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > MAX_CACHED_BYTES:
             _kept.popitem(last=False)
         return operators
 

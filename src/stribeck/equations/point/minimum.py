@@ -10,11 +10,11 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 
-STEPS = 12  # Newton steps towards a minimum
+MAX_STEPS = 12  # Newton steps towards a minimum
 
-SETTLED = 1e-7  # Length of the last step over the spacing of nodes: the next would change the value by its square only
+CONVERGED_STEP = 1e-7  # Length of the last step over the spacing of nodes: the next would change the value by its square only
 
-CANDIDATES = 3  # Number of nodes from which the search starts: the lowest of those below their neighbours
+MAX_CANDIDATES = 3  # Number of nodes from which the search starts: the lowest of those below their neighbours
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def minimum_gap(mesh: PolarMesh, h: Array) -> Minimum:
     neighbours = [padded[1 + i : h.shape[0] + 1 + i, 1 + j : h.shape[1] + 1 + j] for i in (-1, 0, 1) for j in (-1, 0, 1)]
     lowest = (h <= np.min(neighbours, axis=0)) & (h < 3.0 * h[angle, radius])
     places = np.argwhere(lowest)
-    places = places[np.argsort(h[lowest])][:CANDIDATES]
+    places = places[np.argsort(h[lowest])][:MAX_CANDIDATES]
     coefficients = mesh.to_modes @ h
     found = [_descend(mesh, coefficients, mesh.radii[i], mesh.angles[j], False) for j, i in places]
     return min([*found, centre(mesh, h)], key=lambda one: one.gap)
@@ -78,7 +78,7 @@ def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, 
     """Return the minimum near a node, by Newton steps that may cross into neighbouring panels."""
     orders = np.arange(mesh.modes, dtype=np.float64)
     best, here, fields = Minimum(np.inf, radius, angle), -1, coefficients
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         panel = min(max(int(mesh.edges.searchsorted(radius, side="right")) - 1, 0), mesh.panels - 1)
         if panel != here:
             here, fields = panel, _derivatives(mesh, coefficients, panel)
@@ -92,7 +92,7 @@ def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, 
         eigenvalues, vectors = np.linalg.eigh(scaled)
         downhill = vectors @ ((vectors.T @ (slope * limits)) / np.maximum(np.abs(eigenvalues), 1e-14 * abs(value)))
         length = float(np.abs(downhill).max())
-        if length < SETTLED:
+        if length < CONVERGED_STEP:
             break
         step = -limits * downhill / max(1.0, length)
         radius = float(radius + step[0])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from stribeck.contacts.model import Model
-from stribeck.equations.point.films import PLAIN, NewtonianPlane, PlaneFilm
+from stribeck.equations.point.films import ISOVISCOUS_PLANE, NewtonianPlane, PlaneFilm
 from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.plane import ThinningPlane
 from stribeck.fluids.cavitation import Cavitation
@@ -20,7 +20,7 @@ PLANES: dict[type, Callable[[Any], PlaneFilm]] = {Newtonian: NewtonianPlane, She
 
 def plane_of(film: Film) -> PlaneFilm:
     """Return the flow in the plane of a film; a KeyError for one that has none."""
-    return PLAIN if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
+    return ISOVISCOUS_PLANE if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
 
 
 def has_far_film(model: Model) -> bool:

@@ -22,7 +22,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
 
-__all__ = ["FINEST", "STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
+__all__ = ["MIN_RESIDUAL", "LOG_STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
@@ -30,13 +30,13 @@ Direction = Callable[[float], Groups]
 Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 """Observables of a state by name."""
 
-STEP = 1e-4  # Step of the logarithm of a group in the central differences of the residual, whose error is its square
+LOG_STEP = 1e-4  # Step of the logarithm of a group in the central differences of the residual, whose error is its square
 
-CHANGE = 1e-4  # Largest relative change of the gap in those of the observables along the change of the unknowns
+MAX_GAP_CHANGE = 1e-4  # Largest relative change of the gap in those of the observables along the change of the unknowns
 
 # Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
 # single precision, and the next round removes the error that it leaves.
-TOLERANCE, MOST, FINEST = 1e-6, 90, 1e-18
+GMRES_RTOL, MAX_KRYLOV_STEPS, MIN_RESIDUAL = 1e-6, 90, 1e-18
 
 
 def log_derivatives(
@@ -46,18 +46,18 @@ def log_derivatives(
     preconditioner: Callable[[Linear, Any], Apply],
     kept: Any = None,
     measure: Measure = observables,
-    tolerance: float = FINEST,
+    tolerance: float = MIN_RESIDUAL,
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions."""
     linear = equations.linear(y)
     precondition = preconditioner(linear, kept)
     columns: dict[str, list[float]] = {}
     for name, moved in directions.items():
-        near = [beside(equations, moved(sign * STEP)) for sign in (1.0, -1.0)]
+        near = [beside(equations, moved(sign * LOG_STEP)) for sign in (1.0, -1.0)]
         ahead, behind = (each.residual(y) for each in near)
-        shape, flow = ((a - b) / (2 * STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
-        change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * STEP))
-        lift = (near[0].least - near[1].least) / (2 * STEP) if math.isfinite(equations.least) else 0.0
+        shape, flow = ((a - b) / (2 * LOG_STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
+        change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * LOG_STEP))
+        lift = (near[0].least - near[1].least) / (2 * LOG_STEP) if math.isfinite(equations.least) else 0.0
         right = linear.sources(change, lift)
         x = solved(linear, precondition, right, tolerance)
         if x is None and kept is not None:
@@ -66,7 +66,7 @@ def log_derivatives(
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])
-        size = CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
+        size = MAX_GAP_CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
         at = [beside(equations, moved(sign * size)) for sign in (1.0, -1.0)]
         values = [measure(each, each.pinned(y.moved(dy, sign * size), y)) for each, sign in zip(at, (1.0, -1.0), strict=True)]
         for each in values[0]:
@@ -74,12 +74,12 @@ def log_derivatives(
     return {name: np.array(column) for name, column in columns.items()}
 
 
-def solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float = FINEST) -> Array | None:
+def solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float = MIN_RESIDUAL) -> Array | None:
     """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
     x, rest, left = np.zeros_like(right), right, 1.0
     while True:
-        here = max(TOLERANCE, tolerance / left)
-        found = gmres(linear.product, preconditioner, rest, here, MOST)
+        here = max(GMRES_RTOL, tolerance / left)
+        found = gmres(linear.product, preconditioner, rest, here, MAX_KRYLOV_STEPS)
         if not found.left <= 100 * here:
             return None
         x, left = x + found.x, left * here

@@ -24,8 +24,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
-from stribeck.equations.point.far_field import DEFLECTION, particular, rates
-from stribeck.equations.point.films import PLAIN, Beyond, PlaneFilm
+from stribeck.equations.point.far_field import DEFLECTION_COEFFICIENT, particular, rates
+from stribeck.equations.point.films import ISOVISCOUS_PLANE, Beyond, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane
@@ -35,7 +35,7 @@ from stribeck.solids.solid import Solid
 
 LOAD = 2.0 * np.pi / 3.0  # Load in Hertz units: the integral of the pressure
 
-USUAL_LIQUID = 25.0  # Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]
+USUAL_WETTED_RADIUS = 25.0  # Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]
 
 OFFSET_STEP = 1e-4  # Step of the offset over the square of the rim, in a central difference whose error is its square
 
@@ -50,7 +50,7 @@ class Operators:
     @property
     def bulge(self) -> float:
         """The deflection under the load, far away, times the distance."""
-        return DEFLECTION * BODIES[type(self.solid)].reaches
+        return DEFLECTION_COEFFICIENT * BODIES[type(self.solid)].reaches
 
     @cached_property
     def deflection(self) -> Array:
@@ -110,7 +110,7 @@ class Equations:
     operators: Operators
     speed: float
     law: ContactLaw
-    film: PlaneFilm = PLAIN
+    film: PlaneFilm = ISOVISCOUS_PLANE
     least: float = -np.inf
     """The lowest film pressure."""
 
@@ -135,7 +135,7 @@ class Equations:
     @property
     def drag_beyond(self) -> float:
         """An estimate of what the finite parts of friction leave out, if it is no logarithm."""
-        return self.beyond.beyond(USUAL_LIQUID).drag if self.beyond is not None and self.beyond.is_all else 0.0
+        return self.beyond.beyond(USUAL_WETTED_RADIUS).drag if self.beyond is not None and self.beyond.is_all else 0.0
 
     @cached_property
     def _more_at_rim(self) -> tuple[Array, Array]:

@@ -35,31 +35,31 @@ from stribeck.fluids.laws import RateLaw
 
 # Gauss points on each side of the smallest stress: the fewest with which columns of very different rates differ by this part
 # from those of the next rule but one.
-POINTS, ALIKE = (14, 20, 28, 40, 56), 1e-8
+QUADRATURE_POINTS, CONVERGED = (14, 20, 28, 40, 56), 1e-8
 
 # Slips, rates that the pressure gradient alone would make at the walls, and angles between them, of these columns.
-SAMPLE = np.array(
+SAMPLE_STATES = np.array(
     [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
 ).T
 
-SPACING = 0.0025  # Of the table of a law in ln(stress): cubics between its points are good to 1e-13
+LOG_SPACING = 0.0025  # Of the table of a law in ln(stress): cubics between its points are good to 1e-13
 
 # Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate; and
 # the highest rate of the table.
-NEWTONIAN, WITHOUT_PLATEAU, HIGHEST = 1e-9, 1e-60, 1e13
+NEWTONIAN_BELOW, NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE = 1e-9, 1e-60, 1e13
 
 # Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below.
-POWER = 1e-2
+POWER_LAW_TOLERANCE = 1e-2
 
-CLOSE = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
+CONVERGED_STEP = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
 
-NEAR = 0.3  # Change of the stress over the largest stress up to which first order is a good start
+TRUST_LOG_RADIUS = 0.3  # Change of the stress over the largest stress up to which first order is a good start
 
-LONGEST = 1.0  # Step over the largest stress at most
+MAX_LOG_STEP = 1.0  # Step over the largest stress at most
 
-OVERSHOT = 0.9  # Slope of the potential after a step, over that before it, from which the step was too long
+OVERSHOOT_FRACTION = 0.9  # Slope of the potential after a step, over that before it, from which the step was too long
 
-MOST_STEPS = 80
+MAX_STEPS = 80
 
 TINY = 1e-150
 
@@ -79,21 +79,21 @@ class FlowCurve:
     lowest: float  # Logarithm of the smallest stress of the table
     log_fluidity: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
     slopes: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
-    points: int = POINTS[0]  # Of the rule across the film that the law needs
+    points: int = QUADRATURE_POINTS[0]  # Of the rule across the film that the law needs
 
     def __call__(self, square: Array) -> tuple[Array, Array]:
         """Return ``x/g`` and the derivative of its logarithm by ``ln g`` at squares of stresses."""
-        place = (0.5 * np.log(np.maximum(square, TINY**2)) - self.lowest) / SPACING
+        place = (0.5 * np.log(np.maximum(square, TINY**2)) - self.lowest) / LOG_SPACING
         inside = np.nan_to_num(np.clip(place, 0.0, self.slopes.size - 1.000001))  # place is nan where the stress is
         i = inside.astype(np.intp)
         t = inside - i
-        y, s = self.log_fluidity, self.slopes * SPACING
+        y, s = self.log_fluidity, self.slopes * LOG_SPACING
         left, right, s_left, s_right = y[i], y[i + 1], s[i], s[i + 1]
         rise = right - left
         bend, twist = 3 * rise - 2 * s_left - s_right, s_left + s_right - 2 * rise
         log = left + t * (s_left + t * (bend + t * twist))
-        slope = (s_left + t * (2 * bend + 3 * t * twist)) / SPACING
-        log += (place - inside) * (SPACING * slope)
+        slope = (s_left + t * (2 * bend + 3 * t * twist)) / LOG_SPACING
+        log += (place - inside) * (LOG_SPACING * slope)
         return np.exp(log), slope
 
 
@@ -106,20 +106,20 @@ def has_viscosity_at_rest(law: RateLaw) -> bool:
 @lru_cache(maxsize=32)
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
-    slowest = law.plateau * NEWTONIAN if law.plateau > 0 else WITHOUT_PLATEAU
-    ends = np.array([slowest if has_viscosity_at_rest(law) else POWER, HIGHEST])
+    slowest = law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU
+    ends = np.array([slowest if has_viscosity_at_rest(law) else POWER_LAW_TOLERANCE, MAX_RATE])
     lowest, highest = np.log(law.stress(ends)[0])
-    stress = np.exp(lowest + SPACING * np.arange(int((highest - lowest) / SPACING) + 2))
+    stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
     rate = law.rate(stress)
     curve = FlowCurve(float(lowest), np.log(rate / stress), stress / (rate * law.stress(rate)[1]) - 1)
-    slip, wall, angle = SAMPLE
+    slip, wall, angle = SAMPLE_STATES
     slope = 2 * law.stress(wall)[0] * np.stack([np.cos(angle), np.sin(angle)])
     sample = slope, np.stack([slip, np.zeros_like(slip)])
-    found = [_solved(law, replace(curve, points=points), *sample).carried for points in POINTS]
-    for coarse, fine, points in zip(found, found[2:], POINTS, strict=False):
-        if (np.hypot(*(coarse - fine)) <= ALIKE * np.hypot(*fine)).all():
+    found = [_solved(law, replace(curve, points=points), *sample).carried for points in QUADRATURE_POINTS]
+    for coarse, fine, points in zip(found, found[2:], QUADRATURE_POINTS, strict=False):
+        if (np.hypot(*(coarse - fine)) <= CONVERGED * np.hypot(*fine)).all():
             return replace(curve, points=points)
-    return replace(curve, points=POINTS[-1])
+    return replace(curve, points=QUADRATURE_POINTS[-1])
 
 
 class Column(NamedTuple):
@@ -151,17 +151,17 @@ def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Ar
     left = np.flatnonzero(np.isfinite(slope).all(axis=0) & np.isfinite(slip).all(axis=0) & np.isfinite(at).all(axis=0))
     here = _Integrals.at(curve, at[:, left], slope[:, left], slip[:, left])
     part = np.ones(left.size)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if not left.size:
             break
-        done = (here.size < CLOSE) & (part == 1.0)
+        done = (here.size < CONVERGED_STEP) & (part == 1.0)
         if done.any():
             found[:, left[done]] = here.of(done).ending()
             left, here, part = left[~done], here.of(~done), part[~done]
             continue
         there = _Integrals.at(curve, here.mean + part * here.step, here.slope, here.slip)
         before, after = (here.missing * here.step).sum(axis=0), -(there.missing * here.step).sum(axis=0)
-        too_far = ~(after <= OVERSHOT * before)
+        too_far = ~(after <= OVERSHOOT_FRACTION * before)
         part = np.where(too_far, 0.5 * part, 1.0)
         here = there if not too_far.any() else here.where(too_far, there)
     return Column(found[:2], found[2:4], found[4:7], found[7:11].reshape(2, 2, n), found[11:])
@@ -217,7 +217,7 @@ class _Integrals(NamedTuple):
         largest = np.sqrt(np.maximum(*(((mean + side * slope) ** 2).sum(axis=0) for side in (-0.5, 0.5))))
         size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
         size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
-        step = step * np.minimum(1.0, LONGEST / np.maximum(size, TINY))
+        step = step * np.minimum(1.0, MAX_LOG_STEP / np.maximum(size, TINY))
         zeroth, first, second = matrices
         return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, zeroth, first, second, missing, step, size)
 

@@ -29,22 +29,24 @@ from stribeck.numerics.fourier_panels import radau
 from stribeck.quantities.lazy import cached_property
 
 # Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end.
-ANGLES, MOST_DEGREE, ROUNDS, ALIKE = 20, 5, 40, 1e-9
+ANGLE_COUNT, MAX_DEGREE, MAX_ROUNDS, CONVERGED = 20, 5, 40, 1e-9
 
 # Factor of the sources that a power of v needs, over the lost part, below which it is left out: near a power with which the
 # pressure falls without sources, rounds go astray.
-RESONANT = 20.0
+RESONANCE_FACTOR = 20.0
 
-LEAST = 1e-9  # Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves
+MIN_LOST_FRACTION = (
+    1e-9  # Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves
+)
 
 FIRST_ORDER = 1e-6  # Lost part at which its power is read
 
 
 # Stated error of the friction over the speed, the lost part at the rim and the offset over the square of the rim; it is up to
 # 5 for Cross's law with powers from 0.1 to 0.8.
-OFFSET = 12.0
+OFFSET_ERROR_FACTOR = 12.0
 
-ROLLING = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
+ROLLING_ERROR_FACTOR = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
 
 
 def lost(law: RateLaw, rate: float) -> float:
@@ -54,7 +56,7 @@ def lost(law: RateLaw, rate: float) -> float:
 
 def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
     """Return the rate at a radius far from the contact, over that of the relaxation time."""
-    return 2.0 * law.time * speed * max(abs(slide), ROLLING) / radius**2
+    return 2.0 * law.time * speed * max(abs(slide), ROLLING_ERROR_FACTOR) / radius**2
 
 
 class _Film(NamedTuple):
@@ -80,15 +82,15 @@ class FarThinned(BeyondRim):
         rate = far_rate(self.law, self.slide, self.speed, self.rim)
         while lost(self.law, rate) > FIRST_ORDER:
             rate *= 0.1
-        return math.log2(lost(self.law, 2.0 * rate) / lost(self.law, rate)) if self.lost > LEAST else 2.0
+        return math.log2(lost(self.law, 2.0 * rate) / lost(self.law, rate)) if self.lost > MIN_LOST_FRACTION else 2.0
 
     @cached_property
     def degree(self) -> int:
         """The degree of the polynomial."""
-        powers = (2.0 * self.power * np.arange(1, MOST_DEGREE + 2)[:, None]) ** 2
-        resonance = np.abs(powers - 9.0 - np.arange(1, ANGLES, 2) ** 2).min(axis=1)
-        poor = np.flatnonzero(resonance < RESONANT * self.lost)
-        return max(0, int(poor[0]) - 1) if poor.size else MOST_DEGREE
+        powers = (2.0 * self.power * np.arange(1, MAX_DEGREE + 2)[:, None]) ** 2
+        resonance = np.abs(powers - 9.0 - np.arange(1, ANGLE_COUNT, 2) ** 2).min(axis=1)
+        poor = np.flatnonzero(resonance < RESONANCE_FACTOR * self.lost)
+        return max(0, int(poor[0]) - 1) if poor.size else MAX_DEGREE
 
     @property
     def drag(self) -> float:
@@ -97,7 +99,7 @@ class FarThinned(BeyondRim):
 
     def doubt(self, offset: float) -> float:
         """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
-        return OFFSET * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
+        return OFFSET_ERROR_FACTOR * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
 
     @cached_property
     def at_rim_by_offset(self) -> tuple[Waves, Waves]:
@@ -122,9 +124,9 @@ class FarThinned(BeyondRim):
     @cached_property
     def _film(self) -> _Film:
         law, speed, rim = self.law, self.speed, self.rim
-        theta, modes = (np.arange(ANGLES) + 0.5) * math.pi / ANGLES, np.arange(ANGLES)
+        theta, modes = (np.arange(ANGLE_COUNT) + 0.5) * math.pi / ANGLE_COUNT, np.arange(ANGLE_COUNT)
         cosines, sines = (each(np.multiply.outer(theta, modes)) for each in (np.cos, np.sin))
-        to_cosines, to_sines = cosines * (2.0 / ANGLES), sines * (2.0 / ANGLES)
+        to_cosines, to_sines = cosines * (2.0 / ANGLE_COUNT), sines * (2.0 / ANGLE_COUNT)
         to_cosines[:, 0] *= 0.5
         v, _, derivative = _grid(self.degree)
         along_r = -2.0 * self.power * (np.eye(v.size) + v[:, None] ** 2 * derivative / v)
@@ -134,8 +136,8 @@ class FarThinned(BeyondRim):
         along = np.stack([np.tile(np.cos(theta), (v.size, 1)), np.tile(-np.sin(theta), (v.size, 1))])
         plain = 0.8 * speed * np.stack([3.0 * along[0], -along[1]])
         slip = -(2.0 * speed * law.time * self.slide) / scale * along
-        found = np.zeros((v.size, ANGLES))
-        for _ in range(ROUNDS):
+        found = np.zeros((v.size, ANGLE_COUNT))
+        for _ in range(MAX_ROUNDS):
             before = found
             gradient = plain + np.stack([(along_r @ found - 3.0 * found) @ cosines.T, -(found * modes) @ sines.T])
             flow = column(law, (3.0 * law.time / scale * gradient).reshape(2, -1), slip.reshape(2, -1))
@@ -144,11 +146,11 @@ class FarThinned(BeyondRim):
             leaving = 3.0 * radial + along_r @ radial + modes * angular
             found = np.zeros_like(before)
             found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
-            if np.abs(found - before).max() <= ALIKE * speed:
+            if np.abs(found - before).max() <= CONVERGED * speed:
                 break
         shear = pull(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
         shear *= 0.5 * scale / (law.time * speed) if self.slide else 1.0
-        drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLES)
+        drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLE_COUNT)
         return _Film(found, radial, (along_r @ found)[-1], drag)
 
 

@@ -32,17 +32,20 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.quantities.lazy import cached_property
 
 # Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends.
-ANGLES, STEPS, ALIKE = 64, 40, 1e-11
+ANGLE_COUNT, MAX_STEPS, CONVERGED = 64, 40, 1e-11
 
-DIFFERENCE, PART = 1e-6, 1e-3  # Step of the derivative by a coefficient, and change of the gap for that by the offset
+DIFFERENCE_STEP, DIFFERENCE_FLOOR = (
+    1e-6,
+    1e-3,
+)  # Step of the derivative by a coefficient, and change of the gap for that by the offset
 
 # Smallest stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same over
 # the square of the part by which the gap differs.
-KNOWN, SECOND = 3e-6, 50.0
+FAR_DRAG_RTOL, OFFSET_ERROR = 3e-6, 50.0
 
 
 # Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is.
-STEEP, NEAR = 0.2, 1.5
+STEEP_EXPONENT, STEEP_ERROR_FACTOR = 0.2, 1.5
 
 
 class _Similar(NamedTuple):
@@ -89,10 +92,10 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
 
     found = start
     left = equations(found[None])[0][0]
-    for _ in range(STEPS):
-        moved = found + np.concatenate([DIFFERENCE * np.eye(found.size), -DIFFERENCE * np.eye(found.size)])
+    for _ in range(MAX_STEPS):
+        moved = found + np.concatenate([DIFFERENCE_STEP * np.eye(found.size), -DIFFERENCE_STEP * np.eye(found.size)])
         values = equations(moved)[0]
-        jacobian = (values[: found.size] - values[found.size :]).T / (2.0 * DIFFERENCE)
+        jacobian = (values[: found.size] - values[found.size :]).T / (2.0 * DIFFERENCE_STEP)
         step, length = np.linalg.solve(jacobian, -left), 1.0
         while length > 1e-3:
             there = equations((found + length * step)[None])[0][0]
@@ -102,7 +105,7 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
         else:
             break
         found, left = found + length * step, there
-        if np.abs(left).max() <= ALIKE:
+        if np.abs(left).max() <= CONVERGED:
             break
     _, radial, flow = equations(found[None])
     shear = pull(flow, np.stack([np.cos(theta), -np.sin(theta)]), slide) / (1.0 if slide else 1.0 + part)
@@ -110,16 +113,18 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
 
 
 @lru_cache(maxsize=64)
-def similar(law: Any, slide: float, angles: int = ANGLES) -> tuple[_Similar, _Similar]:
+def similar(law: Any, slide: float, angles: int = ANGLE_COUNT) -> tuple[_Similar, _Similar]:
     """Return the film of a law, and its change by the part by which the gap differs."""
     start, nothing = np.zeros(angles // 2), np.zeros(angles // 2)
     start[0] = -1.2  # of a Newtonian fluid
-    if law.exponent < STEEP:
-        start = similar(replace(law, exponent=NEAR * law.exponent), slide, angles)[0].pressure
+    if law.exponent < STEEP_EXPONENT:
+        start = similar(replace(law, exponent=STEEP_ERROR_FACTOR * law.exponent), slide, angles)[0].pressure
     found = _solved(law, slide, start, None, 0.0, nothing)
     angular = _flux(law, slide, found.pressure[None], nothing[None], 0.0)[1][0]
-    below, above = (_solved(law, slide, found.pressure, found, part, angular) for part in (-PART, PART))
-    double = 2.0 * PART
+    below, above = (
+        _solved(law, slide, found.pressure, found, part, angular) for part in (-DIFFERENCE_FLOOR, DIFFERENCE_FLOOR)
+    )
+    double = 2.0 * DIFFERENCE_FLOOR
     pressure, flux = ((getattr(above, name) - getattr(below, name)) / double for name in ("pressure", "flux"))
     return found, _Similar(pressure, flux, (above.shear - below.shear) / double)
 
@@ -144,7 +149,7 @@ class FarPower(BeyondRim):
 
     @cached_property
     def _film(self) -> tuple[_Similar, _Similar]:
-        return self._film_by(ANGLES)
+        return self._film_by(ANGLE_COUNT)
 
     @cached_property
     def _known(self) -> float:
@@ -152,10 +157,10 @@ class FarPower(BeyondRim):
 
         Where a wall rests a stress has a kink along the angle, and the modes fall off slowly, the slower the smaller n.
         """
-        half = self._film_by(ANGLES // 2)[0]
+        half = self._film_by(ANGLE_COUNT // 2)[0]
         film, q = self._film[0], 2.0 - 2.0 * self.exponent
         pressure = abs(film.pressure[0] - half.pressure[0]) * (0.25 + 0.5 / q)
-        return max(KNOWN, abs(film.shear - half.shear) / (2.0 * math.pi * q) + float(pressure))
+        return max(FAR_DRAG_RTOL, abs(film.shear - half.shear) / (2.0 * math.pi * q) + float(pressure))
 
     @property
     def drag(self) -> float:
@@ -164,7 +169,7 @@ class FarPower(BeyondRim):
 
     def doubt(self, offset: float) -> float:
         """Return an estimate of the error of the friction."""
-        return self.drag * (self._known + SECOND * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
+        return self.drag * (self._known + OFFSET_ERROR * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
 
     @property
     def _unit(self) -> float:

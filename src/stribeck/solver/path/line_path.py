@@ -12,14 +12,14 @@ from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
+from stribeck.equations.error_estimate import GAP_FLOOR, GAP_ROWS, FineOperators
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import DRAG, ROW, drag_scales
+from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
 from stribeck.equations.state import State, fall_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.series import ROUNDING, beyond, interval, radius
+from stribeck.numerics.series import COEFFICIENT_NOISE, beyond, interval, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
@@ -118,7 +118,7 @@ class LineProblem:
     @cached_property
     def sign_changing(self) -> Flags:
         """The offset and positions, at rest the gaps too."""
-        return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNCONTROLLED_COLUMNS, *([] if self.moves else GAPS)])
+        return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNCONTROLLED_COLUMNS, *([] if self.moves else GAP_ROWS)])
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of errors: the observables, bounded from below if they may vanish."""
@@ -126,10 +126,10 @@ class LineProblem:
         found[:, SHARE_COLUMNS] = 1.0
         found[:, ROW["exit_position"] :] = 1.0
         found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], MIN_OFFSET_SCALE)
-        found[:, DRAG] = drag_scales(values)
+        found[:, DRAG_ROWS] = drag_scales(values)
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
-            found[:, GAPS] = np.maximum(found[:, GAPS], GAP_FLOOR * kappa[:, None])
+            found[:, GAP_ROWS] = np.maximum(found[:, GAP_ROWS], GAP_FLOOR * kappa[:, None])
         found[found == 0] = 1.0
         return found
 
@@ -221,7 +221,7 @@ class LineProblem:
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
         """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SERIES_COLUMNS] / self.scales(found.observables[:1], np.array([s]))[:, SERIES_COLUMNS]
-        rounding = max(ROUNDING, NOISE_RTOL_FRACTION * self.tolerance)
+        rounding = max(COEFFICIENT_NOISE, NOISE_RTOL_FRACTION * self.tolerance)
         return min(radius(each, reach, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:

@@ -12,7 +12,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.expansion import SHARE, corrected_once, expand, from_row
+from stribeck.equations.point.expansion import SHARE_COLUMN, corrected_once, expand, from_row
 from stribeck.equations.point.observables import SMOOTH, identity_error, minima
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside
@@ -157,9 +157,9 @@ class PointProblem:
                 break
         series, logs = found.observables, np.full_like(found.observables, np.nan)
         series[0] = values
-        if values[SHARE] > 0:
-            logs[:, SHARE] = found.log_share
-            logs[0, SHARE] = math.log(values[SHARE])
+        if values[SHARE_COLUMN] > 0:
+            logs[:, SHARE_COLUMN] = found.log_share
+            logs[0, SHARE_COLUMN] = math.log(values[SHARE_COLUMN])
         errors = np.array([state.absolute_errors[name] for name in SMOOTH]) / scales[0]
         return Expansion(s, PointPoint(without_factors(state), found.unknowns), series, logs, errors, known)
 

@@ -15,8 +15,8 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.cavities.cavitated import iterate_cavitated, just_above
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
-from stribeck.equations.point.iteration import WIDEST, Iterated, distance, iterate
-from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
+from stribeck.equations.point.iteration import MAX_BAND, Iterated, distance, iterate
+from stribeck.equations.point.mesh_choice import MAX_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Operators, Unknowns
 from stribeck.fluids.cavitation import Cavitation
@@ -84,7 +84,7 @@ def band_for(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> int:
     band = 5 if like > NEWTONIAN_SPEED_RATIO * speed else THINNING_BAND
     is_smooth = float(np.max(law.decay_length)) <= like**0.6
     if is_smooth and like < 1e-3:
-        band = max(band, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
+        band = max(band, int(min(MAX_BAND, round(5.0 * (1e-3 / like) ** 0.17))))
     narrows = model.cavitation is not Cavitation.NONE and not (is_smooth and like < COUPLED_BELOW_SPEED)
     return band - CAVITATION_BAND_CUT if narrows else band
 
@@ -115,7 +115,7 @@ def solve_level(
     tolerance: float,
     kept: Any = None,
     max_steps: int = 40,
-    largest: float = MOST_BYTES,
+    largest: float = MAX_BYTES,
     predicted: Unknowns | None = None,
 ) -> Level:
     """Return the state on a mesh, from unknowns on any mesh or those ``predicted`` on this one, whichever is closer."""

@@ -16,9 +16,9 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
 from stribeck.equations.point.mesh_choice import (
-    EDGE,
-    MOST_BYTES,
-    MOST_MODES,
+    EDGE_WIDTH_RATIO,
+    MAX_BYTES,
+    MAX_MODES,
     SIDE_LOBES,
     MeshTooLargeError,
     Resolution,
@@ -287,7 +287,7 @@ def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: 
     for_minimum = modes_for(level, 0.5 * slack * rtol / SAFETY_TRUNCATION_ANGLE)
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), for_minimum, 8)
     if level.contact_pressure.max() < 1e-3:
-        width = layout(ahead * level.equations.speed, level.equations.law, level.resolution.model)[0] / EDGE
+        width = layout(ahead * level.equations.speed, level.equations.law, level.resolution.model)[0] / EDGE_WIDTH_RATIO
         modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
     degree = min(MAX_DEGREE, max(7, degree))
     return limit_modes(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
@@ -379,8 +379,8 @@ def choose_next_meshes(pair: Pair, rtol: float, band: int, slack: float) -> tupl
     if wanted.splits != now.splits:
         return wanted, None
     nested = replace(now, degree=now.degree + FINER_DEGREE_STEP, modes=2 * math.ceil(0.5 * FINER_MODES_RATIO * now.modes))
-    enough = wanted.degree <= nested.degree <= MAX_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MOST_MODES
-    if wanted != now and enough and bytes_of(nested, band) <= MOST_BYTES:
+    enough = wanted.degree <= nested.degree <= MAX_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MAX_MODES
+    if wanted != now and enough and bytes_of(nested, band) <= MAX_BYTES:
         return nested, pair.fine
     return wanted, None
 
@@ -414,9 +414,9 @@ def next_resolution(pair: Pair, rtol: float, band: int, slack: float) -> Resolut
 
 
 def limit_modes(wanted: Resolution, band: int) -> Resolution:
-    """Return a resolution with at most as many modes as memory and :data:`MOST_MODES` allow."""
-    wanted = replace(wanted, modes=min(wanted.modes, MOST_MODES))
-    while bytes_of(wanted, band) > MOST_BYTES and wanted.modes > 16:
+    """Return a resolution with at most as many modes as memory and :data:`MAX_MODES` allow."""
+    wanted = replace(wanted, modes=min(wanted.modes, MAX_MODES))
+    while bytes_of(wanted, band) > MAX_BYTES and wanted.modes > 16:
         wanted = replace(wanted, modes=2 * ((wanted.modes - 1) // 2))
     return wanted
 

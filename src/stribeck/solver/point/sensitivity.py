@@ -16,7 +16,7 @@ from stribeck.equations.cavities.capacitance import Capacitance
 from stribeck.equations.cavities.cavitated import TornLinear
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.sensitivity import FINEST, Direction, Measure, log_derivatives
+from stribeck.equations.point.sensitivity import MIN_RESIDUAL, Direction, Measure, log_derivatives
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.krylov import Apply
 from stribeck.quantities.outputs import GROUPS
@@ -40,7 +40,7 @@ def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Me
 
 
 def derivatives_along(
-    state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = FINEST
+    state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = MIN_RESIDUAL
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions, to a relative tolerance."""
     pair = state.work
