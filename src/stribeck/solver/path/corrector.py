@@ -7,28 +7,24 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
-from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, order_for, verify
+from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
 MAX_STEPS_ON_KEPT_MESH = 16  # Newton and chord steps after which the current mesh is given up
 COARSE_RTOL = 1e-4  # Newton tolerance of a state that only decides whether the mesh serves
 COARSE_FIRST_ABOVE = 1e-3  # Prediction error above which such a coarse state is judged before Newton's iteration goes on
 CACHED_ENTRIES = 2e7  # Matrix entries kept of former meshes' operators: those of a long curve would fill gigabytes
 RTOL_FRACTION_ON_PATH = 0.4  # While stepping, a kept mesh must resolve the gap to this fraction of rtol
-COARSEN_CHECK_STATES = 25  # States between two tests of whether a coarser mesh would do
-COARSEN_SIZE_RATIO = 0.85  # A coarser mesh is taken if it has less than this fraction of the nodes
 RELAX_FACTOR = 3.0  # Growth of mesh tolerances back to the usual ones after each new mesh
 FIRST_MINIMUM_SHIFT = 0.1  # Distance from its minimum up to which a first mesh resolves the gap: the minimum moves
 MOVING_TAIL_RATIO = 0.5  # Mesh tolerances over the usual ones where the mesh moves with the exit and the contact through it
@@ -50,7 +46,6 @@ class Corrector:
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
-        self.since_check = 0
         self.left: deque[tuple[Operators, FineOperators | None]] = deque()
         self.tolerances = self._widest
 
@@ -97,7 +92,6 @@ class Corrector:
                     own = state.corrected() if self.own_inverse else state
                     point = verify(own, groups, self.fine, self.rtol)
                     if point.outcome.ok:
-                        self._look_for_coarser(state)
                         kept = self._kept(point)
                         return point if self.own_inverse else kept
                 guess = state
@@ -134,21 +128,6 @@ class Corrector:
         self.inverse = point.state.root.inverse if same_mesh else None
         return replace(point, state=point.state.without_inverse())
 
-    def _look_for_coarser(self, state: State) -> None:
-        """Take a mesh for wider tolerances if it is clearly smaller, tested once in many states."""
-        self.since_check += 1
-        if self.since_check < COARSEN_CHECK_STATES:
-            return
-        self.since_check = 0
-        self._relax()
-        try:
-            mesh = mesh_for(state, state.groups, contact_law(state.groups), order_for(self.rtol), *self.tolerances)
-        except MeshTooLargeError:
-            return
-        if mesh.size < COARSEN_SIZE_RATIO * state.mesh.size:
-            self._change_to(Operators(mesh, state.groups.model), FineOperators(mesh))
-            self.inverse = None
-
     @property
     def _widest(self) -> tuple[float, float]:
         """Mesh tolerances of a first mesh."""
@@ -176,7 +155,6 @@ class Corrector:
             self._change_to(point.state.equations.operators, point.fine)
             self.tolerances = point.tolerances or self.tolerances
             self._relax()
-            self.since_check = 0
         kept = self._kept(point)
         return point if self.own_inverse else kept
 
