@@ -92,7 +92,7 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
             states[round(s, 9)] = solve(groups_of(row, math.exp(s), load, kappa), rtol=0.1 * rtol)
     found = [states[round(s, 9)].observables for s in log_speeds.tolist()]
     if row.geometry == "line" and row.cavitation is not Cavitation.NONE:
-        _refine_faint(row, found, log_speeds, load, kappa, rtol)
+        _resolve_small_contact_shares(row, found, log_speeds, load, kappa, rtol)
     return tabulated(row, found, log_speeds, load)
 
 
@@ -104,11 +104,11 @@ def _at_least(solving: Callable[..., Any], rtol: float) -> Any:
         return solving(rtol=3 * rtol)
 
 
-def _refine_faint(row: TableRow, found: list[Any], log_speeds: Array, load: float, kappa: float, rtol: float) -> None:
-    """Solve states whose asperities carry hardly any load from cold, in place.
-
-    Along a curve of films that end the error of their share is bounded against the whole load, not against the share.
-    """
+def _resolve_small_contact_shares(
+    row: TableRow, found: list[Any], log_speeds: Array, load: float, kappa: float, rtol: float
+) -> None:
+    """Solve states whose asperities carry hardly any load from cold, in place."""
+    # Along a curve of films that end the error of their share is bounded against the whole load, not against the share.
     for i, s in enumerate(log_speeds.tolist()):
         if found[i].contact_load_share < COLD_START_SHARE:
             groups = groups_of(row, math.exp(s), load, kappa)
@@ -165,7 +165,7 @@ def speed_range(row: TableRow, log_load: float, kappa: float, has_rest: bool = T
         gap = rest
     wedge = 2 * math.log(kappa) + math.log(5) + 2.55 * math.log(gap)
     if row.geometry == "point" and row.cavitation is not Cavitation.NONE:
-        film, last = (_slow_for_torn_film(kappa * s) for s in (gap, gap + SEGMENT_SHARES[-1]))
+        film, last = (_log_speed_of_cavitated_film(kappa * s) for s in (gap, gap + SEGMENT_SHARES[-1]))
     else:
         film, last = (math.log((kappa * s / 0.446) ** (5 / 3) + (2.88 * kappa * s) ** 1.5) for s in (gap, max(gap, 1.0)))
     half = -float(np.logaddexp(-wedge, -film))
@@ -174,11 +174,9 @@ def speed_range(row: TableRow, log_load: float, kappa: float, has_rest: bool = T
     return half - slower * math.log(60) - yielding, last + math.log(300)
 
 
-def _slow_for_torn_film(gap: float) -> float:
-    """Return the logarithm of a hundredth of the speed at which a film that breaks has a central gap.
-
-    A rigid ball has 0.2249 speed**2, so that speeds differ less than in full films, and so do the margins of a curve.
-    """
+def _log_speed_of_cavitated_film(gap: float) -> float:
+    """Return the logarithm of a hundredth of the speed at which a cavitated film has a central gap."""
+    # A rigid ball has 0.2249 speed**2, so that speeds differ less than in full films, and so do the margins of a curve.
     return math.log(0.01 / ((gap / 0.446) ** (-5 / 3) + (gap / 0.2249) ** -0.5))
 
 

@@ -30,11 +30,8 @@ def state(groups: Groups) -> PointState:
 
 
 def row(states: list[Groups]) -> list[PointState | None]:
-    """Return states of one load and roughness at ascending speeds; None where none was found.
-
-    Each is solved from its neighbour, smooth ones from cold: that costs as much, and their minima are nearer to those of fine
-    meshes.
-    """
+    """Return states of one load and roughness at ascending speeds; None where none was found."""
+    # Rough states are solved from their neighbour, smooth ones from cold: at the same cost their minima err less.
     found: list[PointState | None] = []
     before: PointState | None = None
     for groups in states:

@@ -76,11 +76,8 @@ class _Stdout(io.FileIO):
 
 
 def prepare_streams() -> None:
-    """Give a process of our own streams that are open, take any letter, and say what is wrong with stdout.
-
-    If stdout is closed, text for it then fails as on a full disk, and is not lost without a word.  Otherwise the first file
-    that is opened would take its number, and get the text of libraries.
-    """
+    """Give a process of our own streams that are open, take any letter, and say what is wrong with stdout."""
+    # Text for a closed stdout then fails as on a full disk; else the first opened file would take its number and its text.
     for number in range(3):
         try:
             os.fstat(number)

@@ -18,12 +18,10 @@ from stribeck.quantities.units import InputError
 
 
 class Progress:
-    """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect.
+    """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect."""
 
-    Ctrl-C takes effect at once, and what is solved is kept by what solves it: a second one, which might come between solving
-    and writing, changes nothing. Work of several processes ends after the present point instead, and at once when Ctrl-C comes
-    a second time. Nothing stops the writing of what is kept.
-    """
+    # Ctrl-C ends work of one process at once, and a second one changes nothing, as it might come between solving and writing;
+    # work of several processes ends after the present point, and at once with the second.  Nothing stops the writing.
 
     def __init__(self, after_point: bool = False) -> None:
         self.after_point = after_point

@@ -47,7 +47,7 @@ class ContinuedLaw:
 
     @classmethod
     def exponential(cls, separation: Array) -> ContinuedLaw:
-        """Return that of the exponential law, which is linear."""
+        """Return the continuation of the exponential law, which is linear."""
         one = np.ones_like(separation)
         return cls("exponential", False, separation, one, np.stack([-separation, -one]))
 
@@ -66,10 +66,8 @@ def _around(shape: AsperityLaw, separation: Array) -> tuple[bool, Array, Array, 
 
 
 def misfit(shape: AsperityLaw) -> float:
-    """Return about the largest difference of ln(Phi) of a law from such polynomials, by their last coefficients.
-
-    It is 2e-8 at most for laws with a formula, and 1e-5 or more for a table, at its points.
-    """
+    """Return about the largest difference of ln(Phi) of a law from its polynomials, by their last coefficients."""
+    # At most 2e-8 for laws with a formula, and 1e-5 or more for a table, at its points.
     with np.errstate(all="ignore"):  # what is not finite is no number here either
         *_, values = _around(shape, SCANNED_SEPARATIONS[SCANNED_SEPARATIONS > shape.lowest])
     return float(np.abs(chebyshev_form(values)[-3:]).max())

@@ -73,12 +73,12 @@ class FiniteSurface:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the law, and alpha."""
+        """Parameters of the base law, and alpha."""
         return {"alpha": float(self.alpha)} | ({} if self.base is None else self.base.parameters)
 
     @property
     def lowest(self) -> float:
-        """That of the law."""
+        """Lowest separation of the base law."""
         return -math.inf if self.base is None else self.base.lowest
 
     def log_pressure(self, separation: Array) -> Array:
@@ -141,7 +141,7 @@ class FiniteSurface:
         Returns
         -------
         ndarray
-            That of the base; nan where it knows none.
+            Area of the base law; nan where it gives none.
         """
         if isinstance(self.base, WithArea):
             return self.base.area_fraction_at(pressure)

@@ -263,7 +263,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
     >>> round(law.alpha, 2), round(law.beta / (1e4 * 1e-6), 2)
     (2.09, 1.43)
     """
-    integral, table = _prepared(spectrum, gamma)
+    integral, table = _unit_integral(spectrum, gamma)
     knots, coefficients, error = tabulate(integral)
     return PerssonLaw(
         alpha=integral.alpha,
@@ -308,7 +308,7 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
     With w = 1/G and the mean weighted by q^2 C w.
     Source: [Persson07].
     """
-    integral, table = _prepared(spectrum, gamma)
+    integral, table = _unit_integral(spectrum, gamma)
     return integral.alpha, integral.beta * table.lowest * table.rms_height
 
 
@@ -320,7 +320,7 @@ def check_gamma(gamma: object) -> float:
     return value
 
 
-def _prepared(spectrum: Spectrum | SelfAffine, gamma: float) -> tuple[Integral, Spectrum]:
+def _unit_integral(spectrum: Spectrum | SelfAffine, gamma: float) -> tuple[Integral, Spectrum]:
     """Return the integral for unit rms height and unit q_0, on which the shape does not depend, and the spectrum."""
     table, gamma = table_of(spectrum), check_gamma(gamma)
     unit = Spectrum(table.wavenumber / table.lowest, table.density / table.density.max()).scaled(1.0)

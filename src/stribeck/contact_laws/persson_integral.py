@@ -83,11 +83,9 @@ class Integral:
 
 
 def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:
-    """Return nodes G(q) and weights of the integral over dG/q, fine towards both ends of the spectrum.
-
-    Towards q_0 the panels shrink with G down to where J is negligible at any pressure of the table, towards q_1 down to
-    the width of the layer that counts near full contact.
-    """
+    """Return nodes G(q) and weights of the integral over dG/q, fine towards both ends of the spectrum."""
+    # Towards q_0 panels shrink with G down to where J is negligible at any pressure of the table, towards q_1 down to the
+    # width of the layer that counts near full contact.
     t, w = np.polynomial.legendre.leggauss(16)
     q, C, power = spectrum.wavenumber, spectrum.density, 4 - spectrum.exponent
     below = np.concatenate(([0.0], np.cumsum(math.pi * spectrum.stretches(3))))
@@ -135,10 +133,8 @@ def _laguerre(x: Array) -> Array:
 
 @functools.cache
 def _erf_part() -> tuple[np.polynomial.Chebyshev, float]:
-    r"""Return a polynomial for exp(t^2) K(t) up to t = 6, where K(t) is the integral of erf^2 exp(-t'^2)/t' from t, and K(0).
-
-    With z = t'^2 - t^2 the first is half the integral of exp(-z) erf^2(r)/r^2 over z, r^2 = t^2 + z, which is smooth.
-    """
+    r"""Return polynomial for exp(t^2) K(t) up to t = 6, K(t) the integral of erf^2 exp(-t'^2)/t' from t, and K(0)."""
+    # With z = t'^2 - t^2 the first is half the integral of exp(-z) erf^2(r)/r^2 over z, r^2 = t^2 + z, which is smooth.
     x, w = np.polynomial.legendre.leggauss(16)
     edges = np.linspace(0.0, 40.0, 17)
     z = (0.5 * np.diff(edges)[:, None] * (x + 1) + edges[:-1, None]).ravel()

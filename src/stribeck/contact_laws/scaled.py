@@ -89,12 +89,12 @@ class ShiftedLaw:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the shape."""
+        """Parameters of the shape."""
         return self.shape.parameters
 
     @property
     def lowest(self) -> float:
-        """That of the shape, shifted."""
+        """Lowest separation of the shape, shifted."""
         return self.shape.lowest + self.shift
 
     def log_pressure(self, separation: Array) -> Array:
@@ -120,12 +120,12 @@ class BlendedLaw:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the shape."""
+        """Parameters of the shape."""
         return self.shape.parameters
 
     @property
     def lowest(self) -> float:
-        """That of the shape."""
+        """Lowest separation of the shape."""
         return self.shape.lowest
 
     def log_pressure(self, separation: Array) -> Array:

@@ -151,10 +151,7 @@ def transition_marks(contact: Contact, definition: Definition) -> tuple[Transiti
 
 
 def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequence[float] = ()) -> tuple[float, float]:
-    """Return whole decades of speed that hold the contact and its transitions, with room on both sides, and what was measured.
-
-    As far as the table holds them [m/s].
-    """
+    """Return whole decades of speed [m/s] around the contact, its transitions and measured speeds, within the table."""
     unit = _group_per_unit(contact, "speed")
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
@@ -232,7 +229,7 @@ def solved_curve(
     return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found, doubtful=doubtful)
 
 
-def _between(speed: Array, values: Array, at: Array) -> Array:
+def _interpolate(speed: Array, values: Array, at: Array) -> Array:
     """Return values between those at some speeds, in logarithms unless some are negative."""
     from scipy.interpolate import PchipInterpolator
 
@@ -286,17 +283,15 @@ def solved_diagram(
         for drawn, solved_speeds in zip(between, lines, strict=True):
             known, inside = (np.isfinite(each) & (each > 0) for each in (solved_speeds, drawn))
             if known.sum() > 2:
-                drawn[inside] = _between(roughness[known], solved_speeds[known], shown[inside])
+                drawn[inside] = _interpolate(roughness[known], solved_speeds[known], shown[inside])
         yield Diagram(shown, between[0], between[1], between[2], part=(number + 1) / len(order))
 
 
 def _row(
     contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report, neighbour: StribeckCurve | None
 ) -> tuple[tuple[float, float, float], StribeckCurve]:
-    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve.
-
-    It is solved where the regimes of the row beside it let expect these, and beyond only where they are not there.
-    """
+    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve."""
+    # Solved where the regimes of the neighbouring row predict the transitions, and else on the whole range.
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
     whole = speeds[0] / solved.room, speeds[1] * solved.room
     for low, high in (_expected(contact.roughness, whole, neighbour), whole):

@@ -96,7 +96,7 @@ def name_of(kind: str, title: str) -> str:
 def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     """Return the name of a pinned curve: the inputs in which it differs from the start."""
     changed = [
-        f"{shown.label.lower()} {_rounded(inputs, name)}"
+        f"{shown.label.lower()} {_rounded_text(inputs, name)}"
         for name, shown in inputs.fields.items()
         if name != "speed" and getattr(inputs.contact, name) != getattr(start.contact, name, None)
     ]
@@ -112,7 +112,7 @@ def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     return unique
 
 
-def _rounded(inputs: Inputs, name: str) -> str:
+def _rounded_text(inputs: Inputs, name: str) -> str:
     """Return an input as text with four digits: a fitted one has sixteen."""
     value = getattr(inputs.contact, name)
     return "none" if value is None else si_text(float(value), name, 4, inputs.table)

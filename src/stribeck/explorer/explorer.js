@@ -20,7 +20,7 @@ window.explorerWorking = (moved, knobs) => {
 // What belongs to the contact before is pale until its own is there.
 window.explorerWaits = (words) => {
   document.querySelector(".more .waits").textContent = words;
-  document.querySelector(".more .ways").classList.toggle("old", words !== "");
+  document.querySelector(".more .margins").classList.toggle("old", words !== "");
 };
 
 const explorerSay = (message) => Quasar.Notify.create({ message, timeout: 6000, closeBtn: "Close" });

@@ -57,7 +57,7 @@ def reason(problem: Exception) -> str:
     return f"Internal error ({' '.join(repr(problem).split())[:300]})."
 
 
-def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
+def find_margins(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
     """Return the margins of a contact, or the reason why there are none."""
     try:
         if now.table.geometry == "point":
@@ -104,7 +104,7 @@ class Following:
                 self.asked = False
                 now, changes = self.inputs, self.changes
                 try:
-                    await self.answered(now, changes)
+                    await self.compute_answer(now, changes)
                     await self.page.draw(self.inputs, self.seen())
                 except Superseded:
                     continue
@@ -128,7 +128,7 @@ class Following:
         except Exception as again:
             self.page.fail(f"{reason(again)} Reload the page.")
 
-    async def answered(self, now: Inputs, changes: int) -> None:
+    async def compute_answer(self, now: Inputs, changes: int) -> None:
         """Compute the answer; where that takes longer than a moment, mark what is shown."""
         began = time.monotonic()
 
@@ -185,7 +185,7 @@ class Following:
             go_on()
             self.page.progress = f"{UPDATING_TEXT} {100 * part:.0f} %"
 
-        async def tried(part: Callable[..., Any]) -> None:
+        async def attempt(part: Callable[..., Any]) -> None:
             try:
                 await part(now, go_on)
             except Superseded:
@@ -206,7 +206,7 @@ class Following:
                 await asyncio.sleep(max(0.0, began + IDLE_SECONDS - asyncio.get_running_loop().time()))
                 self.page.show_address(f"?{url.encode(now, self.pins)}")
                 self.history.rest(now)
-                self.page.show_ways(self.history.ways)
+                self.page.show_history(self.history.steps)
                 if not done:
                     while not curve.done():
                         if self.page.progress:  # it is being solved, and does not only wait for another page
@@ -228,7 +228,7 @@ class Following:
                     self.page.show_progress()
                 parts = [self.settle_margins, self.settle_spread, self.settle_checks, self.settle_notes]
                 for part in [self.settle_map, *parts] if self.model.map_is_quick(now) else [*parts, self.settle_map]:
-                    await tried(part)
+                    await attempt(part)
             except Superseded:
                 return
 
@@ -240,7 +240,7 @@ class Following:
 
     async def settle_margins(self, now: Inputs, go_on: Callable[..., None]) -> None:
         """Show the margins to the next regimes."""
-        found = await run(self.threads.slow, ways, now, go_on, watch=go_on)
+        found = await run(self.threads.slow, find_margins, now, go_on, watch=go_on)
         if self.is_shown(now):
             self.page.show_margins(found, now)
             await self.refresh(now)

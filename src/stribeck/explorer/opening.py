@@ -53,8 +53,8 @@ async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Open
             answer = answer_of(opened.inputs)
             return opened, View(answer, curves_of(Answerer(), opened.pins, answer))
         except (InputError, SolveError) as problem:
-            told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
-            return told, View(answer_of(start))
+            shown = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
+            return shown, View(answer_of(start))
 
     opened, shown = await run(OPENING, prepare)
     return opened, shown

@@ -95,8 +95,8 @@ class Page:
     def __init__(self, now: Inputs) -> None:
         self.client = ui.context.client
         self.client_name = dumps(self.client.id)
-        self.ways_of: Inputs | None = None
-        self.ways: RegimeMargins | None = None
+        self.margins_inputs: Inputs | None = None
+        self.found_margins: RegimeMargins | None = None
         self.moved: int | None = None
         self.knobs: dict[str, Slider | ChoiceRow] = {}
         self.charts: dict[str, Chart] = {}
@@ -142,15 +142,15 @@ class Page:
             with ui.element("div").classes("side"):
                 with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
                     self.status = ui.label().classes("status").props('role="status"')
-                    with ui.element("div").classes("ways-out") as self.ways_out:
+                    with ui.element("div").classes("retry") as self.retry_row:
                         self.retry = button("Try again", "refresh", "Compute this once more")
                         self.back = button("Back", "undo", "Go back to what is shown")
-                    self.ways_out.set_visibility(False)
+                    self.retry_row.set_visibility(False)
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
                     head = f"Margins to the next regimes <span class='caption waits'>{UPDATING_TEXT}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
-                    self.margins = ui.html("", sanitize=False).classes("ways")
+                    self.margins = ui.html("", sanitize=False).classes("margins")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
                     self.diagram_head = ui.html("<h2>Regimes</h2>", sanitize=False)
                     self.chart("diagram", "Regimes over speed and roughness")
@@ -230,10 +230,10 @@ class Page:
         """Put the address into the clipboard."""
         self.client.run_javascript("explorerCopy()")
 
-    def show_ways(self, ways: dict[str, bool]) -> None:
+    def show_history(self, there: dict[str, bool]) -> None:
         """Enable what can be undone and redone."""
-        for name, there in ways.items():
-            self.history[name].set_enabled(there)
+        for name, enabled in there.items():
+            self.history[name].set_enabled(enabled)
 
     def show_choices(self, now: Inputs) -> None:
         """Show the definition of friction, and what the curve is drawn over."""
@@ -251,12 +251,12 @@ class Page:
         """Show a sentence above the numbers, in red where something went wrong."""
         self.status.text = sentence
         self.status.classes(remove="said") if bad else self.status.classes("said")
-        self.ways_out.set_visibility(False)
+        self.retry_row.set_visibility(False)
 
     def fail(self, sentence: str) -> None:
-        """Say what went wrong, and offer the ways out."""
+        """Say what went wrong, and offer to try again or to go back."""
         self.say(sentence, bad=True)
-        self.ways_out.set_visibility(True)
+        self.retry_row.set_visibility(True)
 
     def renew(self, name: str) -> None:
         """Let a field be shown anew, without mark."""
@@ -306,7 +306,7 @@ class Page:
         waits = answer.curve is None or answer.curve.stale
         source = (self.progress or UPDATING_TEXT) if waits or answer.curve is None else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
-        margins = self.ways if not self.ways_words(answer.inputs) else None
+        margins = self.found_margins if not self.margins_text(answer.inputs) else None
         return [
             (self.title, f"<b>stribeck</b> explorer<span>{escape(answer.inputs.title)}</span>"),
             (self.verdict, table.verdict_html(answer)),
@@ -323,14 +323,14 @@ class Page:
 
     def show_margins(self, found: RegimeMargins | str, now: Inputs) -> None:
         """Show the margins of inputs to the next regimes, or why there are none."""
-        self.ways_of = now
-        self.ways = None if isinstance(found, str) else found
+        self.margins_inputs = now
+        self.found_margins = None if isinstance(found, str) else found
         self.margins.content = found if isinstance(found, str) else table.margins_html(found)
         self.client.run_javascript("explorerWaits('')")
 
-    def ways_words(self, now: Inputs) -> str:
+    def margins_text(self, now: Inputs) -> str:
         """Return what stands beside the margins: whether they belong to what is shown."""
-        shown = self.ways_of
+        shown = self.margins_inputs
         same = shown is not None and all(
             getattr(shown, name) == getattr(now, name) for name in ("contact", "definition", "model", "rest")
         )
@@ -361,7 +361,7 @@ class Page:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": self.changed_knobs(now), "moved": self.moved}
         shown = seen.answer.inputs
-        frame |= {"waits": self.ways_words(shown), "geometry": shown.table.geometry}
+        frame |= {"waits": self.margins_text(shown), "geometry": shown.table.geometry}
         self.moved = None
         for element, content in self.words(seen):
             if self.shown.get(element.html_id) != content:

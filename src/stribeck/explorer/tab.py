@@ -47,7 +47,7 @@ class Tab(Following):
         self.connect()
         self.page.draw_all(self.inputs, self.seen())
         self.problems = opened.problems
-        self.page.show_ways(self.history.ways)
+        self.page.show_history(self.history.steps)
 
     def connect(self) -> None:
         """Let the elements of the page call what the user means by them."""
@@ -132,7 +132,7 @@ class Tab(Following):
         found = self.history.step(way, self.inputs)
         if found is not None:
             self.change(found)
-        self.page.show_ways(self.history.ways)
+        self.page.show_history(self.history.steps)
 
     def on_key(self, event: events.KeyEventArguments) -> None:
         """Act on a keyboard shortcut, outside fields."""

@@ -97,7 +97,7 @@ def legend(axes: Axes, **options: Any) -> None:
 
 
 def sequence(count: int) -> list[str]:
-    """Return colours for the ascending steps of a parameter, dark to light, told apart by colour-blind readers."""
+    """Return colours for the ascending steps of a parameter, dark to light, which colour-blind readers distinguish."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 

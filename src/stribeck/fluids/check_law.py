@@ -36,11 +36,11 @@ def check_law(law: Any) -> None:
         return
     if not isinstance(law, Hashable):
         raise InputError(f"{_name(law)} cannot be hashed; make it a frozen dataclass.")
-    _checked(law)
+    _check_once(law)
 
 
 @lru_cache(maxsize=64)
-def _checked(law: Any) -> None:
+def _check_once(law: Any) -> None:
     try:
         with np.errstate(all="ignore"):
             for kind, check in CHECKS.items():

@@ -75,7 +75,7 @@ class Fluid:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of its laws."""
+        """Parameters of its laws."""
         return {name: value for law in self.laws for name, value in law.parameters.items()}
 
     def at(self, units: FilmUnits, slide: float = 1.0, flow_factors: FlowFactors | None = None) -> Film:

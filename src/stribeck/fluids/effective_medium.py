@@ -24,9 +24,9 @@ from numpy.polynomial import chebyshev, legendre
 from stribeck._types import Array
 from stribeck.fluids.flow_factors import (
     MIN_FLOW_FACTOR,
+    add_floor,
     check_alpha,
-    lifted,
-    milder_roughness,
+    homotopy_roughness,
     nominal_separation,
     scaled_roughness,
     with_sigma,
@@ -104,21 +104,21 @@ class EffectiveMedium(FlowFactors):
 
     def milder(self, part: float) -> Self:
         """Return the factors of a part of the roughness."""
-        return with_sigma(self, milder_roughness(self.sigma or 0.0, part))
+        return with_sigma(self, homotopy_roughness(self.sigma or 0.0, part))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return phi_x and its slope."""
-        beyond, sigma = self._beyond(gap)
-        phi, slope = _lifted_factor().with_slope(np.log(beyond))
+        beyond, sigma = self._gap_above_percolation(gap)
+        phi, slope = _factor_table().with_slope(np.log(beyond))
         slope *= (beyond > MIN_GAP_ABOVE_PERCOLATION) & (beyond < MAX_GAP_ABOVE_PERCOLATION)
         slope /= beyond * sigma
         return phi, slope
 
     def factor(self, gap: Array) -> Array:
         """Return phi_x alone, in half the time."""
-        return _lifted_factor()(np.log(self._beyond(gap)[0]))
+        return _factor_table()(np.log(self._gap_above_percolation(gap)[0]))
 
-    def _beyond(self, gap: Array) -> tuple[Array, float]:
+    def _gap_above_percolation(self, gap: Array) -> tuple[Array, float]:
         """Return the gap over the roughness beyond the threshold, and the roughness."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
@@ -160,13 +160,13 @@ def medium_width(d: Array) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=1)
-def _lifted_factor() -> Cells:
+def _factor_table() -> Cells:
     """Return phi_x, kept above zero, a function of ln(mean gap over the roughness - threshold)."""
 
     def factor(logarithm: Array) -> Array:
         width = PERCOLATION + np.exp(logarithm)
         phi = (medium_width(nominal_separation(width))[0] / width) ** 3
-        return lifted(phi, np.zeros_like(phi))[0]
+        return add_floor(phi, np.zeros_like(phi))[0]
 
     return Cells.of(
         factor, math.log(MIN_GAP_ABOVE_PERCOLATION), math.log(MAX_GAP_ABOVE_PERCOLATION), FACTOR_CELLS, FACTOR_TERMS
@@ -180,12 +180,12 @@ def _tables() -> tuple[list[tuple[Array, Array]], tuple[Array, Array]]:
     inner = []
     for left, right in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], strict=True):
         values = _widths(0.5 * (left + right) + 0.5 * (right - left) * points)
-        inner.append(_fitted(points, values, 2 / (right - left)))
+        inner.append(_fit_polynomial(points, values, 2 / (right - left)))
     y = 0.5 * (1 + points) / TABLE_EDGES[-1] ** 2
-    return inner, _fitted(points, _widths(y**-0.5) * y**0.5, 2 * TABLE_EDGES[-1] ** 2)
+    return inner, _fit_polynomial(points, _widths(y**-0.5) * y**0.5, 2 * TABLE_EDGES[-1] ** 2)
 
 
-def _fitted(points: Array, values: Array, scale: float) -> tuple[Array, Array]:
+def _fit_polynomial(points: Array, values: Array, scale: float) -> tuple[Array, Array]:
     """Return the coefficients of a polynomial and of its derivative times ``scale``."""
     fit = chebyshev.chebfit(points, values, TABLE_COEFFICIENTS - 1)
     return np.asarray(fit, dtype=np.float64), np.asarray(chebyshev.chebder(fit) * scale, dtype=np.float64)

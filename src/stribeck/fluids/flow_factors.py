@@ -26,7 +26,7 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "lifted", "milder_roughness", "nominal_separation", "scaled_roughness"]
+__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "add_floor", "homotopy_roughness", "nominal_separation", "scaled_roughness"]
 
 MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the pressure gradient would have no bound.
 
@@ -158,7 +158,7 @@ class PatirCheng(FlowFactors):
 
     def milder(self, part: float) -> Self:
         """Return the factors of a part of the roughness."""
-        return with_sigma(self, milder_roughness(self.sigma or 0.0, part))
+        return with_sigma(self, homotopy_roughness(self.sigma or 0.0, part))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
@@ -168,13 +168,13 @@ class PatirCheng(FlowFactors):
         zero = 0.0 if self.gamma > 1 else max(0.0, math.log(C) / r)
         short = 1 + (x / (BLEND_FRACTION * (least - zero))) ** BLEND_DERIVATIVES
         y = x * short ** (-1 / BLEND_DERIVATIVES)
-        phi, rate = self._fitted(np.maximum(H, least) + y)
-        k, of_y = self._fitted(least)[1], short ** (-1 / BLEND_DERIVATIVES - 1)  # y' below H_0, and one above
+        phi, rate = self._fit(np.maximum(H, least) + y)
+        k, of_y = self._fit(least)[1], short ** (-1 / BLEND_DERIVATIVES - 1)  # y' below H_0, and one above
         phi = phi * np.exp(k * (x - y))
-        phi, slope = lifted(phi, (rate * of_y + k * (1 - of_y)) * phi)
+        phi, slope = add_floor(phi, (rate * of_y + k * (1 - of_y)) * phi)
         return phi, slope * by_gap
 
-    def _fitted(self, H: Numbers) -> tuple[Numbers, Numbers]:
+    def _fit(self, H: Numbers) -> tuple[Numbers, Numbers]:
         """Return the flow over that between smooth surfaces as fitted, and the slope of its logarithm by H."""
         _, C, r = FIT_COEFFICIENTS[self.gamma][:3]
         if self.gamma > 1:
@@ -212,11 +212,9 @@ class PatirCheng(FlowFactors):
         return np.asarray(FIT_COEFFICIENTS[self.gamma][-1] * np.exp(-0.25 * H))
 
     def jump(self, gap: Array, slide: float) -> Array | None:
-        """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet.
-
-        Nor do their slopes, nor those where the fits end: a kink k between nodes w apart puts a quadrature wrong by k w^2/12
-        at most, as a jump k w/6 does.
-        """
+        """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet."""
+        # Slopes do not meet either, nor where the fits end: a kink k between nodes w apart errs by k w^2/12 at most in a
+        # quadrature, as a jump k w/6 does.
         v = abs(slide * (2 * self.substrate_share - 1)) * (self.sigma or 0.0)
         if v == 0:
             return None
@@ -321,7 +319,7 @@ def mean_inverse_width(H: Array) -> tuple[Array, Array]:
     return value, 0.5 * span * (weights @ density_slope)
 
 
-def lifted(phi: Array, slope: Array) -> tuple[Array, Array]:
+def add_floor(phi: Array, slope: Array) -> tuple[Array, Array]:
     """Return a flow factor that stays above zero: itself far above :data:`MIN_FLOW_FACTOR`, and its slope."""
     root = np.sqrt(phi * phi + 4 * MIN_FLOW_FACTOR**2)
     found = 0.5 * (phi + root)
@@ -346,11 +344,9 @@ def scaled_roughness(alpha: float | None, units: FilmUnits) -> float:
     return alpha * units.decay_length / units.gap
 
 
-def milder_roughness(sigma: float, part: float) -> float:
-    """Return a part of a roughness: nearly none at part 0, all at 1, and every power of ten between.
-
-    The flow closes where the roughness becomes as high as the film, which may be a thousandth of it.
-    """
+def homotopy_roughness(sigma: float, part: float) -> float:
+    """Return the roughness at a part of the homotopy from smooth walls: nearly zero at part 0, the whole at 1."""
+    # Through every power of ten: the flow closes where the roughness is as high as the film, which may be far thinner.
     return sigma * math.exp(-min(HOMOTOPY_EXPONENT * (1 - part) / max(part, MIN_HOMOTOPY_PART), MAX_HOMOTOPY_EXPONENT))
 
 

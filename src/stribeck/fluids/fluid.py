@@ -23,7 +23,7 @@ Key = tuple[object, ...]  # Exact arguments of a film's last evaluation.
 
 
 def key_of(*asked: Array | Numbers | None) -> Key:
-    """Return what tells whether a film is asked for the same again; what mostly differs goes first."""
+    """Return a key of the exact arguments of a film; arguments that mostly differ go first."""
     return tuple((each.shape, each.tobytes()) if isinstance(each, np.ndarray) else each for each in asked)
 
 
@@ -97,7 +97,7 @@ class Film(Protocol):
         """Return the derivatives of both tractions, those through G included."""
 
     def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
-        """Return the drag on either wall where the film is torn.
+        """Return the drag on either wall where the film is cavitated.
 
         The liquid fills the part ``m/h`` of the width (over the density ratio), from wall to wall, and is sheared at the rate
         ``s/h`` without a pressure gradient.

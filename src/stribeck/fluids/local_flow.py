@@ -63,7 +63,7 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     here = _Walls.at(law, x, wanted)
     part = np.ones(len(r_0))
     for _ in range(MAX_STEPS):
-        ahead = _moved(law, here.x, here.g, part * here.step, here.slope)
+        ahead = _step_rates(law, here.x, here.g, part * here.step, here.slope)
         done = (part == 1.0) & (here.step_over_stress() < STEP_RTOL)
         done &= larger(ahead - here.x) < STEP_RTOL * larger(here.x)
         if done.any():
@@ -85,10 +85,7 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
 
 
 class _Walls(NamedTuple):
-    """Rates, stresses and slopes of the law at both walls, A, B, C, the step of the stresses and how much is missing.
-
-    Both walls, or A, B and C, are in the first axis.
-    """
+    """Rates, stresses and slopes of the law at both walls, A, B, C, the step of the stresses and the defect, by first axis."""
 
     x: Array
     g: Array
@@ -134,7 +131,7 @@ def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
     return np.copysign(g, rate), slope
 
 
-def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array:
+def _step_rates(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array:
     """Return the wall rates after a step of the stress: linear in the rate at the wall of the larger, else in the stress."""
     size = np.abs(x)
     bound = MAX_RATE_GROWTH * larger(x)

@@ -47,7 +47,7 @@ class _Column(NamedTuple):
 
     @property
     def as_row(self) -> _Column:
-        """The same of a single row of nodes."""
+        """Column as an array of one row of nodes."""
         if self.slopes is None:
             return _Column(self.key, self.gradient[None], None)
         by_gap, by_pressure, by_flux, _ = self.slopes
@@ -90,7 +90,7 @@ class Newtonian:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the laws."""
+        """Parameters of the laws of the film."""
         return joined_parameters(self.viscosity, self.density, self.flow)
 
     def at(self, speed: Numbers) -> Self:

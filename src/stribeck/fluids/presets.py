@@ -149,7 +149,7 @@ def water(temperature: str | float = 25.0) -> Liquid:
     InputError
         Where the temperature is impossible.
     """
-    T = _between(celsius(temperature), 0, 100)
+    T = _check_temperature(celsius(temperature), 0, 100)
     viscosity = _water(T)
     return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_EYRING_STRESS / viscosity)
 
@@ -174,7 +174,7 @@ def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0
     InputError
         Where fraction or temperature are impossible.
     """
-    C, T = to_si(weight_fraction, "number", "weight_fraction"), _between(celsius(temperature), 0, 100)
+    C, T = to_si(weight_fraction, "number", "weight_fraction"), _check_temperature(celsius(temperature), 0, 100)
     if not 0 <= C <= 1:
         raise InputError(f"weight_fraction = {show(weight_fraction)} must lie between 0 and 1: the glycerol in the weight.")
     eta_g = 12.1 * math.exp((-1233 + T) * T / (9900 + 70 * T))
@@ -189,7 +189,7 @@ def _water(T: float) -> float:
     return 1.790e-3 * math.exp((-1230 - T) * T / (36100 + 360 * T))
 
 
-def _between(T: float, low: float, high: float) -> float:
+def _check_temperature(T: float, low: float, high: float) -> float:
     if not low <= T <= high:
         raise InputError(f"temperature = {T:g} degC must lie between {low:g} and {high:g} degC, where the formula holds.")
     return T
@@ -205,7 +205,7 @@ def _silicone(grade: str | float) -> Liquid:
     return Liquid(f"silicone oil {grade:g} cSt at 25 degC", 1e-6 * grade * density, Fluid(), _SILICONE)
 
 
-def _fixed(name: str, viscosity: float, fluid: Fluid, source: str, stress: float | None = None) -> Callable[[], Liquid]:
+def _make_liquid(name: str, viscosity: float, fluid: Fluid, source: str, stress: float | None = None) -> Callable[[], Liquid]:
     liquid = Liquid(name, viscosity, fluid, source, None if stress is None else stress / viscosity)
     return lambda: liquid
 
@@ -243,21 +243,21 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
             "pao-10": Preset(
                 "PAO 10 at 40 degC",
                 {},
-                _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_EYRING_STRESS),
+                _make_liquid("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_EYRING_STRESS),
                 _OIL,
                 "40 degC, to 0.5 GPa",
             ),
             "xanthan": Preset(
                 "0.25 % xanthan in water",
                 {},
-                _fixed("0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN),
+                _make_liquid("0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN),
                 _XANTHAN,
                 "25 degC, 0.1 to 1000 1/s",
             ),
             "saliva": Preset(
                 "saliva (a model)",
                 {},
-                _fixed("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
+                _make_liquid("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
                 _SALIVA,
                 "37 degC, 10 to 1e4 1/s",
             ),

@@ -53,7 +53,7 @@ class _Local(NamedTuple):
 
     @property
     def as_row(self) -> _Local:
-        """The same of a single row of nodes."""
+        """Column as an array of one row of nodes."""
         fields = (each[None] for each in self[2:])
         return _Local(self.key, Profile(*(each[None] for each in self.flow)), *fields)
 
@@ -84,7 +84,7 @@ class ShearThinning:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the laws."""
+        """Parameters of the laws of the film."""
         return joined_parameters(self.law, self.viscosity, self.density)
 
     def at(self, speed: Numbers) -> Self:
@@ -143,12 +143,12 @@ class ShearThinning:
 
     def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return the stress at the rate ``s/h`` in the part of the width that is wet."""
-        stress, _, eta, _, rho, _, wi = self._sheared(gap, pressure)
+        stress, _, eta, _, rho, _, wi = self._couette_stress(gap, pressure)
         return np.asarray(eta * stress / wi * np.minimum(1.0, flux_gap / (rho * gap)))
 
     def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
         """Return the derivatives of :meth:`cavity_traction`."""
-        stress, slope, eta, eta_slope, rho, rho_slope, wi = self._sheared(gap, pressure)
+        stress, slope, eta, eta_slope, rho, rho_slope, wi = self._couette_stress(gap, pressure)
         wet = np.minimum(1.0, flux_gap / (rho * gap))
         partly = np.where(wet < 1, 1.0, 0.0)
         traction = eta * stress / wi * wet
@@ -185,7 +185,7 @@ class ShearThinning:
         wi = np.maximum(self.law.time * np.asarray(self.speed), MIN_WEISSENBERG)
         return np.asarray(wi * eta)
 
-    def _sheared(self, gap: Array, pressure: Array | None) -> tuple[Array, ...]:
+    def _couette_stress(self, gap: Array, pressure: Array | None) -> tuple[Array, ...]:
         """Return stress and slope of the film sheared by the walls alone, and what the pressure does."""
         of_pressure = self._of_pressure(gap, pressure)
         wi = self._weissenberg(of_pressure[0])
@@ -225,7 +225,7 @@ class ShearThinning:
         r_0 = -wi * self.slide / gap
         r_1 = 0.5 * wi * (gap - flux_gap / rho) / gap**2
         r_1 = np.where((r_0 == 0) & (r_1 == 0), MIN_WEISSENBERG * wi / gap, r_1)
-        start = None if last is None or last.r_0.shape != r_0.shape else _scaled(last, r_0, r_1)
+        start = None if last is None or last.r_0.shape != r_0.shape else _first_guess(last, r_0, r_1)
         shape = r_0.shape
         flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
         flow = Profile(*(each.reshape(shape) for each in flow))
@@ -236,7 +236,7 @@ class ShearThinning:
         return found
 
 
-def _scaled(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:
+def _first_guess(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:
     """Return wall rates to start from: those of the last film, to first order, or the Newtonian ones where that is far."""
     flow = last.flow
     mean, slope = flow.change(r_0 - last.r_0, r_1 - last.r_1)

@@ -39,11 +39,11 @@ def check_solid(name: str, solid: Any) -> None:
         raise InputError(f"{name} = {show(solid)} lacks {', '.join(lacking)}. {GUIDE}")
     if not isinstance(solid, Hashable):
         raise InputError(f"{name} = {show(solid)} cannot be hashed; make it a frozen dataclass.")
-    _checked(solid)
+    _check_once(solid)
 
 
 @lru_cache(maxsize=64)
-def _checked(solid: Solid) -> None:
+def _check_once(solid: Solid) -> None:
     try:
         longest = _longest(solid.scaled(1.0))
         for length in (longest,) if longest > 0 else CHECKED_LENGTHS.tolist():
@@ -119,7 +119,7 @@ def _deflection(solid: Solid, mesh: Mesh) -> Array:
 
 
 def _longest(solid: Solid) -> float:
-    """Return the longest length that a body tells; zero if none."""
+    """Return the longest length of a body; zero if it has none."""
     lengths = lengths_of(solid)
     return max((each for each in (lengths.thickness, *lengths.memories) if np.isfinite(each)), default=0.0)
 

@@ -165,10 +165,7 @@ def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
 
 
 def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
-    """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order.
-
-    The columns of the panel through infinity are zero unless pressures ``beyond`` the panels in ``x`` count.
-    """
+    """Return :func:`deflection_operator` at the nodes of the mesh, in Fortran order, with the far panel only if ``beyond``."""
     order, panels = mesh.order, mesh.panels
     rule, inner = reference(order), mesh.nodes[:-order]
     # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].

@@ -38,7 +38,7 @@ def _gauss(count: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=8)
-def _clustered(count: int) -> tuple[Array, Array]:
+def _clustered_rule(count: int) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1], clustered towards 0."""
     t, w = _gauss(count)
     v = 0.5 * (t + 1.0)
@@ -83,7 +83,7 @@ def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
 
 def deflections_from_beyond(mesh: PolarMesh, power: float, modes: int) -> Array:
     """Return the same of the first modes, shape (modes, rings)."""
-    v, w = _clustered(NEAR_POINTS)
+    v, w = _clustered_rule(NEAR_POINTS)
     r, rim = mesh.radii[:, None], mesh.rim
     # s = rim/(1 - v), so that it reaches from the rim to infinity; far out the kernel falls as r/s**2.
     beyond = v / (1.0 - v) * rim
@@ -116,7 +116,7 @@ def _far_points(
 
 def _near_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
     """Return the same for near targets, on both parts of the panel; a part may be empty."""
-    v, w = _clustered(NEAR_POINTS)
+    v, w = _clustered_rule(NEAR_POINTS)
     half = float(mesh.spans[1][panel])
     inside = np.clip(place, -1.0, 1.0)[:, None]
     outside = place[:, None] - inside  # how far the target lies beyond the end of the panel

@@ -121,7 +121,7 @@ class Layer:
         kernel = nodal_deflection(mesh, beyond=False)
         # Each pair of panels once: the smooth part is symmetric but for the weights, and the kernel is in Fortran order.
         first, second = np.triu_indices(mesh.panels)
-        found = self._between(x[first][:, :, None], x[second][:, None, :])
+        found = self._smooth_part(x[first][:, :, None], x[second][:, None, :])
         smooth = np.empty((mesh.size, mesh.size))
         by_panels = smooth.reshape(mesh.panels, mesh.order, mesh.panels, mesh.order)
         by_panels[second, :, first] = found.transpose(0, 2, 1)
@@ -137,12 +137,12 @@ class Layer:
             column = kernel[:, k * mesh.order : (k + 1) * mesh.order]
             near = np.abs(mesh.nodes - mesh.centres[k]) < mesh.half_widths[k] + KERNEL_RADIUS * d
             column[:] = 0.0
-            column[near] = self._within_reach(mesh, k, mesh.nodes[near])
+            column[near] = self._by_whole_kernel(mesh, k, mesh.nodes[near])
         beyond = np.arange(mesh.size - mesh.order, mesh.size)
         kernel[:, beyond] = 0.0
         return np.asarray(kernel, order="F")
 
-    def _between(self, x: Array, y: Array) -> Array:
+    def _smooth_part(self, x: Array, y: Array) -> Array:
         """Return the smooth part of the kernel between places, the logarithm of the thickness included."""
         distance = np.abs(x - y)
         distance *= 1 / self.thickness
@@ -156,12 +156,12 @@ class Layer:
         half, d = float(mesh.half_widths[k]), self.thickness
         nodes, weights = _finer_rule(mesh.order, _nodes_for(half / d, mesh.order))
         y = (float(mesh.centres[k]) + half * nodes)[:, None]
-        smooth = self._between(x, y)
+        smooth = self._smooth_part(x, y)
         beyond = np.abs(x - y) > KERNEL_RADIUS * d
         smooth[beyond] = np.log(np.abs(x - y)[beyond]) / math.pi  # where the whole kernel is zero
         return np.asarray((half * weights) @ smooth)
 
-    def _within_reach(self, mesh: Mesh, k: int, x: Array) -> Array:
+    def _by_whole_kernel(self, mesh: Mesh, k: int, x: Array) -> Array:
         """Return what pressures at the nodes of a panel deflect at places ``x`` by the whole kernel, shape (len(x), order)."""
         half, place = float(mesh.half_widths[k]) / self.thickness, (x - mesh.centres[k]) / self.thickness
         panel = reference(mesh.order)
@@ -182,7 +182,7 @@ class Layer:
                 found[far] = rule.interpolation((place[far] - middle) / span) @ there
                 some &= ~far
             first, length = first[some, None], (last - first)[some, None]
-            at, weights = _steps_away(steps, grading)
+            at, weights = _clustered_rule(steps, grading)
             away = first + length * at
             kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
             polynomials = panel.polynomials(((place[some, None] + away) / half).ravel()).reshape(mesh.order, *away.shape)
@@ -198,10 +198,8 @@ class Layer:
 
 
 def _sees_images(mesh: Mesh, k: int, thickness: float) -> Flags:
-    """Return at which nodes the smooth part under a panel is less smooth than in the middle of the widest whose nodes do.
-
-    Polynomials on the panel converge by the ellipse through the image.
-    """
+    """Return the nodes at which a panel's own nodes do not integrate the smooth part of the kernel."""
+    # Polynomials on the panel converge by the ellipse through the image two thicknesses below the node.
     image = (mesh.nodes - mesh.centres[k] + 2j * thickness) / mesh.half_widths[k]
     return np.asarray(np.abs(image - 1) + np.abs(image + 1) < 2 * math.hypot(1.0, 2 / OWN_NODES_BELOW))
 
@@ -220,7 +218,7 @@ def _finer_rule(order: int, count: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=2)
-def _steps_away(count: int, grading: int) -> tuple[Array, Array]:
+def _clustered_rule(count: int, grading: int) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond, if they crowd there."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     root = 0.5 * (1 + nodes)

@@ -47,11 +47,8 @@ def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
 
 
 def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
-    r"""Return the matrices from the nodal pressures of each angular mode to its deflection, shape (modes, rings, rings).
-
-    Panels on which pressure acts must not be much wider than the layer is thick: on those wider than twelve thicknesses,
-    far out, the layer acts as springs side by side, :math:`\tfrac4\pi d (1 - 2 \nu)/(2 (1 - \nu)^2)` [u_Hz per p_Hz].
-    """
+    """Return the matrices from the nodal pressures of each angular mode to its deflection, shape (modes, rings, rings)."""
+    # On panels wider than twelve thicknesses, far out, the layer acts as springs, 4/pi d (1 - 2 nu)/(2 (1 - nu)^2).
     d, nu, r = layer.thickness, layer.poisson_ratio, mesh.radii
     found = deflection_by_mode(mesh)
     half_widths = 0.5 * np.diff(mesh.edges)

@@ -59,7 +59,7 @@ class TwoBodies:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of both, and the share of the first."""
+        """Parameters of both bodies, and the share of the first."""
         bodies = {"first": self.first, "second": self.second}
         found = {f"{which}_{name}": value for which, body in bodies.items() for name, value in body.parameters.items()}
         return {**found, "first_share": self.first_share}
@@ -71,7 +71,7 @@ class TwoBodies:
 
     @property
     def lengths(self) -> Lengths:
-        """Those of both, for meshes."""
+        """Lengths of both bodies, for meshes."""
         return lengths_of(self.first).joined(lengths_of(self.second))
 
     def scaled(self, length: float, speed: float = 1.0) -> Solid:

@@ -32,6 +32,6 @@ class History:
         return self.states[self.place]
 
     @property
-    def ways(self) -> dict[str, bool]:
+    def steps(self) -> dict[str, bool]:
         """Whether there is something to undo and to redo."""
         return {"undo": self.place > 0, "redo": self.place < len(self.states) - 1}

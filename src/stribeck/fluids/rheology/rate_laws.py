@@ -108,7 +108,7 @@ class _BetweenPlateaus(TabulatedLaw):
         return self.exponent, self.infinite_viscosity
 
 
-def _documented(exponent: str, source: str) -> Callable[[type[Plateaus]], type[Plateaus]]:
+def _with_shared_docstring(exponent: str, source: str) -> Callable[[type[Plateaus]], type[Plateaus]]:
     """Return the decorator that adds to a docstring what both laws say of themselves in the same words."""
 
     def decorator(law: type[Plateaus]) -> type[Plateaus]:
@@ -119,7 +119,7 @@ def _documented(exponent: str, source: str) -> Callable[[type[Plateaus]], type[P
     return decorator
 
 
-@_documented(":math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.", "[Carreau 1972]")
+@_with_shared_docstring(":math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.", "[Carreau 1972]")
 class Carreau(_BetweenPlateaus):
     r"""The fluid that thins from one plateau of its viscosity to another.
 
@@ -130,7 +130,9 @@ class Carreau(_BetweenPlateaus):
 
     def milder(self, part: float) -> Self:
         """Return the fluid whose viscosity is that to the power of the part, nearly."""
-        return type(self)(self.relaxation_time, 1 - part * (1 - self.exponent), _milder_plateau(self.infinite_viscosity, part))
+        return type(self)(
+            self.relaxation_time, 1 - part * (1 - self.exponent), _homotopy_plateau(self.infinite_viscosity, part)
+        )
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
@@ -143,7 +145,7 @@ class Carreau(_BetweenPlateaus):
         return -21.0
 
 
-@_documented(":math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.", "[Cross 1965]")
+@_with_shared_docstring(":math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.", "[Cross 1965]")
 class Cross(_BetweenPlateaus):
     r"""The fluid that thins from one plateau of its viscosity to another, more gradually than Carreau's.
 
@@ -166,7 +168,7 @@ class Cross(_BetweenPlateaus):
 
     def milder(self, part: float) -> Self:
         """Return the fluid with a higher plateau at high rates."""
-        return type(self)(self.relaxation_time, self.exponent, _milder_plateau(self.infinite_viscosity, part))
+        return type(self)(self.relaxation_time, self.exponent, _homotopy_plateau(self.infinite_viscosity, part))
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
@@ -278,7 +280,7 @@ def _infinite(value: str | float) -> float:
     return viscosity
 
 
-def _milder_plateau(ratio: float, part: float) -> float:
+def _homotopy_plateau(ratio: float, part: float) -> float:
     """Return a viscosity ratio that falls from near one to ``ratio`` as the part rises to one."""
     return (
         ratio + (0.999 - ratio) * (PLATEAU_RATIO_AT_START**part - PLATEAU_RATIO_AT_START) / (1 - PLATEAU_RATIO_AT_START)

@@ -17,10 +17,7 @@ MIN_EXPONENT = 0.05  # Least exponent of a shear-thinning fluid; below it the st
 
 
 class TabulatedLaw(RateLaw):
-    """A law whose moments and rate come from a table made of its stress, its :attr:`shape` and :meth:`smallest`.
-
-    Its arguments are the relaxation time, then the numbers of the shape in their order.
-    """
+    """A law whose moments and rate come from a table of its stress; it takes the relaxation time, then its :attr:`shape`."""
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both moments."""
@@ -67,7 +64,7 @@ def checked_time(value: str | float) -> float:
 
 
 def checked_exponent(value: float) -> float:
-    """Return the exponent of a fluid that thins; raise InputError unless it is between 0.05 and 1."""
+    """Return the exponent of a shear-thinning fluid; raise InputError unless it is between 0.05 and 1."""
     n = to_si(value, "number", "exponent")
     if not MIN_EXPONENT <= n <= 1:
         raise InputError(
