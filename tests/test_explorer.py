@@ -928,11 +928,11 @@ def rows_of(content):
 
 def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
     [measured] = read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n0.01,0.2\n", answer.inputs.contact)
-    shown = files.View(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
+    shown = files.View(answer, [("with_same_active_set, once", answer.curve, 2.0)], (measured,))
     rows = rows_of(files.content("csv", shown))
     assert len(rows) == 121 + 121 + 2
     assert float(rows[60]["friction_balanced [1]"]) == answer.curve.friction["balanced"][60]
-    assert rows[130]["curve"] == "pinned, once"
+    assert rows[130]["curve"] == "with_same_active_set, once"
     assert float(rows[130]["hersey_number [1]"]) == 2.0 * answer.curve.speed[9]
     assert rows[-1] == {
         "curve": "measured: m.csv",
@@ -958,14 +958,14 @@ def test_the_profile_is_downloaded_in_si_units(answer):
 def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
     shown = files.View(
         answer,
-        [("pinned", answer.curve, 1.0)],
+        [("with_same_active_set", answer.curve, 1.0)],
         tuple(read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n", answer.inputs.contact)),
     )
     for what in ("curve", "state"):
         assert files.content(f"{what}.png", shown).startswith(b"\x89PNG")
         assert ElementTree.fromstring(files.content(f"{what}.svg", shown)).tag.endswith("svg")
     figure = picture.figure_of(shown, "curve")
-    assert {"pinned", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    assert {"with_same_active_set", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
 
 
 def test_a_pin_is_named_after_what_differs_from_the_start():

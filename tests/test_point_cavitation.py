@@ -9,7 +9,7 @@ import stribeck as sb
 from stribeck import Groups
 from stribeck.contacts.cut_off import CAVITATED_FAR_FILM, RUPTURE_ANGLE
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.cavitated import swept
+from stribeck.equations.cavities.active_set import advect_front
 from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -185,10 +185,10 @@ def test_a_film_fills_as_many_torn_nodes_at_once_as_its_flow_fills():
     gas = np.array([[0.0, 0.0, -3.5, 1.0, 1.0, 1.0, 1.0, 1.0]])
     before = gas != 0.0
     # The flow of 3.5 fills three gaps that lack 1 and half of the fourth, which stays torn.
-    assert swept(gas, before & (gas > 0.0), before).tolist() == [[False] * 6 + [True] * 2]
+    assert advect_front(gas, before & (gas > 0.0), before).tolist() == [[False] * 6 + [True] * 2]
     # Nodes that have just broken take no part, whatever their residual is.
     gas, now, before = np.array([[-3.0, 1.0, -0.1, 1.0]]), np.array([[0, 1, 1, 1]]) > 0, np.array([[1, 1, 0, 1]]) > 0
-    assert swept(gas, now, before).tolist() == [[False, False, True, True]]
+    assert advect_front(gas, now, before).tolist() == [[False, False, True, True]]
 
 
 def followed(speeds, kappa, load):

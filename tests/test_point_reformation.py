@@ -128,7 +128,7 @@ def drag_within(state, radius):
     shear = (equations.film.shear(mesh, equations.speed, y.gap, y.fluid) / y.gap).mean(axis=0)
     on_rings = mesh.ring_weights * (2 * np.pi * mesh.radii * shear - equations.shear_missing(y))
     edges = np.sqrt(np.append(0.0, 2.0 * np.cumsum(mesh.ring_weights * mesh.radii)))
-    return np.interp(radius, edges, np.append(0.0, np.cumsum(on_rings))), equations.shear_doubt(y)
+    return np.interp(radius, edges, np.append(0.0, np.cumsum(on_rings))), equations.shear_error(y)
 
 
 def drags(share):

@@ -20,7 +20,7 @@ from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.numerics.fourier_panels import PolarMesh
 
 if TYPE_CHECKING:
-    from stribeck.equations.cavities.cavitated import TornLinear
+    from stribeck.equations.cavities.system import CavitatedLinear
 
 __all__ = ["Capacitance", "Preconditioner"]
 
@@ -52,7 +52,7 @@ class Capacitance:
     """Arrays of which these are the first columns."""
     last: _Factors | None = None
 
-    def include(self, linear: TornLinear) -> None:
+    def include(self, linear: CavitatedLinear) -> None:
         """Add the torn nodes that are new."""
         new = np.setdiff1d(np.flatnonzero(linear.torn), self.nodes)
         if new.size == 0:
@@ -70,7 +70,7 @@ class Capacitance:
                 each[:, some] = part
         self.answers, self.totals, self.gaps = (each[:, : self.nodes.size] for each in self.room)
 
-    def _answers(self, linear: TornLinear, new: Indices) -> tuple[Single, Single, Single]:
+    def _answers(self, linear: CavitatedLinear, new: Indices) -> tuple[Single, Single, Single]:
         """Return the responses to unit residuals at some nodes: by mode, and of total pressure and gap at all nodes."""
         mesh, size = self.mesh, self.mesh.size
         own = (np.ones(new.size), new, np.arange(new.size + 1))
@@ -86,7 +86,7 @@ class Capacitance:
         gap = (cosines @ deflected.reshape(mesh.modes, -1)).reshape(size, -1) + found[-1]
         return found, total, gap
 
-    def block(self, linear: TornLinear, rows: Indices, columns: Indices) -> Array:
+    def block(self, linear: CavitatedLinear, rows: Indices, columns: Indices) -> Array:
         """Return C Z, the film pressures of torn nodes under unit residuals; both are places among the kept nodes."""
         at = self.nodes[rows]
         found, slope = self.totals[np.ix_(at, columns)], linear.contact_slope.ravel()[at]
@@ -94,7 +94,7 @@ class Capacitance:
         found[touching] -= slope[touching, None].astype(np.float32) * self.gaps[np.ix_(at[touching], columns)]
         return np.asarray(found)
 
-    def of(self, linear: TornLinear) -> Preconditioner:
+    def of(self, linear: CavitatedLinear) -> Preconditioner:
         """Return the preconditioner of a Jacobian, by the factors of the last one where few other nodes are torn."""
         self.include(linear)
         torn = linear.torn.ravel()[self.nodes]
@@ -120,7 +120,7 @@ class _Factors:
     borders: dict[int, Array] = field(default_factory=dict)
     """Solutions for nodes that border the matrix, by their place among the kept ones: they come again from step to step."""
 
-    def beside(self, kept: Capacitance, linear: TornLinear, added: Indices) -> Array:
+    def beside(self, kept: Capacitance, linear: CavitatedLinear, added: Indices) -> Array:
         """Return the unit residuals that undo the film pressures under those at further nodes."""
         new = np.array([node for node in added.tolist() if node not in self.borders], dtype=np.intp)
         if new.size:
@@ -154,7 +154,7 @@ class Preconditioner:
     the factors, for the second these vanish.
     """
 
-    def __init__(self, kept: Capacitance, linear: TornLinear, base: _Factors, added: Indices, removed: Indices) -> None:
+    def __init__(self, kept: Capacitance, linear: CavitatedLinear, base: _Factors, added: Indices, removed: Indices) -> None:
         self.kept, self.linear, self.base = kept, linear, base
         self.columns = np.concatenate([base.columns, added])
         self.at, self.added = kept.nodes[self.columns], added.size

@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import CAVITATED_FAR_FILM, FarFilm
-from stribeck.equations.cavities.cavitated import TornEquations
+from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.system import Unknowns
@@ -31,7 +31,7 @@ STREAK_ERROR_FACTOR = (
 
 
 @dataclass(frozen=True, eq=False)
-class CavitatedEquations(TornEquations):
+class CavitatedEquations(CavitatedSystem):
     """The discretised problem of a film that ends at ambient pressure."""
 
     far: ClassVar[FarFilm] = CAVITATED_FAR_FILM
@@ -77,7 +77,7 @@ class CavitatedEquations(TornEquations):
         film = self.film
         return shear_missing(self.operators.mesh, y.gap, y.fluid, film.filled, partial(film.sheared, self.speed))
 
-    def shear_doubt(self, y: Unknowns) -> float:
+    def shear_error(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h: streaks begin at a line that is known to a spacing."""
         mesh = self.operators.mesh
         return STREAK_ERROR_FACTOR / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from stribeck._types import Array, Flags
-from stribeck.equations.cavities.cavitated import TornEquations
+from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.lazy import cached_property
@@ -65,7 +65,7 @@ def outflow(mesh: PolarMesh) -> csc_matrix:
 
 
 @dataclass(frozen=True, eq=False)
-class ReformingEquations(TornEquations):
+class ReformingEquations(CavitatedSystem):
     """The discretised problem of a film that forms anew behind a cavity at the pressure ``least``."""
 
     finest: ClassVar[float] = 2e-3
@@ -85,15 +85,15 @@ class ReformingEquations(TornEquations):
         full = self.speed * self.film.carried(y.gap, y.fluid)
         return np.where(torn, np.clip(found / full, 0.0, 1.0), 0.0)
 
-    def shear_doubt(self, y: Unknowns) -> float:
+    def shear_error(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h: that by the gas, and that by the edge of the cavity.
 
         With shear flow streaks may fill less than the whole width from the line of rupture on, which lies between nodes.
         """
         at_edge = np.maximum(0.0, 1.0 - self.film.filled(y.gap)) / y.gap * edge_of(y.fluid <= self.least)
-        return self.gas_doubt(y) + AREA_ERROR_FACTOR * float((at_edge @ self.operators.mesh.area_weights).sum())
+        return self.gas_error(y) + AREA_ERROR_FACTOR * float((at_edge @ self.operators.mesh.area_weights).sum())
 
-    def gas_doubt(self, y: Unknowns) -> float:
+    def gas_error(self, y: Unknowns) -> float:
         """Return an estimate of that by the gas: a part of the outflow, as cells do not resolve it."""
         torn, mesh = y.fluid <= self.least, self.operators.mesh
         released = np.where(torn, self.flow(y.gap, y.fluid, y.offset) / self.passing(torn).weights, 0.0)

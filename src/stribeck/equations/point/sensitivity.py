@@ -68,7 +68,10 @@ def log_derivatives(
         dy = linear.changes(x, change[0])
         size = MAX_GAP_CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
         at = [beside(equations, moved(sign * size)) for sign in (1.0, -1.0)]
-        values = [measure(each, each.pinned(y.moved(dy, sign * size), y)) for each, sign in zip(at, (1.0, -1.0), strict=True)]
+        values = [
+            measure(each, each.with_same_active_set(y.moved(dy, sign * size), y))
+            for each, sign in zip(at, (1.0, -1.0), strict=True)
+        ]
         for each in values[0]:
             columns.setdefault(each, []).append((values[0][each] - values[1][each]) / (2 * size))
     return {name: np.array(column) for name, column in columns.items()}

@@ -166,7 +166,7 @@ class Equations:
         """Return the Jacobian at a solution."""
         return Linear(self, y)
 
-    def pinned(self, y: Unknowns, like: Unknowns) -> Unknowns:
+    def with_same_active_set(self, y: Unknowns, like: Unknowns) -> Unknowns:
         """Return unknowns that break where a solution of neighbouring equations does."""
         del like
         return y

@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.cavitated import TornEquations, just_above
+from stribeck.equations.cavities.system import CavitatedSystem, just_above
 from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,
@@ -74,7 +74,7 @@ COARSE_RTOL = 1e-5  # Relative error of the gap that the iteration leaves on the
 
 def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
-    assert isinstance(fine.equations, TornEquations)
+    assert isinstance(fine.equations, CavitatedSystem)
     speed, slack, order = fine.equations.speed, fine.equations.slack, fine.equations.order
     finer = fine.mesh.modes / coarse.mesh.modes
     part, loose = slack / (finer**order - 1.0), slack / (finer - 1.0)
@@ -91,7 +91,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
+    beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_error(fine.unknowns)
     of_load, of_moment = kink_tails(fine).sum(axis=1).tolist()
     for name, factor in KINK_MOMENT_SAFETY.items():
         errors[name] = max(errors[name], factor * of_moment)
@@ -104,7 +104,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES))
     widest = max(widest, rupture_error_floor(values, fine.mesh.modes), KINK_LOAD_SAFETY * of_load)
-    widest = max(widest, speed / 6.0 * fine.equations.gas_doubt(fine.unknowns) / scales["J_balanced"])  # the film follows it
+    widest = max(widest, speed / 6.0 * fine.equations.gas_error(fine.unknowns) / scales["J_balanced"])  # the film follows it
     floors = dict.fromkeys(values, ERROR_FLOOR_RATIO if of_load == 0.0 else SAFETY_AT_KINK)
     floors |= dict.fromkeys(WITHOUT_TOLERANCE, MINIMUM_ERROR_FLOOR)
     errors = {name: max(error, floors[name] * widest * scales[name]) for name, error in errors.items()}
@@ -180,7 +180,7 @@ def _first_panels(speed: float, law: ContactLaw, guess: Level, model: Model) -> 
     """Return the first resolution of a state, with panels split where its guess is poorly resolved."""
     few, _, degree = MESH_LEVELS[0]
     base = resolution(speed, law, degree, few, model)
-    if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
+    if isinstance(guess.equations, CavitatedSystem):  # its line of rupture is no edge of the contact
         mesh = base.mesh
         gap = transfer(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap
         contact = law.pressure(gap)
@@ -321,7 +321,7 @@ def _would_hold(pair: Pair, rtol: float, angles: int) -> bool:
 def is_cavitated(pair: Pair) -> bool:
     """Return whether a state has cavitated nodes."""
     fine = pair.fine
-    return isinstance(fine.equations, TornEquations) and bool((fine.unknowns.fluid <= fine.equations.least).any())
+    return isinstance(fine.equations, CavitatedSystem) and bool((fine.unknowns.fluid <= fine.equations.least).any())
 
 
 __all__ = ["follow_cavitated", "holds_cavitated", "is_cavitated", "limited_error", "refine_cavitated"]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.cavitated import TornEquations
+from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.cavitated import follow_cavitated, holds_cavitated, is_cavitated, refine_cavitated
@@ -29,7 +29,7 @@ def refine_reforming(
 ) -> Pair | Outcome:
     """Return a state that holds a tolerance, from a coarse one or a ``known`` one with a larger error, or the best found."""
     full = guess.relabelled(full_model(model))
-    if known is not None and not isinstance(known.fine.equations, TornEquations):
+    if known is not None and not isinstance(known.fine.equations, CavitatedSystem):
         return _refine_full_film(speed, law, full, rtol, model, known) or refine_cavitated(speed, law, guess, rtol, model)
     if known is None and guess.unknowns.fluid.min() >= FULL_FILM_SUCTION_RATIO * model.cavity_pressure:
         found = _refine_full_film(speed, law, full, rtol, model)
@@ -49,8 +49,8 @@ def follow_reforming(
 ) -> Pair | None:
     """Return the state of other groups from a neighbour, on its meshes if they serve; None if the iteration fails."""
     # Of the states in ``line`` that predict this one, only those that cavitate like the neighbour count.
-    model, is_cavitated_film = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, TornEquations)
-    if any(isinstance(each.fine.equations, TornEquations) is not is_cavitated_film for _, each in line):
+    model, is_cavitated_film = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, CavitatedSystem)
+    if any(isinstance(each.fine.equations, CavitatedSystem) is not is_cavitated_film for _, each in line):
         line = ()
     if is_cavitated_film:
         found = follow_cavitated(speed, law, neighbour, rtol, line)
@@ -69,7 +69,7 @@ def follow_reforming(
 
 def holds_reforming(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state along a path hold a tolerance."""
-    is_cavitated_film = isinstance(pair.fine.equations, TornEquations)
+    is_cavitated_film = isinstance(pair.fine.equations, CavitatedSystem)
     return holds_cavitated(pair, rtol) if is_cavitated_film else holds_along_path(pair, rtol)
 
 

@@ -12,9 +12,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.equations.cavities.cavitated import iterate_cavitated, just_above
+from stribeck.equations.cavities.active_set import iterate_cavitated
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
+from stribeck.equations.cavities.system import just_above
 from stribeck.equations.point.iteration import MAX_BAND, Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MAX_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.planes import plane_of

@@ -13,7 +13,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
 from stribeck.equations.cavities.capacitance import Capacitance
-from stribeck.equations.cavities.cavitated import TornLinear
+from stribeck.equations.cavities.system import CavitatedLinear
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import MIN_RESIDUAL, Direction, Measure, log_derivatives
@@ -49,7 +49,7 @@ def derivatives_along(
     band = band_for(level.equations.speed, level.equations.law)
 
     def preconditioner(linear: Linear, kept: Any) -> Apply:
-        if not isinstance(linear, TornLinear):
+        if not isinstance(linear, CavitatedLinear):
             return BandedModes(linear, band) if kept is None else kept
         found = Capacitance(BandedModes(linear, band), level.mesh, linear.torn.shape) if kept is None else kept
         return found.of(linear)

@@ -15,20 +15,17 @@ Source: [Hintermueller, Ito and Kunisch 2002] SIAM J. Optim. 13, 865, for the ac
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from stribeck._types import Array, Flags
 from stribeck.equations.cavities.capacitance import Capacitance, Preconditioner
+from stribeck.equations.cavities.system import CavitatedLinear, CavitatedSystem, just_above
 from stribeck.equations.damping import longest_step
 from stribeck.equations.point.iteration import MIN_STEP_FRACTION, Iterated, step_size
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.system import LOAD, Equations, Linear, Unknowns
-from stribeck.numerics.fourier_panels import lobatto, radau
+from stribeck.equations.point.system import LOAD, Unknowns
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
 
@@ -62,117 +59,7 @@ MAX_FRONT_NODES, FRONT_STEP = 10, 0.1
 REBUILD_PRECONDITIONER_AT, REFACTOR_AT = 4.0, 2.0
 
 
-class Passing:
-    """The path of gas from torn nodes: downstream from node to node, until one with a film takes it."""
-
-    def __init__(self, spread: csc_matrix | None, torn: Flags) -> None:
-        self.torn, self.spread = torn, None
-        self.weights: Array | float = 1.0
-        """Residual of a torn node over its own gas."""
-        if spread is not None:
-            self.weights = spread.diagonal().reshape(torn.shape)
-            self.at = np.flatnonzero(torn)
-            self.spread = spread[:, self.at]
-            self.factors = splu(self.spread[self.at]) if self.at.size else None
-
-    def gas(self, flow: Array) -> Array:
-        """Return the gas at the nodes that makes up for the residual at the torn ones."""
-        if self.spread is None:
-            return flow
-        found = np.zeros(flow.size)
-        if self.factors is not None:
-            found[self.at] = self.factors.solve(flow.ravel()[self.at])
-        return found.reshape(flow.shape)
-
-    def rows(self, flow: Array) -> Array:
-        """Return the residual with the gas of the torn nodes, which has to vanish at the others."""
-        if self.spread is None or self.factors is None:
-            return flow
-        passed = self.spread @ self.factors.solve(flow.ravel()[self.at])
-        return np.asarray(flow - passed.reshape(flow.shape))
-
-
-@dataclass(frozen=True, eq=False)
-class TornEquations(Equations):
-    """The discretised problem of a film that may break, by default at ambient pressure."""
-
-    least: float = 0.0
-
-    order: ClassVar[float] = 2.0
-    """Power of the number of angles with which errors fall."""
-    slack: ClassVar[float] = 1.25
-    """Stated error over that from the difference between two meshes by this power."""
-
-    @property
-    def spread(self) -> csc_matrix | None:
-        """What unit gas at each node adds to the residual at all; None where it stays at its node."""
-        return None
-
-    def shear_doubt(self, y: Unknowns) -> float:
-        """Return an estimate of the error of the integral of the shear over h, by the content of the cavity."""
-        raise NotImplementedError
-
-    def gas_doubt(self, y: Unknowns) -> float:
-        """Return the part of this by the gas that goes downstream, which the film feels too: none where it stays."""
-        del y
-        return 0.0
-
-    def linear(self, y: Unknowns) -> TornLinear:
-        """Return the Jacobian at a solution."""
-        return TornLinear(self, y, y.fluid <= self.least)
-
-    def pinned(self, y: Unknowns, like: Unknowns) -> Unknowns:
-        """Return unknowns that break where a solution of neighbouring equations does."""
-        least = like.fluid.min()
-        fluid = np.where(like.fluid <= least, self.least, np.maximum(y.fluid, just_above(self.least)))
-        return Unknowns(y.gap, fluid, y.offset)
-
-    def passing(self, torn: Flags) -> Passing:
-        """Return where gas of torn nodes goes."""
-        return Passing(self.spread, torn)
-
-
-def stiffness(linear: Linear) -> Array:
-    """Return the diagonal of the pressure stiffness at the nodes, shape (modes, rings)."""
-    mesh = linear.equations.operators.mesh
-    squares = np.tile(lobatto(mesh.degree).derivative ** 2, (mesh.panels, 1, 1))
-    squares[0] = radau(mesh.degree).derivative ** 2
-    radial = np.matmul((linear.film.radial_of_pressure / mesh.stretch**2)[:, :, None, :], squares)[:, :, 0, :]
-    return np.asarray(mesh.gathered(radial) + (mesh.angular_derivative**2).T @ linear.film.angular_of_pressure)
-
-
-class TornLinear(Linear):
-    """The Jacobian at a state with torn nodes; rows of R_2 at the nodes, over the stiffness."""
-
-    def __init__(self, equations: TornEquations, y: Unknowns, torn: Flags) -> None:
-        super().__init__(equations, y)
-        self.stiffness, self.least, self.spread = stiffness(self), equations.least, equations.spread
-        self.tear(torn)
-
-    def tear(self, torn: Flags) -> None:
-        """Take other nodes for torn."""
-        self.torn, self.passing = torn, Passing(self.spread, torn)
-
-    def product(self, x: Array) -> Array:
-        """Return the change of the rows at the nodes and of the load."""
-        change = self.changes(x)
-        rows = np.where(self.torn, change.fluid, self.passing.rows(self.flow(change.fluid, change.gap)) / self.stiffness)
-        return np.append(rows.ravel(), self.equations.load_row @ x[: self.equations.operators.mesh.rings])
-
-    def right(self, residual: tuple[Array, Array, float]) -> Array:
-        """Return the right-hand side of the step."""
-        return self.sources(residual, self.least - self.y.fluid)
-
-    def sources(self, change: tuple[Array, Array, float], least: Array | float) -> Array:
-        """Return the right-hand side for the change of the unknowns with that of the residual and of the least pressure."""
-        shape, flow, load = change
-        moved = self.flow(self.contact_slope * shape, -shape)
-        torn = least - self.contact_slope * shape
-        rows = np.where(self.torn, torn, -self.passing.rows(flow + moved) / self.stiffness)
-        return np.append(rows.ravel(), -load)
-
-
-def swept(gas: Array, now: Flags, before: Flags) -> Flags:
+def advect_front(gas: Array, now: Flags, before: Flags) -> Flags:
     """Return the nodes that are torn after a step, the film being spread over as many as fill with what it has to give.
 
     Behind a line of rupture that lies too far upstream one node a step would heal, with the flow that ends there: that is
@@ -190,13 +77,8 @@ def swept(gas: Array, now: Flags, before: Flags) -> Flags:
     return stays | (now & ~before)
 
 
-def just_above(least: float) -> float:
-    """Return the lowest pressure of a film that is not torn."""
-    return least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))
-
-
 def iterate_cavitated(
-    equations: TornEquations,
+    equations: CavitatedSystem,
     start: Unknowns,
     tolerance: float,
     band: int,
@@ -211,19 +93,19 @@ def iterate_cavitated(
     left, size, same, near = math.inf, math.inf, False, False
     before = None if kept is None else kept.last
 
-    def now_torn(linear: TornLinear, flow: Array) -> Flags:
+    def now_torn(linear: CavitatedLinear, flow: Array) -> Flags:
         gas = linear.passing.gas(flow) * linear.passing.weights
         found = np.asarray(gas / linear.stiffness > y.fluid - least)
-        return swept(gas, found, linear.torn) if size <= FRONT_STEP and equations.spread is None else found
+        return advect_front(gas, found, linear.torn) if size <= FRONT_STEP and equations.spread is None else found
 
     def ended(outcome: Outcome) -> Iterated:
         return Iterated(complementary(y, torn, least), outcome, steps, krylov, factorisations, left, kept)
 
     with np.errstate(all="ignore"):
-        residual, linear = equations.residual(y), TornLinear(equations, y, torn)
+        residual, linear = equations.residual(y), CavitatedLinear(equations, y, torn)
         if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
             torn = now_torn(linear, residual[1])
-            linear.tear(torn)
+            linear.set_active(torn)
         while steps < max_steps:
             right = linear.right(residual)
             if not np.isfinite(right).all():
@@ -273,7 +155,7 @@ def iterate_cavitated(
                     return ended(Outcome.CONVERGED)
                 if kept is not None:  # GMRES sees no load with what it was given
                     kept.last = None
-            linear = TornLinear(equations, y, torn)
+            linear = CavitatedLinear(equations, y, torn)
         return ended(Outcome.CONVERGED if near else Outcome.STEP_LIMIT)
 
 
@@ -283,7 +165,7 @@ def complementary(y: Unknowns, torn: Flags, least: float) -> Unknowns:
 
 
 def balanced(
-    linear: TornLinear, precondition: Preconditioner, y: Unknowns, unbalanced: float
+    linear: CavitatedLinear, precondition: Preconditioner, y: Unknowns, unbalanced: float
 ) -> tuple[Unknowns, tuple[Array, Array, float], int]:
     """Return complementary unknowns near a solution that carry the load but for ``unbalanced``, their residual, and the steps.
 
