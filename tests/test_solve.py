@@ -752,7 +752,7 @@ def test_a_thin_film_near_the_floor_of_double_precision_holds_the_tolerance_or_n
 @pytest.mark.parametrize(("groups", "outcome"), [(THIN, Outcome.ROUNDING), (sb.Groups(0.1, 0.1, 0), Outcome.REFINEMENT_LIMIT)])
 def test_a_tolerance_missed_by_uneven_nodal_gaps_is_rounding_and_else_the_meshs_end(groups, outcome, monkeypatch):
     monkeypatch.setattr(refine, "MAX_REFINEMENTS", 1)
-    monkeypatch.setattr(refine, "reached", lambda estimate, rtol: Outcome.REFINEMENT_LIMIT)
+    monkeypatch.setattr(refine, "outcome_for", lambda estimate, rtol: Outcome.REFINEMENT_LIMIT)
     state = sb.solve(groups, rtol=2e-9, on_failure="return")
     # Not by the floor of the observables: by what unevenness of the nodal gaps may cause where the film is thin.
     assert state.rounding_floor < 0.25 * state.rtol < state.error_estimate
