@@ -412,7 +412,7 @@ def test_a_mesh_that_is_left_gives_up_its_operators_beyond_the_memory_for_them(m
     first, second = (solved_point(sb.Groups(speed, 0.1, 1e-3), 1e-5) for speed in (1e-4, 1e-2))
     follower, operators = Corrector(lambda s: first.groups, 1e-5), first.state.equations.operators
     before = operators.deflection
-    follower.move_to(operators, first.fine)
-    follower.move_to(second.state.equations.operators, second.fine)
+    follower._change_to(operators, first.fine)
+    follower._change_to(second.state.equations.operators, second.fine)
     assert ("deflection" in vars(operators)) is kept
     np.testing.assert_array_equal(operators.deflection, before)
