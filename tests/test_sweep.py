@@ -424,7 +424,7 @@ from stribeck.sweeps import workers as sweep_workers
 def die(path, chains, workers, finished, pause):
     from concurrent.futures.process import BrokenProcessPool
     raise BrokenProcessPool
-sweep_workers.solve_in_process = die
+sweep_workers.solve_on_processes = die
 from stribeck.cli import main
 sys.exit(main(sys.argv[1:]))
 """
