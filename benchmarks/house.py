@@ -30,15 +30,40 @@ CORE = ("numerics", "equations", "solver")
 
 # Names of what finds a state from states beside it, and of what finds an event on a curve; those that are gone count no more.
 WAYS = {
-    "WarmStartSolver": "solver", "NeighbourSolver": "solver", "next_state": "solver", "Corrector": "solver",
-    "follow": "solver", "march": "numerics", "_Chain": "batches", "KeptStates": "batches", "Lattice": "batches",
-    "solved_parts": "fits", "kept_parts": "fits", "lattice_parts": "fits", "curve_parts": "fits", "kept_balls": "fits",
-    "Between": "fits", "Scattered": "numerics", "_Slopes": "regimes", "_followed": "uncertainty", "Neighbours": "solver",
-}  # fmt: skip
+    "WarmStartSolver": "solver",
+    "NeighbourSolver": "solver",
+    "next_state": "solver",
+    "Corrector": "solver",
+    "follow": "solver",
+    "march": "numerics",
+    "_Chain": "batches",
+    "KeptStates": "batches",
+    "Lattice": "batches",
+    "solved_parts": "fits",
+    "kept_parts": "fits",
+    "lattice_parts": "fits",
+    "curve_parts": "fits",
+    "kept_balls": "fits",
+    "Between": "fits",
+    "Scattered": "numerics",
+    "_Slopes": "regimes",
+    "_followed": "uncertainty",
+    "_correct_by_solved_states": "uncertainty",
+    "interpolate_to": "solver",
+    "Neighbours": "solver",
+}
 LOCATORS = {
-    "lowest_friction": "curves", "_lowest_of_function": "curves", "_lowest_of_points": "curves", "crossing": "curves",
-    "_passages": "regimes", "_located": "regimes", "merging": "regimes", "grown": "curves", "locate": "",
-}  # fmt: skip
+    "Landmarks": "curves",
+    "_zero": "curves",
+    "_lowest_of_function": "curves",
+    "_lowest_of_points": "curves",
+    "crossing": "curves",
+    "_passages": "regimes",
+    "_located": "regimes",
+    "_root": "regimes",
+    "grown": "curves",
+    "locate": "",
+}
 
 
 def files(tree: Path, folder: str) -> list[Path]:
