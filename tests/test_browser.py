@@ -523,7 +523,7 @@ def test_axe_core_finds_no_fault(open_page, scheme):
 
     page = open_page(color_scheme=scheme)
     page.wait_for_selector(".more tr[data-key=roughness]")
-    page.wait_for_selector(".more .ways:not(.old)")
+    page.wait_for_selector(".more .margins:not(.old)")
     page.locator(".chart-pressure .as-table").click()
     found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []
