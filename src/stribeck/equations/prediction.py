@@ -23,14 +23,14 @@ MAX_AMPLIFICATION = 40.0
 
 # Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
 # frame: the edge of a contact of asperities stays where it is while the exit moves through it.
-MIN_DISTANCE_RATIO = 0.02
+MAX_EXIT_SHIFT = 0.02
 
 # Change of the gap at fixed places, over that in the frame of the exit, below which they serve for smaller distances too.
 FIXED_FRAME_BELOW = 0.2
 
 # Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
 # that minimum: half way, by `tanh`.
-BLEND_WIDTH = 6.0
+BLEND_STEEPNESS = 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Extrapolation:
         before, last = self.states[-2:]
         if not last.equations.operators.has_exit:
             return False
-        if self.restart == math.inf and max(exits) - min(exits) > MIN_DISTANCE_RATIO:
+        if self.restart == math.inf and max(exits) - min(exits) > MAX_EXIT_SHIFT:
             return True
         x = last.mesh.nodes
         in_frame, in_place = (
@@ -85,7 +85,7 @@ class Extrapolation:
             return None
         lowest = np.array([minimum_gap(s.mesh, s.gap)[0] for s in self.states])
         moved = np.asarray(lowest - self.weights @ lowest)
-        return moved if BLEND_WIDTH * np.abs(moved).max() < self._edge[1] else None
+        return moved if BLEND_STEEPNESS * np.abs(moved).max() < self._edge[1] else None
 
     @cached_property
     def _edge(self) -> tuple[float, float]:
@@ -144,7 +144,7 @@ class Extrapolation:
         if self._moved is None:
             return [x] * len(self.states)
         middle, distance = self._edge
-        with_edge = 0.5 * (1 + np.tanh(BLEND_WIDTH * ((x - middle) / distance - 0.5)))
+        with_edge = 0.5 * (1 + np.tanh(BLEND_STEEPNESS * ((x - middle) / distance - 0.5)))
         return [x + moved * with_edge for moved in self._moved]
 
     def _in_frame(self, state: State, x: Array) -> Array:

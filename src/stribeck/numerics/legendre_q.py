@@ -21,7 +21,7 @@ UPWARD_RECURRENCE_BELOW = (
 
 # Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
 # which is 1e-4 or less.
-DECAY_DIGITS = 14.0
+HALF_DECAY_LOG = 14.0
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
@@ -46,7 +46,7 @@ def ring_functions(radius: Array, source: Array, difference: Array, count: int) 
     while start < xi.size:  # groups in which the start of the downward recurrence differs by a factor of two at most
         stop = int(np.searchsorted(xi[by_distance], 2.0 * xi[by_distance[start]], side="right"))
         group = by_distance[start:stop]
-        found[:, group] = _downward(chi[group], first[group], count, int(DECAY_DIGITS / xi[group[0]]) + 2)
+        found[:, group] = _downward(chi[group], first[group], count, int(HALF_DECAY_LOG / xi[group[0]]) + 2)
         start = stop
     return found
 

@@ -42,9 +42,9 @@ ACCEPTED_RESIDUAL = 0.1  # Error above which a kept preconditioner is given up
 
 # Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
 # hundredths of it.
-DIVERGED_RESIDUAL = 100.0
+MAX_RIM_CHANGE_RATIO = 100.0
 
-MAX_CURVATURE = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
+MIN_CURVATURE = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,9 +140,9 @@ def iterate(
             if part < 1.0:
                 size, preconditioner = max(size, 1.0), None
                 continue
-            bending = max(MAX_CURVATURE, min(100.0, size / before**2)) if math.isfinite(before) else MAX_CURVATURE
+            bending = max(MIN_CURVATURE, min(100.0, size / before**2)) if math.isfinite(before) else MIN_CURVATURE
             left = bending * size * size + solved.missed
-            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= DIVERGED_RESIDUAL * tolerance):
+            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= MAX_RIM_CHANGE_RATIO * tolerance):
                 return ended(Outcome.CONVERGED)
             if solved.steps > (REBUILD_AT_NEAR_SOLUTION if size < NEAR_SOLUTION_STEP else REBUILD_AT):
                 preconditioner = None

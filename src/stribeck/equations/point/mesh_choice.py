@@ -20,7 +20,7 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
 from stribeck.equations.thinning.column import has_viscosity_at_rest
-from stribeck.equations.thinning.far_field import ROLLING_ERROR_FACTOR, far_rate, lost
+from stribeck.equations.thinning.far_field import ROLLING_SHEAR_RATE, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -35,13 +35,13 @@ RIM_RADIUS = 50.0  # Radius of the rim over the scale of the contact
 
 # Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
 # the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim.
-THINNING_AT_RIM, CAVITY_DRAG_AT_RIM, MAX_RIM_DOUBLINGS = 1e-3, 1e-7, 6
+THINNING_AT_RIM, THINNING_AT_RIM_CAVITATED, MAX_EXTRA_FAR_PANELS = 1e-3, 1e-7, 6
 
 # Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
 # break and heal by chance. The friction that is lost beyond a nearer rim is stated.
 MIN_RIM_PRESSURE = 1e-9
 
-POWER_LAW_DOUBLINGS = 1  # Panels beyond the usual rim for a power law
+POWER_LAW_FAR_PANELS = 1  # Panels beyond the usual rim for a power law
 
 FILM_ROUNDS = 20  # Iterations for a film that is thinned by its own shear rate
 
@@ -60,22 +60,22 @@ EDGE_PRESSURE = 0.2  # Contact pressure at which the decay at the edge is read [
 
 
 # Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4.
-SIDE_LOBES = 7.5
+MODES_PER_EDGE_WIDTH = 7.5
 
 MAX_MODES = 200  # The most modes of a mesh
 
-MAX_PANEL_WIDTH = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
+COARSE_MODES_RATIO = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
 
 # A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
 # of an edge fall with 4.4**-n on the panels that lead to it.
-MIN_NODES_PER_LAYER = 2.6
+MIN_LEGENDRE_DECAY = 2.6
 
 MIN_PANEL_WIDTH, MAX_SPLITS = 1e-3, 16  # Width below which panels are not split [a], and the largest number of splits
 
 
 # Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
 # this part of it at least; and by how many of them the rings between may be wider than those that the line crosses.
-EDGE_GRID, EDGE_MARGIN, MAX_EDGE_RATIO = 1 / 64, 0.25, 6.0
+EDGE_GRID, EDGE_MARGIN, MAX_EXTRA_EDGE_STEPS = 1 / 64, 0.25, 6.0
 
 
 class MeshTooLargeError(Exception):
@@ -150,7 +150,7 @@ def film_speed(speed: float, model: Model) -> float:
         return speed
     found = speed
     for _ in range(FILM_ROUNDS):  # a thinner film is sheared faster
-        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING_ERROR_FACTOR) / film_scale(found)])
+        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING_SHEAR_RATE) / film_scale(found)])
         found = math.sqrt(found * speed * float(film.law.stress(rate)[0][0] / rate[0]))
     return found
 
@@ -197,7 +197,7 @@ def fewest_modes(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> fl
     """Return the number of modes with which all but the minimum of a film that is thicker than roughness is good to 1e-2."""
     width = layout(speed, law, model)[0] / EDGE_WIDTH_RATIO
     is_smooth = film_scale(film_speed(speed, model)) > float(np.max(law.decay_length))
-    return MAX_PANEL_WIDTH * SIDE_LOBES * width**-0.675 if is_smooth else 0.0
+    return COARSE_MODES_RATIO * MODES_PER_EDGE_WIDTH * width**-0.675 if is_smooth else 0.0
 
 
 def lift(speed: float, model: Model) -> float:
@@ -230,8 +230,8 @@ def farther_panels(speed: float, model: Model) -> int:
     if isinstance(film, ShearThinning):
         # A film that ends has no far film that thins.
         per_panel = 1.0 if model.cavitation is Cavitation.EXIT else ratio ** (2.0 / FAR_PANELS)
-        most = CAVITY_DRAG_AT_RIM if model.cavitation is Cavitation.EXIT else THINNING_AT_RIM
-        for needed in range(MAX_RIM_DOUBLINGS if has_viscosity_at_rest(film.law) else POWER_LAW_DOUBLINGS + 1):
+        most = THINNING_AT_RIM_CAVITATED if model.cavitation is Cavitation.EXIT else THINNING_AT_RIM
+        for needed in range(MAX_EXTRA_FAR_PANELS if has_viscosity_at_rest(film.law) else POWER_LAW_FAR_PANELS + 1):
             part = lost(film.law, far_rate(film.law, film.slide, speed, RIM_RADIUS * ratio ** (needed / FAR_PANELS)))
             if part <= most * per_panel**needed:
                 break
@@ -240,7 +240,7 @@ def farther_panels(speed: float, model: Model) -> int:
     if model.cavity_pressure < 0.0:
         radius = (0.8 * speed / (RIM_SUCTION * -model.cavity_pressure)) ** (1 / 3)
         needed = max(needed, _panels_to(radius))
-    return int(np.clip(math.ceil(needed), 0, MAX_RIM_DOUBLINGS))
+    return int(np.clip(math.ceil(needed), 0, MAX_EXTRA_FAR_PANELS))
 
 
 def _panels_to(radius: float) -> float:
@@ -268,7 +268,7 @@ def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: 
     narrowest = np.full(mesh.panels, MIN_PANEL_WIDTH)
     for inner, outer in zip(found.closing[::2], found.closing[1::2], strict=True):  # a kink, which no halves resolve
         narrowest[(mesh.edges[:-1] >= inner) & (mesh.edges[1:] <= outer)] = 4.0 * EDGE_GRID
-    poor = np.flatnonzero(near & (tail > MIN_NODES_PER_LAYER**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
+    poor = np.flatnonzero(near & (tail > MIN_LEGENDRE_DECAY**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
     if poor.size == 0 or len(found.splits) > MAX_SPLITS:
         return found
     middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
@@ -286,7 +286,7 @@ def with_closing(found: Resolution, mesh: PolarMesh, gap: Array) -> Resolution:
     step = EDGE_GRID * 2.0**found.doublings
     known = list(zip(found.closing[::2], found.closing[1::2], strict=True))
     if len(known) == len(crossed) and all(
-        a <= inner and outer <= b and b - a <= outer - inner + MAX_EDGE_RATIO * step
+        a <= inner and outer <= b and b - a <= outer - inner + MAX_EXTRA_EDGE_STEPS * step
         for (a, b), (inner, outer) in zip(known, crossed, strict=True)
     ):
         return found

@@ -49,13 +49,13 @@ LOG_SPACING = 0.0025  # Of the table of a law in ln(stress): cubics between its 
 NEWTONIAN_BELOW, NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE = 1e-9, 1e-60, 1e13
 
 # Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below.
-POWER_LAW_TOLERANCE = 1e-2
+MIN_RATE_POWER_LAW = 1e-2
 
 CONVERGED_STEP = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
 
-TRUST_LOG_RADIUS = 0.3  # Change of the stress over the largest stress up to which first order is a good start
+FIRST_ORDER_STRESS_CHANGE = 0.3  # Change of the stress over the largest stress up to which first order is a good start
 
-MAX_LOG_STEP = 1.0  # Step over the largest stress at most
+MAX_STRESS_STEP = 1.0  # Step over the largest stress at most
 
 OVERSHOOT_FRACTION = 0.9  # Slope of the potential after a step, over that before it, from which the step was too long
 
@@ -107,7 +107,7 @@ def has_viscosity_at_rest(law: RateLaw) -> bool:
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
     slowest = law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU
-    ends = np.array([slowest if has_viscosity_at_rest(law) else POWER_LAW_TOLERANCE, MAX_RATE])
+    ends = np.array([slowest if has_viscosity_at_rest(law) else MIN_RATE_POWER_LAW, MAX_RATE])
     lowest, highest = np.log(law.stress(ends)[0])
     stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
     rate = law.rate(stress)
@@ -217,7 +217,7 @@ class _Integrals(NamedTuple):
         largest = np.sqrt(np.maximum(*(((mean + side * slope) ** 2).sum(axis=0) for side in (-0.5, 0.5))))
         size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
         size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
-        step = step * np.minimum(1.0, MAX_LOG_STEP / np.maximum(size, TINY))
+        step = step * np.minimum(1.0, MAX_STRESS_STEP / np.maximum(size, TINY))
         zeroth, first, second = matrices
         return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, zeroth, first, second, missing, step, size)
 

@@ -46,7 +46,7 @@ FIRST_ORDER = 1e-6  # Lost part at which its power is read
 # 5 for Cross's law with powers from 0.1 to 0.8.
 OFFSET_ERROR_FACTOR = 12.0
 
-ROLLING_ERROR_FACTOR = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
+ROLLING_SHEAR_RATE = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
 
 
 def lost(law: RateLaw, rate: float) -> float:
@@ -56,7 +56,7 @@ def lost(law: RateLaw, rate: float) -> float:
 
 def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
     """Return the rate at a radius far from the contact, over that of the relaxation time."""
-    return 2.0 * law.time * speed * max(abs(slide), ROLLING_ERROR_FACTOR) / radius**2
+    return 2.0 * law.time * speed * max(abs(slide), ROLLING_SHEAR_RATE) / radius**2
 
 
 class _Film(NamedTuple):

@@ -34,7 +34,7 @@ from stribeck.quantities.lazy import cached_property
 # Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends.
 ANGLE_COUNT, MAX_STEPS, CONVERGED = 64, 40, 1e-11
 
-DIFFERENCE_STEP, DIFFERENCE_FLOOR = (
+DIFFERENCE_STEP, GAP_DIFFERENCE_STEP = (
     1e-6,
     1e-3,
 )  # Step of the derivative by a coefficient, and change of the gap for that by the offset
@@ -45,7 +45,7 @@ FAR_DRAG_RTOL, OFFSET_ERROR = 3e-6, 50.0
 
 
 # Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is.
-STEEP_EXPONENT, STEEP_ERROR_FACTOR = 0.2, 1.5
+STEEP_EXPONENT, EXPONENT_STEP_RATIO = 0.2, 1.5
 
 
 class _Similar(NamedTuple):
@@ -118,13 +118,13 @@ def similar(law: Any, slide: float, angles: int = ANGLE_COUNT) -> tuple[_Similar
     start, nothing = np.zeros(angles // 2), np.zeros(angles // 2)
     start[0] = -1.2  # of a Newtonian fluid
     if law.exponent < STEEP_EXPONENT:
-        start = similar(replace(law, exponent=STEEP_ERROR_FACTOR * law.exponent), slide, angles)[0].pressure
+        start = similar(replace(law, exponent=EXPONENT_STEP_RATIO * law.exponent), slide, angles)[0].pressure
     found = _solved(law, slide, start, None, 0.0, nothing)
     angular = _flux(law, slide, found.pressure[None], nothing[None], 0.0)[1][0]
     below, above = (
-        _solved(law, slide, found.pressure, found, part, angular) for part in (-DIFFERENCE_FLOOR, DIFFERENCE_FLOOR)
+        _solved(law, slide, found.pressure, found, part, angular) for part in (-GAP_DIFFERENCE_STEP, GAP_DIFFERENCE_STEP)
     )
-    double = 2.0 * DIFFERENCE_FLOOR
+    double = 2.0 * GAP_DIFFERENCE_STEP
     pressure, flux = ((getattr(above, name) - getattr(below, name)) / double for name in ("pressure", "flux"))
     return found, _Similar(pressure, flux, (above.shear - below.shear) / double)
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
-from stribeck.equations.thinning.column import TRUST_LOG_RADIUS, Column, column, has_viscosity_at_rest, pull
+from stribeck.equations.thinning.column import FIRST_ORDER_STRESS_CHANGE, Column, column, has_viscosity_at_rest, pull
 from stribeck.equations.thinning.far_field import MIN_LOST_FRACTION, FarThinned
 from stribeck.equations.thinning.far_field_of_power_law import FarPower
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -173,5 +173,5 @@ def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
     change = slope - last.slope
     step = _symmetric(last.flow.ease, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
     largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
-    far = ~(np.hypot(*step) + np.hypot(*change) < TRUST_LOG_RADIUS * largest)
+    far = ~(np.hypot(*step) + np.hypot(*change) < FIRST_ORDER_STRESS_CHANGE * largest)
     return None if far.any() else last.flow.mean + step

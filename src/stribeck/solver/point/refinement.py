@@ -19,7 +19,7 @@ from stribeck.equations.point.mesh_choice import (
     EDGE_WIDTH_RATIO,
     MAX_BYTES,
     MAX_MODES,
-    SIDE_LOBES,
+    MODES_PER_EDGE_WIDTH,
     MeshTooLargeError,
     Resolution,
     bytes_of,
@@ -288,7 +288,7 @@ def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: 
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), for_minimum, 8)
     if level.contact_pressure.max() < 1e-3:
         width = layout(ahead * level.equations.speed, level.equations.law, level.resolution.model)[0] / EDGE_WIDTH_RATIO
-        modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
+        modes = max(modes, MODES_PER_EDGE_WIDTH * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
     degree = min(MAX_DEGREE, max(7, degree))
     return limit_modes(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
 
