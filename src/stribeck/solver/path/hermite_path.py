@@ -21,16 +21,16 @@ from stribeck.quantities.outcome import Outcome
 
 __all__ = ["HermitePath", "Knot", "KnotProblem", "interpolate_to"]
 
-WINDOW = 6  # states through which a polynomial goes
+WINDOW = 6  # States through which a polynomial goes
 SAFETY = 2.0  # Stated over estimated error of the interpolation: slopes have errors too, see tests/test_point_curve.py
-INSIDE = np.array([0.25, 0.5, 0.75])  # where the error is estimated, in parts of an interval
+INSIDE = np.array([0.25, 0.5, 0.75])  # Places of an interval, as parts of its length, at which its error is estimated
 
-FIRST_STEP = 0.5  # length of the first step: that of the others follows from the errors
-MAX_STEP = 3.0  # beyond, the last state is no start for the next one
-MIN_STEP = 0.02  # below, the path ends where states fail, and an interval keeps its error
-MAX_GROWTH = 1.4  # of one step over the one before
-AIM = 0.5  # of the allowed error, for the next step: an interval beyond it is halved, which costs more than a shorter step
-MAX_STATES = 400  # limit on work
+FIRST_STEP = 0.5  # Length of the first step; the length of each later one follows from the error of the last interval
+MAX_STEP = 3.0  # Longest step: from farther away the last state is no start for the next one
+MIN_STEP = 0.02  # Shortest step: the path ends where shorter ones would be needed, and an interval keeps its error
+MAX_STEP_GROWTH = 1.4  # Largest ratio of a step to the one before
+ERROR_GOAL = 0.5  # Share of the allowed error for the next step: a shorter step costs less than an interval that is halved
+MAX_STATES = 400  # Limit on work
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,16 +140,16 @@ class HermitePath:
         if len(self.knots) == 1:
             alone = self.knots[0].values * self.problem.units(s)
             return alone, np.zeros(len(s), dtype=int), np.zeros(len(s))
-        where = np.clip(np.searchsorted(self.coordinates, s.real, side="right") - 1, 0, len(self.knots) - 2)
-        found: Array = np.empty((len(s), len(self.knots[0].values)), dtype=s.dtype)
+        where = np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.knots) - 2)
+        found: Array = np.empty((len(s), len(self.knots[0].values)))
         for k in np.unique(where).tolist():
             mine = where == k
             found[mine] = self._through(*self._window(k, WINDOW), s[mine])
         left, right = self.coordinates[where], self.coordinates[where + 1]
-        return found, where, (s.real - left) / (right - left)
+        return found, where, (s - left) / (right - left)
 
     def smooth(self, s: Array) -> Array:
-        """Return the observables at real or complex coordinates, shape (len(s), n)."""
+        """Return the observables at coordinates, shape (len(s), n)."""
         return self._evaluated(s)[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
@@ -241,8 +241,8 @@ def interpolate_to(
             if len(knots) >= WINDOW:
                 now = path()
                 k = len(now.knots) - 3 if sign > 0 else 1  # the last interval with states on both sides
-                growth = (AIM / max(now.excess(k, rtol), 1e-6)) ** (0.5 / (WINDOW - 2))
-                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * min(max(growth, 0.5), MAX_GROWTH)
+                growth = (ERROR_GOAL / max(now.excess(k, rtol), 1e-6)) ** (0.5 / (WINDOW - 2))
+                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * min(max(growth, 0.5), MAX_STEP_GROWTH)
         while len(knots) < MAX_STATES:
             now = path()
             wide = [k for k in range(len(now.knots) - 1) if now.coordinates[k + 1] - now.coordinates[k] > 2 * MIN_STEP]

@@ -13,7 +13,7 @@ from stribeck._types import Array, Flags
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.expansion import SHARE_COLUMN, corrected_once, expand, from_row
-from stribeck.equations.point.observables import SMOOTH, identity_error, minima
+from stribeck.equations.point.observables import SMOOTH, WITHIN, identity_error, minima
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns
@@ -33,7 +33,7 @@ from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState, ReadState
 
-__all__ = ["CurveState", "PointProblem"]
+__all__ = ["CurveState", "PointProblem", "error_scales", "speeds_at"]
 
 STATE_RTOL_FRACTION = 0.5  # Share of rtol for solving the states: errors on two meshes differ by up to twice that
 SERIES_ORDERS = ((1e-4, 6), (1e-7, 8), (0.0, 10))  # Smallest rtol, and the order of series for it
@@ -46,10 +46,28 @@ MIN_SAMPLE_DISTANCE = 0.05
 FIRST_SAMPLE_DISTANCE = 0.6
 MINIMUM_SAFETY = 2.0  # Error of a minimum of the gap between two states over the larger of their errors
 THIN_LOG_GAP = 0.4  # ln of the gap over its minimum up to which a place may become the minimum
-SHARE_COLUMNS = [SMOOTH.index(name) for name in ("contact_load_share", "fluid_load_share")]
+UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle")  # Observables whose errors are absolute
 OFFSET_COLUMN = SMOOTH.index("offset")
 FRICTION_COLUMNS = [i for i, name in enumerate(SMOOTH) if name.startswith("J_")]
-WHOLE_FRICTION_COLUMNS = [SMOOTH.index(name) for name in ("J_balanced", "J_published")]
+
+
+def speeds_at(groups_at: Callable[[float], Groups], s: Array) -> Array:
+    """Return the speed groups at coordinates, shape (len(s),)."""
+    return np.array([float(groups_at(each).speed) for each in s.real.tolist()])
+
+
+def error_scales(names: Sequence[str], values: Array, speeds: Array) -> Array:
+    """Return the scales of the errors of observables of balls by name, of the shape of ``values``, a row for each speed."""
+    found = np.fmax(np.abs(values), 1e-300)
+    for column, name in enumerate(names):
+        if name in UNIT_SCALED:
+            found[:, column] = 1.0
+        elif name == "offset":
+            found[:, column] = np.maximum(found[:, column], MIN_OFFSET_SCALE)
+    whole = np.abs(values[:, [names.index(name) for name in ("J_balanced", "J_published")]]).max(axis=1)
+    friction = [column for column, name in enumerate(names) if name.startswith("J_") or name in WITHIN]
+    found[:, friction] = np.maximum(np.fmax(whole, 1e-300), speeds)[:, None]
+    return found
 
 
 class PointPoint(NamedTuple):
@@ -90,12 +108,7 @@ class PointProblem:
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables, as for a state."""
-        found = np.fmax(np.abs(values), 1e-300)
-        found[:, SHARE_COLUMNS] = 1.0
-        found[:, OFFSET_COLUMN] = np.maximum(found[:, OFFSET_COLUMN], MIN_OFFSET_SCALE)
-        speeds = np.array([float(self.groups_at(each).speed) for each in s.real.tolist()])
-        found[:, FRICTION_COLUMNS] = np.maximum(found[:, WHOLE_FRICTION_COLUMNS].max(axis=1), speeds)[:, None]
-        return found
+        return error_scales(SMOOTH, values, speeds_at(self.groups_at, s))
 
     negligible = 0.0
 

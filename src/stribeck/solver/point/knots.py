@@ -15,25 +15,24 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path.hermite_path import HermitePath, Knot
+from stribeck.solver.point.curve_path import error_scales, speeds_at
 from stribeck.solver.point.path import NeighbourSolver, next_state, without_factors
 from stribeck.solver.point.sensitivity import derivatives_along
 from stribeck.solver.point.state import LOOSE_OBSERVABLES, PointState, ReadState
 
 __all__ = ["BallKnots", "KnotState"]
 
-KNOT_PART = 0.7  # of the tolerance, for solved states: the rest is for the interpolation
-SLOPE_RTOL = 1e-12  # of slopes: two rounds of GMRES, as the preconditioner of a neighbour leaves 1e-4 in one
-STEP_AT_REST = 1e-3  # of central differences between states at rest, which cost next to nothing
-UNIT_STEP = 0.5  # of the differences of units, which are powers of what varies
-OFFSET_FLOOR = 0.1  # the error of the offset is relative to it where it exceeds this: it crosses zero where films become thick
+STATE_RTOL_FRACTION = 0.7  # Share of rtol for solving the states; the rest is for the interpolation
+SLOPE_RTOL = (
+    1e-12  # Residual of the slopes: GMRES takes two rounds, as one with a neighbour's preconditioner leaves errors of 1e-4
+)
+REST_STEP = 1e-3  # Step of the coordinate in central differences between states at rest, which cost next to nothing
+UNIT_STEP = 0.5  # Step of the coordinate in differences of units, which are powers of what varies
 
 COLUMNS = (*OBSERVABLES, *WITHIN)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))
 POSITIVE = [OBSERVABLES[i] for i in SHARES] + ["central_gap", "central_pressure", "minimum_gap", "minimum_gap_on_axis"]
-OFFSET = OBSERVABLES.index("offset")
-ANGLE = OBSERVABLES.index("minimum_angle")
 FRICTION = [i for i, name in enumerate(COLUMNS) if name.startswith("J_") or name in WITHIN]
-LARGEST = [OBSERVABLES.index(name) for name in ("J_balanced", "J_published")]
 
 CutOffs = Callable[[float], tuple[float, float]]
 """Logarithms of the radii up to which friction by shear and by pressure counts, at a coordinate."""
@@ -48,7 +47,7 @@ class BallKnots:
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None) -> None:
         self.groups_at, self.rtol, self.cut_offs = groups_at, rtol, cut_offs
-        self.solver = NeighbourSolver(groups_at, KNOT_PART * rtol)
+        self.solver = NeighbourSolver(groups_at, STATE_RTOL_FRACTION * rtol)
         self.failure: PointState | None = None
 
     @cached_property
@@ -61,18 +60,13 @@ class BallKnots:
     def units(self, s: Array) -> Array:
         """Return the speeds for the friction integrals, which are proportional to it in boundary lubrication, else one."""
         found = np.ones((len(s), len(COLUMNS)))
-        speeds = np.array([float(self.groups_at(each).speed) for each in s.tolist()])
+        speeds = speeds_at(self.groups_at, s)
         found[:, FRICTION] = np.where(speeds > 0, speeds, 1.0)[:, None]
         return found
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables, as for a state."""
-        found = np.fmax(np.abs(values), 1e-300)
-        found[:, [*SHARES, ANGLE]] = 1.0
-        found[:, OFFSET] = np.maximum(found[:, OFFSET], OFFSET_FLOOR)
-        speeds = np.array([float(self.groups_at(each).speed) for each in s.real.tolist()])
-        found[:, FRICTION] = np.maximum(found[:, LARGEST].max(axis=1), speeds)[:, None]
-        return found
+        return error_scales(COLUMNS, values, speeds_at(self.groups_at, s))
 
     def _measure(self, s: float) -> Callable[[Equations, Unknowns], dict[str, float]]:
         """Return what is measured of a state: its observables, and friction up to the cut-offs where that is a part of it."""
@@ -108,8 +102,8 @@ class BallKnots:
             }
         else:
             values = dict(state.values)
-            ends = [next_state(None, self.groups_at(s + step), self.rtol) for step in (STEP_AT_REST, -STEP_AT_REST)]
-            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * STEP_AT_REST) for name in values}
+            ends = [next_state(None, self.groups_at(s + step), self.rtol) for step in (REST_STEP, -REST_STEP)]
+            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * REST_STEP) for name in values}
         errors = state.errors
         row, slope = (np.array([each.get(name, 0.0) for name in COLUMNS]) for each in (values, slopes))
         behind, here, ahead = self.units(np.array([s - UNIT_STEP, s, s + UNIT_STEP]))
