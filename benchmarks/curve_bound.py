@@ -33,7 +33,7 @@ from stribeck.contacts.scaling import SCALINGS
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES, RUPTURE_ROWS
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 

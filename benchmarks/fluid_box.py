@@ -34,7 +34,8 @@ from stribeck.equations.state import solve_state
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import ALL_NAMES, NAMES
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solve import SolveError, minimum_estimate, solved_point
+from stribeck.solver.solve import minimum_estimate, solved_point
+from stribeck.solver.solve_error import SolveError
 
 FAMILIES = ("cavitation", "pressure", "thinning", "flow", "layer", "motion", "combined")
 RTOL = 1e-6

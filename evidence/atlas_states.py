@@ -20,7 +20,8 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 
 SEGMENT_SHARES = (1.1, 2.6, 6.5, 30.0)  # Minus the logarithms of the contact shares at which the segments of speed end
 

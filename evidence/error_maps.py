@@ -25,7 +25,7 @@ from stribeck.files.datasets import import_xarray
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

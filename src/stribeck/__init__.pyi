@@ -32,7 +32,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.point.solution import Field, PointSolution
 from stribeck.solver.solution import Profile, Solution
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import SweepError

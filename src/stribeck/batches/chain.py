@@ -19,7 +19,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import describe, hertz_solution, solution_of
+from stribeck.solver.solve import hertz_solution, solution_of
+from stribeck.solver.solve_error import describe
 
 __all__ = ["Ended", "solve_in_order"]
 

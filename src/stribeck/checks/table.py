@@ -15,7 +15,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.facts import fact_values
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve

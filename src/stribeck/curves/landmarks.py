@@ -23,7 +23,8 @@ from stribeck.solver.path.line_path import POSITION
 from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, describe, solution_of
+from stribeck.solver.solve import solution_of
+from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "friction_at"]
 

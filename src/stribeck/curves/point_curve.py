@@ -35,7 +35,7 @@ from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
 from stribeck.solver.point.state import PointState
-from stribeck.solver.solve import SolveError, describe
+from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["PointCurve", "point_curve", "point_speeds"]
 

@@ -21,7 +21,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, SolvedPath, follow
-from stribeck.solver.solve import SolveError, describe
+from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
 

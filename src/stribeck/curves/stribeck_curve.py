@@ -27,7 +27,8 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.reforming_line import line_problem
 from stribeck.solver.path.path import follow
-from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
+from stribeck.solver.solve import check_rtol, finish, with_law
+from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
 

@@ -29,7 +29,8 @@ from stribeck.regimes.margin_limits import scanned_rtol
 from stribeck.regimes.margins import regime_margins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
 

@@ -31,7 +31,7 @@ from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

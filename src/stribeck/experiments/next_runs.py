@@ -28,7 +28,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import DIMENSIONS, InputError, checked_callback, checked_kind, show
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

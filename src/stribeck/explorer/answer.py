@@ -50,7 +50,8 @@ from stribeck.solver.point.solution import Field, PointSolution
 from stribeck.solver.point.solution import solution_of as point_solution_of
 from stribeck.solver.point.solve import solve_from
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.band import friction_band
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty

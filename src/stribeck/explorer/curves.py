@@ -24,7 +24,7 @@ from stribeck.curves.atlas_curve import where_law_is_in_doubt
 from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
 from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_from_atlas import transition_speeds
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.band import Band
 
 __all__ = [

@@ -28,7 +28,7 @@ from stribeck.explorer.serving.pools import Threads, run
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["Following", "Superseded", "without_rtol"]
 

@@ -13,7 +13,7 @@ from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.serving.pools import OPENING, run
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["curves_of", "opening"]
 

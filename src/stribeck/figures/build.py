@@ -26,7 +26,8 @@ from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, ch
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

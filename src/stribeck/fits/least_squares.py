@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.fits.model import Prediction
 from stribeck.fits.objective import CAUCHY, Objective
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["MAD", "Minimum", "effective_parameters", "minimise", "settle"]
 

@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.fits.least_squares import Minimum, minimise
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["BetterMinimumError", "Ends", "profile_ends"]
 

@@ -19,7 +19,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import continued, stribeck_curve
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.margin_limits import limits, with_smallest
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["SCANNED", "Crossing", "Margin", "Scan"]
 

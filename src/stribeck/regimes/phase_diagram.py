@@ -31,7 +31,8 @@ from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
 from stribeck.regimes.weakening import roughness_without_minimum, weakening
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, check_rtol, solve
+from stribeck.solver.solve import check_rtol, solve
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

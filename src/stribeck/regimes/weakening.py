@@ -26,7 +26,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solve import SolveError, as_groups, check_rtol, describe
+from stribeck.solver.solve import as_groups, check_rtol
+from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["Weakening", "roughness_without_minimum", "weakening"]
 

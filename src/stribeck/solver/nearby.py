@@ -14,7 +14,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, as_groups, check_rtol, finish, hertz_solution, solved_point
+from stribeck.solver.solve import as_groups, check_rtol, finish, hertz_solution, solved_point
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["WarmStartSolver"]
 

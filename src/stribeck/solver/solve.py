@@ -31,18 +31,19 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cavities.cavity_length import cavitated_start
 from stribeck.solver.cold_start import first_paths
 from stribeck.solver.homotopy import is_lost_to_rounding
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
+from stribeck.solver.point.solution import PointSolution, finish_point
+from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
+from stribeck.solver.solve_error import SolveError, describe
 
 if TYPE_CHECKING:
     from stribeck.contacts.line import LineContact
     from stribeck.contacts.point import PointContact
-    from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
 PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
@@ -64,25 +65,6 @@ SPIKE_PRESSURE_EXPONENT = 2.5  # Pressure coefficient times Hertz pressure above
 RELIABLE_ESTIMATE = 1e-10  # Error above which estimates are reliable whatever rtol is
 # Ranges in which every state is solved (test_solve_random.py), speed and roughness zero too; many are outside.
 TESTED_RANGES = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
-
-
-class SolveError(RuntimeError):
-    """The solver did not reach the tolerance.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        Why.
-    solution : Solution, PointSolution or None
-        What was reached, with its error estimate, if there is a state.
-    message : str
-        The message: the state, the outcome, the accuracy reached.
-    """
-
-    def __init__(self, outcome: Outcome, solution: BaseSolution | None, message: str) -> None:
-        super().__init__(message)
-        self.outcome = outcome
-        self.solution = solution
 
 
 @overload
@@ -191,9 +173,6 @@ def _solve_line(groups: Groups, contact: Contact | None, rtol: float, on_failure
 
 def _solve_point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
     """Return the state of a point contact."""
-    from stribeck.solver.point.solution import finish_point
-    from stribeck.solver.point.solve import solve_cold
-
     return finish_point(solve_cold(groups, rtol), contact, on_failure)
 
 
@@ -338,11 +317,6 @@ def check_rtol(rtol: Any) -> float:
     if not is_real or not low <= rtol <= high:
         raise InputError(f"rtol = {show(rtol)}; it must be a number from {low:g}, the limit of double precision, to {high:g}.")
     return float(rtol)
-
-
-def describe(groups: Groups) -> str:
-    """Return the groups in words, for messages."""
-    return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
 
 
 def untested_note(groups: Groups) -> str:

@@ -13,7 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.parts import BASE_PARTS, Parts
-from stribeck.solver.solve import describe
+from stribeck.solver.solve_error import describe
 from stribeck.sweeps.columns import ERROR, failed_row, row_of
 
 __all__ = ["Chain", "solve_chain"]

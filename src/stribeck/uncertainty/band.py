@@ -13,7 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.coordinate import Over
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.propagate import propagate
 
 __all__ = ["Band", "friction_band"]

@@ -29,7 +29,8 @@ from stribeck.contacts.line import Groups
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError, solve
+from stribeck.solver.solve import solve
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["FILM_NAMES", "films_of", "states_by_inputs", "states_of"]
 

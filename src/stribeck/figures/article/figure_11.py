@@ -9,7 +9,7 @@ from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.regimes.plot import draw_phase_diagram, draw_phase_space
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

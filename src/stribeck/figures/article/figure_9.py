@@ -24,7 +24,7 @@ from stribeck.figures.article.stribeck_cases import (
 from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray

@@ -22,7 +22,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.nearby import WarmStartSolver
 from stribeck.solver.path.corrector import Corrector
-from stribeck.solver.solve import SolveError, stated_errors
+from stribeck.solver.solve import stated_errors
+from stribeck.solver.solve_error import SolveError
 
 __all__ = ["kept_parts", "solved_parts"]
 

@@ -174,7 +174,8 @@ def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
 
 def solve_cold_line(groups: Groups, rtol: float) -> RefinedState:
     """Return the state from cold, with the outcome of the failure if there was one."""
-    from stribeck.solver.solve import SolveError, solved_point
+    from stribeck.solver.solve import solved_point
+    from stribeck.solver.solve_error import SolveError
 
     try:
         return solved_point(groups, rtol)

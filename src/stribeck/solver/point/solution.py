@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction import Definition
@@ -17,20 +19,23 @@ from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.point.state import PointObservables, PointState
-from stribeck.solver.solve import SolveError, describe
+from stribeck.solver.solve_error import SolveError, describe
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
+MAX_POINTS = 2001  # Points along a side of a dataset: a file of more would take gigabytes
 MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
 WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
@@ -355,9 +360,34 @@ class PointSolution(BaseSolution):
         InputError
             If an argument is outside its range.
         """
-        from stribeck.solver.point.dataset import field_dataset
+        if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MAX_POINTS:
+            raise InputError(f"points = {show(points)}; it must be a whole number from 2 to {MAX_POINTS}.")
+        if isinstance(reach, bool) or not isinstance(reach, int | float) or not (reach > 0 and math.isfinite(reach)):
+            raise InputError(f"reach = {show(reach)}; it must be a positive number of Hertz radii.")
+        found, scale = (self.field, 1.0) if self.contact is None else (self.to_si, self.contact.hertz.half_width)
+        along = np.linspace(-reach, reach, points) * scale
+        return found(along, along[:, None]).to_dataset().assign_attrs(self._attributes())
 
-        return field_dataset(self, points, reach)
+    def _attributes(self) -> dict[str, Any]:
+        """Return provenance, groups, inputs, observables and outcome for a dataset."""
+        found: dict[str, Any] = {
+            "title": "State of a lubricated rough ball on a flat",
+            "source": f"stribeck {version('stribeck')}",
+            "geometry": self.groups.geometry,
+            "outcome": self.outcome.value,
+            "rtol": self.rtol,
+            **law_attributes(self.groups.law, self.law == "smooth"),
+        }
+        found |= {f"{name}_group": float(getattr(self.groups, name)) for name in GROUPS}
+        if self.contact is not None:
+            inputs, table = dict(self.contact.inputs()), self.contact.INPUTS
+            found |= {f"input_{name}": value for name, value in inputs.items()}
+            found["input_units"] = ", ".join(f"{name} {unit_of(name, table)}" for name in inputs)
+        found |= {row.name: getattr(self, row.name) for row in self.outputs.rows if row.listed}
+        friction = self.friction()
+        found |= {"friction": friction.total, "friction_contact": friction.contact, "friction_viscous": friction.viscous}
+        found["notes"] = "\n".join(self.notes)
+        return found
 
 
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
