@@ -350,7 +350,7 @@ def test_a_shared_address_opens_as_it_was_left(open_page):
     assert other.locator(".chips .q-chip").inner_text() == page.locator(".chips .q-chip").inner_text()
 
     def drawn(each):
-        """Return the points of the with_same_active_set and the present curve, which come with the first frame."""
+        """Return the points of the pinned and the present curve, which come with the first frame."""
         for _ in range(100):
             series = each.evaluate(CHART, "friction")["series"]
             points = [s["data"] for s in series if s["id"] in ("pin0", "friction")]

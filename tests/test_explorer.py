@@ -38,6 +38,7 @@ from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
 from stribeck.explorer.serving.pools import Threads, run
+from stribeck.explorer.view import View
 from stribeck.quantities import units
 from stribeck.quantities.formats import format_si
 from stribeck.solids import Prony
@@ -275,7 +276,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
         answer = SimpleNamespace(inputs=opened.inputs, curve=None)
-        saved = files.read_case("saved.toml", files.content("toml", files.View(answer)))
+        saved = files.read_case("saved.toml", files.content("toml", View(answer)))
         same_contact(saved.contact, case.contact)
         for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
             assert getattr(saved, name) == getattr(case, name), name
@@ -290,7 +291,7 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     found = {row.key: row for row in table.numbers(answer)}[f"friction_{shown.definition}"]
     assert abs(found.value - expected.friction(definition=shown.definition).total) <= 2 * found.error
     assert answer.solution.law == "persson"
-    saved = files.read_case("saved.toml", files.content("toml", files.View(answer)))
+    saved = files.read_case("saved.toml", files.content("toml", View(answer)))
     assert sb.solve(saved.contact).friction() == expected.friction()
     assert "Persson, for the surface with hurst 0.8, longest wavelength 150 um" in carried.law_words(shown.model)
 
@@ -385,7 +386,7 @@ def check_link_and_saved_case(shown):
     opened = reopened(url.encode(shown))
     assert opened.problems == {} and opened.inputs == shown
     assert url.encode(opened.inputs) == url.encode(shown)
-    saved = files.read_case("saved.toml", files.content("toml", files.View(SimpleNamespace(inputs=shown, curve=None))))
+    saved = files.read_case("saved.toml", files.content("toml", View(SimpleNamespace(inputs=shown, curve=None))))
     same_contact(saved.contact, shown.contact)
     again = inputs.from_case(saved)
     assert (again.definition, again.rtol, again.title) == (shown.definition, shown.rtol, shown.title)
@@ -911,7 +912,7 @@ def test_lines_and_text_stand_out_from_their_ground(palette):
 
 def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
     odd = replace(inputs.slid(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
-    shown = files.View(Answerer()(odd))
+    shown = View(Answerer()(odd))
     path = tmp_path / "case.toml"
     path.write_bytes(files.content("toml", shown))
     case = sb.load_case(path)
@@ -928,11 +929,11 @@ def rows_of(content):
 
 def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
     [measured] = read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n0.01,0.2\n", answer.inputs.contact)
-    shown = files.View(answer, [("with_same_active_set, once", answer.curve, 2.0)], (measured,))
+    shown = View(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
     rows = rows_of(files.content("csv", shown))
     assert len(rows) == 121 + 121 + 2
     assert float(rows[60]["friction_balanced [1]"]) == answer.curve.friction["balanced"][60]
-    assert rows[130]["curve"] == "with_same_active_set, once"
+    assert rows[130]["curve"] == "pinned, once"
     assert float(rows[130]["hersey_number [1]"]) == 2.0 * answer.curve.speed[9]
     assert rows[-1] == {
         "curve": "measured: m.csv",
@@ -947,7 +948,7 @@ def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
 
 
 def test_the_profile_is_downloaded_in_si_units(answer):
-    rows = rows_of(files.content("profile.csv", files.View(answer)))
+    rows = rows_of(files.content("profile.csv", View(answer)))
     x = np.array([float(row["position [m]"]) for row in rows])
     total = np.array([float(row["contact_pressure [Pa]"]) + float(row["fluid_pressure [Pa]"]) for row in rows])
     solved = sb.solve(START.contact).to_si(x)
@@ -956,16 +957,16 @@ def test_the_profile_is_downloaded_in_si_units(answer):
 
 
 def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
-    shown = files.View(
+    shown = View(
         answer,
-        [("with_same_active_set", answer.curve, 1.0)],
+        [("pinned", answer.curve, 1.0)],
         tuple(read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n", answer.inputs.contact)),
     )
     for what in ("curve", "state"):
         assert files.content(f"{what}.png", shown).startswith(b"\x89PNG")
         assert ElementTree.fromstring(files.content(f"{what}.svg", shown)).tag.endswith("svg")
     figure = picture.figure_of(shown, "curve")
-    assert {"with_same_active_set", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    assert {"pinned", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
 
 
 def test_a_pin_is_named_after_what_differs_from_the_start():

@@ -13,8 +13,7 @@ from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.fixed_cavity_length import OfLength, solve_of_length
 from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
-from stribeck.equations.inverses import Coupled, Eliminated
-from stribeck.equations.line import Operators
+from stribeck.equations.line import Coupled, Eliminated, Operators
 from stribeck.equations.observables import gradients, observables
 from stribeck.equations.prediction import SeenFrom, extrapolate
 from stribeck.equations.sensitivity import log_derivatives

@@ -8,25 +8,23 @@ import io
 import json
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
-from stribeck.contacts.friction import DEFINITIONS, Definition
-from stribeck.explorer.answer import Answer
-from stribeck.explorer.curves import Curve, hersey_scale
+from stribeck.contacts.friction import DEFINITIONS
+from stribeck.explorer.charts.picture import picture
+from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.carried import model_changes, model_words, tables_of, toml_text
 from stribeck.explorer.inputs.inputs import Inputs, exact_text
-from stribeck.explorer.measured import Measured
+from stribeck.explorer.view import View
 from stribeck.files.toml import parse_toml
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["KINDS", "View", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
+__all__ = ["KINDS", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
 
 MAX_NAME_LENGTH = 80  # Letters of the name of a downloaded file.
 
@@ -40,16 +38,6 @@ KINDS = {
     "Case file of this state (TOML)": "toml",
 }
 """Downloads: label and ending."""
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """What a tab shows."""
-
-    answer: Answer  # The answer to its inputs
-    pins: Sequence[tuple[str, Curve, float]] = ()  # Pinned curves: name, curve, Hersey number at 1 m/s
-    measured: tuple[Measured, ...] = ()  # Measured curves
-    states: Sequence[tuple[str, BaseSolution, Definition]] = ()
 
 
 def read_case(name: str, content: bytes) -> Case:
@@ -122,8 +110,6 @@ def content(kind: str, shown: View, go_on: Callable[..., object] | None = None) 
     """Return the content of a file of what is shown."""
     what, _, ending = kind.partition(".")
     if ending in ("png", "svg"):
-        from stribeck.explorer.charts.picture import picture
-
         return picture(shown, what, ending, go_on)
     text = {"toml": case_text, "csv": curves_text, "profile.csv": profile_text}[kind]
     return text(shown).encode()

@@ -15,7 +15,6 @@ from typing import Any
 from nicegui import background_tasks
 
 from stribeck.explorer.answer import Answer, Answerer
-from stribeck.explorer.downloads import View
 from stribeck.explorer.inputs import url
 from stribeck.explorer.inputs.carried import errors_of
 from stribeck.explorer.inputs.history import History
@@ -25,6 +24,7 @@ from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.explorer.opening import curves_of
 from stribeck.explorer.page import UPDATING_TEXT, Page
 from stribeck.explorer.serving.pools import Threads, run
+from stribeck.explorer.view import View
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.curves import Curve, hersey_scale
-from stribeck.explorer.downloads import View
 from stribeck.explorer.inputs import url
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.serving.pools import OPENING, run
+from stribeck.explorer.view import View
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 

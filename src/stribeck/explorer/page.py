@@ -22,13 +22,14 @@ from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.charts.parts import Options
 from stribeck.explorer.curves import in_atlas
-from stribeck.explorer.downloads import View, examples
+from stribeck.explorer.downloads import examples
 from stribeck.explorer.inputs import choices, inputs
 from stribeck.explorer.inputs.choices import CHOICES
 from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.scans import SCAN_ENDINGS
+from stribeck.explorer.view import View
 from stribeck.regimes.margins import RegimeMargins
 
 __all__ = ["UPDATING_TEXT", "Page"]

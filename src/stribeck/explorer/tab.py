@@ -13,7 +13,6 @@ from nicegui import events, ui
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
 from stribeck.explorer.charts.palette import LIGHT
-from stribeck.explorer.downloads import View
 from stribeck.explorer.following import Following, Superseded, reason
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.inputs import Inputs
@@ -23,6 +22,7 @@ from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
 from stribeck.explorer.serving.pools import FILES, run
 from stribeck.explorer.serving.tidy import tidy_soon
+from stribeck.explorer.view import View
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 

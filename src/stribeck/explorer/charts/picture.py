@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.explorer.charts.palette import LIGHT, PIN_DASHES
 from stribeck.explorer.curves import hersey_scale
-
-if TYPE_CHECKING:
-    from stribeck.explorer.downloads import View
+from stribeck.explorer.view import View
 
 __all__ = ["figure_of", "picture"]
 
