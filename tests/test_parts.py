@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.with_parts import part_attributes, with_parts
+from stribeck.contacts.with_parts import with_parts
 from stribeck.fluids.presets import celsius
 from stribeck.quantities.inputs import LINE, POINT, quantity
 from stribeck.quantities.units import DIMENSIONS

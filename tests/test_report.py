@@ -10,7 +10,7 @@ from rich.console import Console
 
 import stribeck as sb
 from stribeck.cli.reports.words import print_head
-from stribeck.contacts.with_parts import part_attributes
+from stribeck.contacts.contact import part_attributes
 from stribeck.quantities.formats import format_share
 
 LAW = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}

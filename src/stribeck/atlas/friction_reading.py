@@ -10,9 +10,10 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_friction, reshape_to_groups, slopes_of
-from stribeck.contacts.friction import PURE_SLIDING, Definition, check_definition
+from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, checked_kind, show

@@ -12,7 +12,7 @@ from typing import Any, Literal, Self
 
 from stribeck.cases.model_parts import take_parts
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import PURE_SLIDING
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, quantity
@@ -149,7 +149,7 @@ class FitSettings:
         FitSettings
             With its geometry and motion.
         """
-        return cls(geometry=contact.groups.geometry, slide_to_roll=getattr(contact, "slide_to_roll", PURE_SLIDING))
+        return cls(geometry=contact.groups.geometry, slide_to_roll=contact.slide_to_roll)
 
     @property
     def ratios(self) -> tuple[float, ...]:

@@ -8,20 +8,42 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Self
 
+import numpy as np
+
+from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.parts import BASE_PARTS, PART_KEYWORDS, PURE_SLIDING, Parts
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.description import Fluid
+from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits, FlowFactors
 from stribeck.quantities.contact_values import contact_values, replace_inputs
 from stribeck.quantities.conversions import convert_inputs
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import InputTable, si_text
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, part_value, with_part_value
 from stribeck.quantities.results import Card, card_html
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.solid import Solid
 
-__all__ = ["Contact", "HertzScales", "input_texts"]
+__all__ = ["Contact", "HertzScales", "in_words", "input_texts", "model_words", "part_attributes"]
+
+
+# Dimensions of the numbers of fluids and solids, by the last word of their names.
+UNITS_BY_LAST_WORD = {
+    "time": "time",
+    "pressure": "pressure",
+    "stress": "pressure",
+    "viscosity": "viscosity",
+    "thickness": "length",
+    "coefficient": "pressure coefficient",
+}
 
 
 @dataclass(frozen=True)
@@ -53,7 +75,7 @@ class HertzScales:
     pressure: float
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Contact(ABC):
     """The inputs that contacts of all geometries keep, in SI units; see the contact of a geometry for what they are."""
 
@@ -67,6 +89,7 @@ class Contact(ABC):
     boundary_friction: float
     modulus: float
     law: AsperityLaw | None
+    parts: Parts = field(repr=False)
 
     INPUTS: ClassVar[InputTable]
     WIDTH: ClassVar[str] = "Hertz half-width"
@@ -76,11 +99,25 @@ class Contact(ABC):
         self._keep(law, inputs)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        for name, value in contact_values(convert_inputs(inputs, self.INPUTS), self.INPUTS).items():
+        names = self._part_names
+        for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
+            row = PART_INPUTS[PART_LETTERS.get(name, name)]
+            raise InputError(
+                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
+                f"to the contact as {row.table}."
+            )
+        # The numbers are checked with the parts of the article's model first, so that what is wrong with them is said of them.
+        object.__setattr__(self, "parts", BASE_PARTS)
+        numbers = {name: value for name, value in inputs.items() if name not in names and name != "parts"}
+        for name, value in contact_values(convert_inputs(numbers, self.INPUTS), self.INPUTS).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
+        parts: Parts = inputs.get("parts", BASE_PARTS)
+        given = {name: inputs[name] for name in names & inputs.keys()}
+        object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
+        _ = self.groups.model
 
     @classmethod
     def of_kept(cls, inputs: Mapping[str, Any], law: str | AsperityLaw | None) -> Self:
@@ -143,9 +180,25 @@ class Contact(ABC):
         """
         return dict(self.inputs())
 
-    def _repr_html_(self) -> str:
-        from stribeck.contacts.with_parts import model_words
+    def __repr__(self) -> str:
+        """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
+        shown = {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
+        shown |= {name: value for name, value in self.parts.items().items() if value != getattr(BASE_PARTS, name)}
+        shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
+    @property
+    def _part_names(self) -> frozenset[str]:
+        """The parts that are no inputs of its geometry."""
+        return PART_KEYWORDS - set(self.INPUTS.names)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a number of the fluid or the solid by its name, in SI units."""
+        found = part_value(self.parts, name) if name in PART_INPUTS else None
+        # Of a property that fails Python asks here, and would show none of what failed.
+        return object.__getattribute__(self, name) if found is None else found
+
+    def _repr_html_(self) -> str:
         rows = [(self.INPUTS.quantities[name].label, si_text(value, name, 4, self.INPUTS)) for name, value in self.inputs()]
         law = "exponential" if self.law is None else self.law.name
         model = [("model", words)] if (words := model_words(self.groups, self)) else []
@@ -157,8 +210,9 @@ class Contact(ABC):
         Parameters
         ----------
         **changes : str or float
-            Arguments of the contact; ``youngs_modulus`` and ``poisson_ratio`` together replace the
-            modulus, ``entrainment_speed`` the speed.
+            Arguments of the contact, and numbers of its fluid and solid by name, such as ``relaxation_time`` or
+            ``layer_thickness``; ``youngs_modulus`` and ``poisson_ratio`` together replace the modulus, ``entrainment_speed``
+            the speed.
 
         Returns
         -------
@@ -168,11 +222,55 @@ class Contact(ABC):
         Raises
         ------
         InputError
-            Where a value is impossible, as in the contact itself.
+            Where a value is impossible, or the fluid or solid has no such number.
         """
+        numbers = {name: changes.pop(name) for name in PART_INPUTS if name in changes}
+        if numbers:
+            parts = Parts(**{**self.parts.items(), **{name: changes.pop(name) for name in self._part_names & changes.keys()}})
+            for name, value in numbers.items():
+                parts = with_part_value(parts, name, value)
+            changes["parts"] = parts
         kept = {field.name: getattr(self, field.name) for field in fields(self)}
         inputs = replace_inputs(kept, changes, self.INPUTS)
         return self.of_kept(inputs, inputs.pop("law"))
+
+    @property
+    def film_units(self) -> FilmUnits:
+        """Scales of the numbers of its fluid."""
+        hertz = self.hertz
+        return FilmUnits(
+            pressure=hertz.pressure,
+            time=6 * self.viscosity / hertz.pressure * (hertz.half_width / hertz.indentation),
+            gap=hertz.indentation,
+            viscosity=self.viscosity,
+            decay_length=self.roughness / self.alpha,
+            alpha=self.alpha,
+        )
+
+    @property
+    def fluid(self) -> Fluid:
+        """The fluid."""
+        return self.parts.fluid
+
+    @property
+    def cavitation(self) -> Cavitation:
+        """How the film ends behind the contact."""
+        return self.parts.cavitation
+
+    @property
+    def cavity_pressure(self) -> float:
+        """Rupture pressure of a film that reforms, above the ambient one [Pa]."""
+        return self.parts.cavity_pressure
+
+    @property
+    def flow_factors(self) -> FlowFactors | None:
+        """What roughness does to the flow."""
+        return self.parts.flow_factors
+
+    @property
+    def solid(self) -> Solid | None:
+        """The soft body; None is a half-space."""
+        return self.parts.solid
 
     def _check_scales(self) -> None:
         """Refuse values, each possible alone, whose groups leave the range of double precision."""
@@ -196,3 +294,53 @@ def input_texts(contact: Contact | None, *without: str | None) -> list[str]:
     return [
         f"{table.symbols[name]} = {si_text(value, name, 4, table)}" for name, value in contact.inputs() if name not in without
     ]
+
+
+def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
+    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's."""
+    model = groups.model
+    if model == BASE_MODEL:
+        return {}
+    if contact is None:
+        laws: dict[str, Any] = {"fluid": _at_speed(model.film, np.unique(np.asarray(groups.speed))), "solid": model.solid}
+        slide_to_roll, cavity_pressure = 2 * model.film.slide, model.cavity_pressure
+    else:
+        laws = {"fluid": contact.fluid, "flow_factors": contact.flow_factors, "solid": contact.solid}
+        slide_to_roll, cavity_pressure = contact.slide_to_roll, contact.cavity_pressure
+    found: dict[str, float | str] = {}
+    for what, law in laws.items():
+        if law is not None:
+            found |= {what: law.name, **{f"{what}_{name}": value for name, value in law.parameters.items()}}
+    found["cavitation"] = model.cavitation.value
+    if model.cavitation is Cavitation.REFORM:
+        found["cavity_pressure"] = cavity_pressure
+    return found | {"slide_to_roll": slide_to_roll}
+
+
+def model_words(groups: Groups, contact: Contact | None) -> str:
+    """Return those parts of a model that are neither the article's nor among the inputs; empty if there are none."""
+    inputs = () if contact is None else contact.INPUTS.names
+    found: dict[str, float | str] = {}
+    for name, value in part_attributes(groups, contact).items():
+        if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
+            continue
+        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
+        found[name.removeprefix(owner)] = value
+    return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
+
+
+def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
+    """Return names and values in words, in SI units with these."""
+    said = []
+    for name, value in parameters.items():
+        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
+        text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
+        said.append(f"{name.replace('_', ' ')} {text}")
+    return ", ".join(said)
+
+
+def _at_speed(film: Any, speeds: Array) -> Any:
+    """Return a film with the numbers of its rate law as groups are given them at their speed, where they have a single one."""
+    if not film.uses_speed or len(speeds) != 1 or not speeds[0] > 0:
+        return film
+    return replace(film, law=film.law.scaled(HERTZ_UNITS._replace(time=1 / float(speeds[0]))))

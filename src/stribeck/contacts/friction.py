@@ -29,9 +29,6 @@ Definition = Literal["balanced", "published"]
 # Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6).
 DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
 
-
-PURE_SLIDING = 2.0  # Slide-to-roll ratio with one surface at rest
-
 FULL_SLIP_RATIO = 0.01  # Slide-to-roll ratio from which asperities slide fully
 
 

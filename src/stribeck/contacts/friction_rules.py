@@ -21,9 +21,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FULL_FAR_FILM, far_error, friction_integral, is_far
-from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
+from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import Model
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.scaling import SCALINGS
 
 __all__ = ["COMPLEX_STEP", "RULES", "FrictionRule"]
@@ -135,7 +136,7 @@ def _beta(contact: Contact | None) -> float:
 
 def slide_to_roll(contact: Contact | None) -> float:
     """Return the slide-to-roll ratio of a contact, 2 without one."""
-    return float(getattr(contact, "slide_to_roll", PURE_SLIDING))
+    return PURE_SLIDING if contact is None else float(contact.slide_to_roll)
 
 
 def speed_words(contact: Contact) -> str:

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import inspect
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from stribeck.contacts.contact import HertzScales
+from stribeck.contacts.contact import Contact, HertzScales
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.parts import BASE_PARTS, Parts, WithParts, signature_with_parts
+from stribeck.contacts.parts import BASE_PARTS, signature_with_parts
 from stribeck.quantities.contact_values import signature_of
 from stribeck.quantities.inputs import LINE, InputTable, quantity
 from stribeck.quantities.keywords import answers_typos
@@ -26,7 +26,7 @@ __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
 
 
 @dataclass(frozen=True, init=False, repr=False)
-class LineContact(WithParts):
+class LineContact(Contact):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 
     Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -117,8 +117,6 @@ class LineContact(WithParts):
     >>> round(contact.groups.load, 3)
     0.303
     """
-
-    parts: Parts = field(repr=False)
 
     INPUTS: ClassVar[InputTable] = LINE
     __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(LINE))

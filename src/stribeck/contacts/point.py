@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import inspect
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self
 
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import HertzScales
-from stribeck.contacts.friction import PURE_SLIDING
+from stribeck.contacts.contact import Contact, HertzScales
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.contacts.parts import BASE_PARTS, Parts, WithParts, signature_with_parts
+from stribeck.contacts.parts import BASE_PARTS, PURE_SLIDING, Parts, signature_with_parts
 from stribeck.quantities.contact_values import signature_of
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import POINT, InputTable, quantity
@@ -35,7 +34,7 @@ class HamrockDowsonNumbers(NamedTuple):
 
 
 @dataclass(frozen=True, init=False, repr=False)
-class PointContact(WithParts):
+class PointContact(Contact):
     r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
 
     Every quantity is text with a unit (``"9.5 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -120,7 +119,6 @@ class PointContact(WithParts):
 
     slide_to_roll: float
     wetted_radius: float | None
-    parts: Parts = field(repr=False)
 
     INPUTS: ClassVar[InputTable] = POINT
     WIDTH: ClassVar[str] = "Hertz radius"

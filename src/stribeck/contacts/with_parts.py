@@ -4,44 +4,26 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.model import Model
 from stribeck.contacts.parts import PART_KEYWORDS, Parts
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
-from stribeck.quantities.formats import format_si
+from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
     "check_solid",
     "hertz_units",
-    "in_words",
     "model_at",
-    "model_words",
     "models_at_both_sides",
-    "part_attributes",
     "admissible_steps",
     "with_parts",
 ]
-
-# Dimensions of the numbers of fluids and solids, by the last word of their names.
-UNITS_BY_LAST_WORD = {
-    "time": "time",
-    "pressure": "pressure",
-    "stress": "pressure",
-    "viscosity": "viscosity",
-    "thickness": "length",
-    "coefficient": "pressure coefficient",
-}
 
 CENTRAL_STEP = 1e-5  # Change of a logarithm to both sides by which a model is differentiated
 ONE_SIDED_STEP = 1e-7  # Change of a logarithm to one side, where the model refuses the other side
@@ -94,56 +76,6 @@ def admissible_steps(contact: Contact, name: str, step: float, alone: float) -> 
             return 0.0, alone
         return -alone, 0.0
     return -step, step
-
-
-def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
-    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's."""
-    model, parts = groups.model, getattr(contact, "parts", None)
-    if model == BASE_MODEL:
-        return {}
-    if parts is None:
-        laws: dict[str, Any] = {"fluid": _at_speed(model.film, np.unique(np.asarray(groups.speed))), "solid": model.solid}
-        slide_to_roll, cavity_pressure = 2 * model.film.slide, model.cavity_pressure
-    else:
-        laws = {"fluid": parts.fluid, "flow_factors": parts.flow_factors, "solid": parts.solid}
-        slide_to_roll, cavity_pressure = getattr(contact, "slide_to_roll", parts.slide_to_roll), parts.cavity_pressure
-    found: dict[str, float | str] = {}
-    for what, law in laws.items():
-        if law is not None:
-            found |= {what: law.name, **{f"{what}_{name}": value for name, value in law.parameters.items()}}
-    found["cavitation"] = model.cavitation.value
-    if model.cavitation is Cavitation.REFORM:
-        found["cavity_pressure"] = cavity_pressure
-    return found | {"slide_to_roll": slide_to_roll}
-
-
-def model_words(groups: Groups, contact: Contact | None) -> str:
-    """Return those parts of a model that are neither the article's nor among the inputs; empty if there are none."""
-    inputs = () if contact is None else contact.INPUTS.names
-    found: dict[str, float | str] = {}
-    for name, value in part_attributes(groups, contact).items():
-        if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
-            continue
-        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
-        found[name.removeprefix(owner)] = value
-    return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
-
-
-def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
-    """Return names and values in words, in SI units with these."""
-    said = []
-    for name, value in parameters.items():
-        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
-        text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
-        said.append(f"{name.replace('_', ' ')} {text}")
-    return ", ".join(said)
-
-
-def _at_speed(film: Any, speeds: Array) -> Any:
-    """Return a film with the numbers of its rate law as groups are given them at their speed, where they have a single one."""
-    if not film.uses_speed or len(speeds) != 1 or not speeds[0] > 0:
-        return film
-    return replace(film, law=film.law.scaled(HERTZ_UNITS._replace(time=1 / float(speeds[0]))))
 
 
 def hertz_units(groups: Groups) -> FilmUnits:

@@ -12,11 +12,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import Contact
+from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.with_parts import model_words
 from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, observed, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place, friction_at

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.contact_laws.law import WithArea, law_attributes
+from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import AREA_ROWS, GROUPS, OUTPUT_TABLES

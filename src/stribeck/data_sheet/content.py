@@ -16,7 +16,7 @@ from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
-from stribeck.contacts.with_parts import model_words
+from stribeck.contacts.contact import model_words
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known

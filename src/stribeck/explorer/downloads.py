@@ -142,7 +142,7 @@ def case_text(shown: View) -> str:
 
 def _rolls(inputs: Inputs) -> bool:
     """Return whether a case gives the speed as the mean of both surfaces: a ball and a disc that both move."""
-    return inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2  # type: ignore[attr-defined]
+    return inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2
 
 
 def curves_text(shown: View) -> str:

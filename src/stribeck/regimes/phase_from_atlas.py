@@ -12,9 +12,10 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import PURE_SLIDING, Definition
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE

@@ -12,11 +12,10 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import WithArea
-from stribeck.contacts.contact import Contact
+from stribeck.contacts.contact import Contact, model_words, part_attributes
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
-from stribeck.contacts.with_parts import model_words, part_attributes
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.formats import format_si

@@ -12,8 +12,7 @@ import numpy as np
 from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import Sensitivities, hersey_of, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import Contact
-from stribeck.contacts.with_parts import part_attributes
+from stribeck.contacts.contact import Contact, part_attributes
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.solver.base_solution import BaseSolution, si_films

@@ -11,10 +11,9 @@ import numpy as np
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import Contact
+from stribeck.contacts.contact import Contact, in_words, model_words
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import in_words, model_words
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_bound, format_si
 from stribeck.quantities.input_rows import ROWS

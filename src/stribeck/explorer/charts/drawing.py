@@ -39,11 +39,11 @@ def drawing(answer: Answer) -> str:
         flat.append((CENTRE_X + i, SURFACE_Y + dent))
     wet = [k for k, (x, y) in enumerate(body) if abs(x - CENTRE_X) < 1.7 * a + 12 and y > CLIP_Y]
     film_of = body[wet[0] : wet[-1] + 1] + flat[wet[0] : wet[-1] + 1][::-1]
-    layer = getattr(getattr(contact, "solid", None), "thickness", None)
+    layer = getattr(contact.solid, "thickness", None)
     deep = HEIGHT - 4.0
     if layer is not None:
         deep = min(SURFACE_Y + bottom + 6 + 9 * math.log10(1 + layer / scales.half_width), HEIGHT - 8.0)
-    srr = float(getattr(contact, "slide_to_roll", 2.0))
+    srr = float(contact.slide_to_roll)
     upper, lower = 0.5 * (1 - srr / 2), 0.5 * (1 + srr / 2)
     what = "Cylinder" if contact.INPUTS.geometry == "line" else "Ball"
     film = format_si(solution.central_gap * scales.indentation, "length", 3)

@@ -65,7 +65,7 @@ def model_of_case(case: Case) -> str:
         # Of a ball the motion is one of its inputs.
         if name in case.tables and (name, case.contact.groups.geometry) != ("motion", "point"):
             given = case.tables[name]
-            found[name] = fluid_table(case.contact.fluid) if "preset" in given else given  # type: ignore[attr-defined]
+            found[name] = fluid_table(case.contact.fluid) if "preset" in given else given
     if case.contact.groups.geometry == "line" and "slide_to_roll" in case.tables["contact"]:
         found["motion"] = {"slide_to_roll": case.tables["contact"]["slide_to_roll"]}
     return json_text({name: value for name, value in found.items() if value != {}})

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far, log_cut_offs
-from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
+from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.point import PointContact
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
