@@ -9,10 +9,16 @@ from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_again
 from stribeck.checks.subject import Subject
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.inputs import POINT, InputTable
-from stribeck.solver.notes import HARD_PREFIX, MAX_CONTACT_SLOPE, OIL_COEFFICIENT, pressure_notes, width_notes
+from stribeck.solver.notes import (
+    HARD_PREFIX,
+    MAX_CONTACT_SLOPE,
+    MAX_PRESSURE_EXPONENT,
+    OIL_COEFFICIENT,
+    pressure_notes,
+    width_notes,
+)
 
 STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
-STIFFENING_OUTSIDE = 1.0  # Same product at which the film is 12 % thicker and its friction 88 % larger (when_not_to_use.md)
 
 MODULUS_FINE_PA = 1e9  # Largest E* of a soft body [Pa]
 MODULUS_OUTSIDE_PA = 1e10  # E* from which a body is metal, glass or ceramic, whose asperities yield [Pa]
@@ -133,14 +139,14 @@ def pressure(subject: Subject) -> Check:
     given = subject.fact("pressure_viscosity")
     coefficient = OIL_COEFFICIENT if given is None else given
     growth = coefficient * p
-    limit = STIFFENING_FINE / coefficient if coefficient > 0 else math.inf
+    limit, outside = (part / coefficient if coefficient > 0 else math.inf for part in (STIFFENING_FINE, MAX_PRESSURE_EXPONENT))
     modelled = subject.models("fluid")
     uses_pressure = getattr(getattr(subject.contact, "fluid", None), "viscosity", None) is not None
     if uses_pressure:
         return Check(
             "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is modelled ({modelled}).", "Pa"
         )
-    verdict = verdict_of(growth, STIFFENING_FINE, STIFFENING_OUTSIDE * (1 + 1e-12))
+    verdict = verdict_of(p, limit, outside)
     if given is None and verdict == "outside":
         [sentence] = pressure_notes(subject.contact)
     else:
@@ -179,7 +185,7 @@ def width(subject: Subject) -> Check:
     for a cylinder, and 1 + (2/5) (a/R)^2 by the same integral of Sneddon for a ball.  Source: derived for docs/checks.md.
     """
     contact = subject.contact
-    slope = contact.hertz.half_width / contact.radius
+    slope = contact.slope
     verdict = verdict_of(slope, MAX_CONTACT_SLOPE, WIDTH_RATIO_OUTSIDE)
     error = EXCESS_LOAD_OF_CIRCLE[contact.groups.geometry] * slope**2
     notes = width_notes(contact)

@@ -6,9 +6,11 @@ import math
 
 from stribeck.checks.check import Check, Verdict, check_against_limits, number_text, verdict_of
 from stribeck.checks.subject import Subject
+from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction_rules import slide_to_roll
 from stribeck.quantities.formats import format_percent
-from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
+from stribeck.solver.notes import ATMOSPHERE, FLUID_PREFIX, SUCTION_PREFIX
+from stribeck.solver.point.solution import MAX_FILM_SLOPE, THICK_PREFIX, WETTED_PREFIX
 
 OIL_THINNING_RATE = 1e6  # Shear rate up to which oils without improvers keep their viscosity [1/s]
 WATER_THINNING_RATE = 1e9  # Shear rate up to which liquids as thin as water keep their viscosity [1/s]
@@ -44,22 +46,50 @@ REYNOLDS_OUTSIDE = 1.0  # Reduced Reynolds number beyond which Reynolds' equatio
 def suction(subject: Subject) -> Check:
     """Return the check of the suction behind the contact against the pressure of the atmosphere."""
     contact = subject.contact
-    if subject.models("cavitation"):
+    note = subject.note(SUCTION_PREFIX)
+    if subject.models("cavitation") and not note:
         return Check("suction", 0.0, ATMOSPHERE, "fine", f"Cavitation is modelled ({subject.models('cavitation')}).", "Pa")
     if contact.speed == 0:
         return Check("suction", 0.0, ATMOSPHERE, "fine", "At rest there is no suction.", "Pa")
-    fluid = subject.solution.fluid_pressure
-    value = max(0.0, -float(fluid.min()) * contact.hertz.pressure)
-    notes = cavitation_notes(contact, fluid)
-    sentence = (
-        notes[0]
-        if notes
-        else (
-            f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet "
-            "the film may break even so."
-        )
+    value = max(0.0, -float(subject.solution.fluid_pressure.min()) * contact.hertz.pressure)
+    sentence = note or (
+        f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet the film "
+        "may break even so."
     )
-    return Check("suction", value, ATMOSPHERE, verdict_of(value, ATMOSPHERE), sentence, "Pa")
+    return Check("suction", value, ATMOSPHERE, "doubtful" if note else "fine", sentence, "Pa")
+
+
+def fluid_laws(subject: Subject) -> Check | None:
+    """Return the check of how many laws of the fluid are left by the state; None where no law has a range."""
+    if not subject.models("fluid") and not subject.models("flow_factors"):
+        return None
+    notes = subject.note(FLUID_PREFIX)
+    left = notes.count(FLUID_PREFIX)
+    sentence = notes or "The film lies inside the range of the laws of its fluid."
+    return Check("laws of the fluid left", left, 0.0, "doubtful" if left else "fine", sentence)
+
+
+def thickness(subject: Subject) -> Check | None:
+    """Return the check of the film of a ball over its radius; None of cylinders."""
+    contact = subject.contact
+    if contact.groups.geometry != "point":
+        return None
+    ratio = subject.solution.central_gap * contact.slope**2
+    note = subject.note(THICK_PREFIX)
+    sentence = note or f"The film is {ratio:.2g} radii thick, which is thin."
+    return Check("film over radius", ratio, MAX_FILM_SLOPE, "doubtful" if note else "fine", sentence)
+
+
+def wetted_disc(subject: Subject) -> Check | None:
+    """Return the check of the disc of liquid around a ball; None where it has no edge."""
+    radius = getattr(subject.contact, "wetted_radius", None)
+    if radius is None:
+        return None
+    ratio = radius / subject.contact.hertz.half_width
+    note = subject.note(WETTED_PREFIX)
+    sentence = note or f"The liquid ends at {ratio:.2g} Hertz radii, where friction alone feels its edge."
+    verdict: Verdict = "doubtful" if note else "fine"
+    return Check("edge of the liquid over a", ratio, FAR_FILM_MIN_RADIUS, verdict, sentence, at_least=True)
 
 
 def shear_rate(subject: Subject) -> Check:

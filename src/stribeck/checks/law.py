@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_against_limits, verdict_of
+from stribeck._types import Array
+from stribeck.checks.check import MIN_STATED_CHANGE, Check, Checks, Verdict, check_against_limits, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
@@ -18,22 +19,13 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.notes import LAW_RANGE, TAIL_ADVICE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
-MINIMUM_CHECK = "contact law at the minimum"  # Name of the check that states the error of the minimum by itself
-TAIL_CHECK = "tail of the contact law"  # Name of the check that computes the error of the minimum
-
 # Change of minimum and transitions by the tail of the law up to which the change is stated as their error: without a scan
 # beta, which moves them too, is known no better than by a factor of 1.3.
 TAIL_CHANGE_FINE = 0.3
 
-MINIMUM_GAP_FINE = 3.7  # Gap over h_rms at the minimum of friction up to which a simulated surface gives its error
-MINIMUM_ERROR = 0.2  # Error of the minimum up to MINIMUM_GAP_FINE: -21 % in speed, -17 % in friction (docs/contact_laws.md)
-
 # Rms slope up to which linear elasticity and Reynolds' equation err by a tenth or two: :func:`roughness_slope`
 RMS_SLOPE_FINE = 0.3
 RMS_SLOPE_OUTSIDE = 1.0  # Rms slope from which linear elasticity and Reynolds' equation do not apply
-
-
-MINIMUM_ERROR_TEXT = ", by 10 to 20 %."  # End of the sentence on the minimum where the tail is not varied
 
 
 def roughness_slope(subject: Subject) -> Check | None:
@@ -118,21 +110,21 @@ def range_at_minimum(subject: Subject) -> Check | None:
     ratio = _ratio(subject, state)
     where = f"speed {format_si(subject.minimum.value, 'speed')}"
     note = minimum_note(state.groups, state.contact, state.observables, share, where)
-    sentence = (
-        note.replace(TAIL_ADVICE, MINIMUM_ERROR_TEXT)
-        or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
-    )
+    sentence = note.replace(TAIL_ADVICE, ".") or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
     if not note and not has_endless_tail(contact.law):
         sentence += " The law has a tail of its own."
-    limit = MINIMUM_GAP_FINE if has_endless_tail(contact.law) else math.inf
-    verdict = verdict_of(ratio, limit) if note else "fine"
-    error = MINIMUM_ERROR if note else 0.0
-    return Check(MINIMUM_CHECK, ratio, limit, verdict, sentence, "h_rms", error=error, notable=bool(note))
+    limit = LAW_RANGE[1] if has_endless_tail(contact.law) else math.inf
+    return Check("contact law at the minimum", ratio, limit, "doubtful" if note else "fine", sentence, "h_rms")
 
 
-def without_error(minimum: Check) -> Check:
-    """Return the check of the minimum beside that of the tail, which computes the error."""
-    return replace(minimum, error=0.0, sentence=minimum.sentence.replace(MINIMUM_ERROR_TEXT, "."))
+def add_range_along_curve(checks: Checks, in_doubt: Array) -> Checks:
+    """Return the checks and, if none of them doubts the contact law but some points of a curve do, a check that does."""
+    count = int(np.count_nonzero(in_doubt))
+    if not count or any(each.of_law and each.verdict != "fine" for each in checks):
+        return checks
+    sentence = f"The contact law is outside its range at {count} of {len(in_doubt)} points of the curve."
+    added = Check("contact law along the curve", count / len(in_doubt), 0.0, "doubtful", sentence)
+    return replace(checks, checks=(*checks.checks, added))
 
 
 def tail(subject: Subject) -> Check | None:
@@ -159,7 +151,8 @@ def tail(subject: Subject) -> Check | None:
     moved = f"these move: {said}" if said else "nothing moves by 1 % or more"
     sentence = f"With the highest asperities of a finite surface {moved}. A spectrum does not determine their height."
     verdict = verdict_of(largest, TAIL_CHANGE_FINE)
-    return Check(TAIL_CHECK, largest, TAIL_CHANGE_FINE, verdict, sentence, error=largest, notable=largest >= MIN_STATED_CHANGE)
+    is_notable = largest >= MIN_STATED_CHANGE
+    return Check("tail of the contact law", largest, TAIL_CHANGE_FINE, verdict, sentence, error=largest, notable=is_notable)
 
 
 def _place(name: str) -> str:

@@ -112,6 +112,10 @@ class Subject:
                 return float(found)
         return None
 
+    def note(self, beginning: str) -> str:
+        """Return the notes of the state that begin in one way, as one text; empty if there are none."""
+        return " ".join(note for note in self.solution.notes if note.startswith(beginning))
+
     def models(self, part: str) -> str:
         """Return the name of the contact's fluid, solid or cavitation, empty for that of the base model."""
         found = getattr(self.contact, part, None)

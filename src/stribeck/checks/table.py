@@ -51,6 +51,9 @@ ROWS = (
     Row("viscous heating", film.heating, "contact"),
     Row("contact law at the centre", law.range_at_centre, "state"),
     Row("suction", film.suction, "state"),
+    Row("laws of the fluid", film.fluid_laws, "state"),
+    Row("film over radius", film.thickness, "state"),
+    Row("edge of the liquid", film.wetted_disc, "state"),
     Row("shear rate", film.shear_rate, "state"),
     Row("supply", film.supply, "state", "supply_film"),
     Row("film against molecules", film.molecules, "state"),
@@ -113,8 +116,6 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
             found.append(made)
         elif row.missing:
             missing[row.name] = row.missing
-    if any(each.name == law.TAIL_CHECK for each in found):
-        found = [law.without_error(each) if each.name == law.MINIMUM_CHECK else each for each in found]
     return Checks(tuple(found), tuple(unsolved), missing)
 
 
@@ -140,7 +141,8 @@ def checks_of_curve(
     contact = curve.contact if over_speed else curve.solutions[-1].contact
     assert contact is not None
     if is_whole:  # on a curve of its own: this one need not hold the minimum
-        return checks_of(Subject(contact, facts or {}, curve.definition, solution, on_point=on_point))
+        found = checks_of(Subject(contact, facts or {}, curve.definition, solution, on_point=on_point))
+        return law.add_range_along_curve(found, curve.law_in_doubt)
     subject = Subject(contact, facts or {}, curve.definition, solution, curve if over_speed else None)
     found = checks_of(
         subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact"
@@ -148,4 +150,4 @@ def checks_of_curve(
     if over_speed and solution is None:
         minimum = law.range_at_minimum(subject)
         found = replace(found, checks=(*found.checks, *([minimum] if minimum is not None else [])))
-    return found
+    return law.add_range_along_curve(found, curve.law_in_doubt)

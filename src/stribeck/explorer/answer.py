@@ -17,6 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics import FORMULAS
 from stribeck.checks.check import Checks
+from stribeck.checks.law import add_range_along_curve
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
@@ -102,6 +103,11 @@ class Answer:
     plane: Field | None  # The fields on the plane of a ball, from the middle line on to one side, to which the other is equal
     thin: tuple[AsymptoticField, ...]  # Asymptotic fields
     speeds: tuple[float, float]  # Ends of the axis of speeds [m/s]
+
+    @property
+    def checks_with_curve(self) -> Checks:
+        """The checks, and that of the contact law along the curve that is shown."""
+        return self.checks if self.curve is None else add_range_along_curve(self.checks, self.curve.doubtful)
 
 
 class Answerer:

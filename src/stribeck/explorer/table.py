@@ -214,7 +214,7 @@ def _line(row: Row) -> str:
 
 def verdict_html(answer: Answer) -> str:
     """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it."""
-    checks = answer.checks
+    checks = answer.checks_with_curve
     said = [each.sentence for each in checks.said]
     look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
     if not said:

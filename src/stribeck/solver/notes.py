@@ -14,7 +14,9 @@ from stribeck.quantities.formats import format_percent, format_si
 
 __all__ = [
     "TAIL_ADVICE",
+    "FLUID_PREFIX",
     "HARD_PREFIX",
+    "SUCTION_PREFIX",
     "cavitation_notes",
     "fluid_notes",
     "law_notes",
@@ -25,9 +27,16 @@ __all__ = [
     "width_notes",
 ]
 
-HARD_PREFIX = "Hard elastohydrodynamics:"  # Begins the sentence of pressure_notes, which outputs show before all others
-MAX_HERTZ_PRESSURE = 5e7  # Hertz pressure [Pa] at which an oil is e times as viscous as at ambient pressure
+# Beginnings of notes, by which outputs order them and checks find them
+HARD_PREFIX = "Hard elastohydrodynamics:"
+FLUID_PREFIX = "The fluid leaves the range of its laws:"
+SUCTION_PREFIX = "Behind the contact the fluid pressure falls"
+
 OIL_COEFFICIENT = 2e-8  # Pressure-viscosity coefficient of mineral oil [1/Pa], amid the usual 15 to 25 1/GPa
+MAX_PRESSURE_EXPONENT = (
+    1.0  # Pressure coefficient times Hertz pressure where films are 12 %, friction 88 % off (when_not_to_use.md)
+)
+MAX_HERTZ_PRESSURE = MAX_PRESSURE_EXPONENT / OIL_COEFFICIENT  # Hertz pressure up to which an oil may count as isoviscous [Pa]
 MAX_CONTACT_SLOPE = 0.3  # Hertz half-width over the radius above which the model is coarse
 LAW_RANGE = (0.4, 2.0)  # Gaps over h_rms in which the exponential law follows a rough surface (contact_laws.md)
 USUAL_ALPHA = 2.0  # Decay coefficient of self-affine surfaces, by which groups alone are judged
@@ -73,7 +82,7 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
 def fluid_notes(film: Film, gap: Array, pressure: Array, flux_gap: float) -> tuple[str, ...]:
     """Return the sentences that say where a film leaves the range of its laws."""
     said = film.notes(gap, pressure if film.uses_pressure else None, flux_gap)
-    return tuple(f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said)
+    return tuple(f"{FLUID_PREFIX} {each.rstrip('.')}." for each in said)
 
 
 def shape_notes(contact: Contact | None) -> tuple[str, ...]:
@@ -203,6 +212,6 @@ def cavitation_notes(
         return ()
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.
     return (
-        f"Behind the contact the fluid pressure falls {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
+        f"{SUCTION_PREFIX} {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
         f"at atmospheric pressure the film cavitates there; cavitation = 'exit' or 'reform' models that. {consequence}",
     )

@@ -44,7 +44,7 @@ def figure_of(shown: View, what: str, go_on: Callable[..., object] | None = None
             on_point=go_on,
         )
     band = None if curve is None or curve.stale else curve.band
-    verdict = shown.answer.checks.headline
+    verdict = shown.answer.checks_with_curve.headline
     figure = found.plot(title=inputs.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
     axes = figure.axes[0]
     added, heights = [], [np.array(axes.get_ylim())]

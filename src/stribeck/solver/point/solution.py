@@ -37,6 +37,9 @@ __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
 MAX_POINTS = 2001  # Points along a side of a dataset: a file of more would take gigabytes
 MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
+# Beginnings of notes, by which checks find them
+THICK_PREFIX = "The film is"
+WETTED_PREFIX = "The liquid ends at"
 WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
     "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "
@@ -451,13 +454,13 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     thickness = 0.0 if contact is None else values.central_gap * contact.slope**2
     if thickness > MAX_FILM_SLOPE:
         notes.append(
-            f"The film is {thickness:.2g} radii thick: lubrication theory is the limit of thin films, and the friction of "
+            f"{THICK_PREFIX} {thickness:.2g} radii thick: lubrication theory is the limit of thin films, and the friction of "
             "a ball is known to the first order in that ratio only."
         )
     wetted = values._wetted_radius
     if wetted is not None and wetted < FAR_FILM_MIN_RADIUS:
         notes.append(
-            f"The liquid ends at {wetted:.2g} Hertz radii: friction is counted up to that edge, and films, pressures and load "
+            f"{WETTED_PREFIX} {wetted:.2g} Hertz radii: friction is counted up to that edge, and films, pressures and load "
             "shares are those of a ball in liquid, which one that ends below about "
             f"{FAR_FILM_MIN_RADIUS:g} Hertz radii changes."
         )
