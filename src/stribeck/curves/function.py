@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
@@ -97,13 +98,13 @@ class CurvePoint(Solution):
     """A point of a curve: its numbers come from the curve, its fields and notes from a state that is solved on first use."""
 
     _place: tuple[SolvedPath, float]
+    _coordinate: Coordinate
 
     def __init__(self, coordinate: Coordinate, path: SolvedPath, s: float, row: Array, errors: Array, rtol: float) -> None:
-        groups, contact = coordinate.groups_at(s), coordinate.contact_at(s)
+        groups = coordinate.groups_at(s)
         values = dict(zip(COLUMNS, row.tolist(), strict=True))
         known: dict[str, Any] = {
             "groups": groups,
-            "contact": contact,
             "outcome": Outcome.CONVERGED,
             "rtol": rtol,
             "observables": Observables(**values),
@@ -111,7 +112,12 @@ class CurvePoint(Solution):
             / drag_parts(row[:POSITION]),
             "minimum_position_error": float(errors[POSITION]),
         }
-        vars(self).update(known | {"_place": (path, s)})
+        vars(self).update(known | {"_place": (path, s), "_coordinate": coordinate})
+
+    @cached_property
+    def contact(self) -> Contact | None:  # checking its inputs takes longer than all else here
+        """The contact at this point."""
+        return self._coordinate.contact_at(self._place[1])
 
     @cached_property
     def _solved(self) -> Solution:

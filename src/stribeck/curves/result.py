@@ -313,7 +313,8 @@ class StribeckCurve(Exported, Shown, ByValue):
     def law_in_doubt(self) -> Array:
         """Whether the contact law is outside its range at each point while asperities matter there."""
         given = self.boundary_friction, self.beta
-        return np.array([bool(law_notes(each.groups, each.contact, each.observables, given)) for each in self.solutions], bool)
+        # alpha, beta and dry friction, all that the notes take from a contact, are the same at all points
+        return np.array([bool(law_notes(each.groups, self.contact, each.observables, given)) for each in self.solutions], bool)
 
     @property
     def error_estimate(self) -> float:

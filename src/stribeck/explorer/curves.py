@@ -51,7 +51,7 @@ SOLVED_RTOL = 1e-4  # Relative tolerance of curves that are solved.
 FIRST_RTOL = {"line": 5e-4, "point": SOLVED_RTOL}
 
 # Points of curves that are solved, by geometry; of a ball each point is a state where it is no function.
-SOLVED_POINTS = {"line": 200, "point": 15}
+SOLVED_POINTS = {"line": CURVE_POINTS, "point": 15}
 
 
 # Points of the curve that is solved for its notes where the page reads it off the atlas, by geometry.
