@@ -2,15 +2,18 @@
 
 Usage::
 
-    python benchmarks/fluid_box.py FAMILY [--number 200] [--seed 20261122] [--out STATES.jsonl] [--table]
+    python benchmarks/fluid_box.py FAMILY [--number 200] [--seed 20261122] [--rtol 1e-6] [--out STATES.jsonl] [--table]
+    python benchmarks/fluid_box.py FAMILY --rtol 1e-3 --outcomes --number 500 --out AFTER.jsonl --before BEFORE.jsonl
 
-FAMILY is cavitation, pressure, thinning, flow, layer, motion or combined.  Groups are drawn evenly in the logarithm over the
+FAMILY is cavitation, pressure, thinning, flow, layer, motion, combined, wide_thinning or wide_cavitation.  Groups are drawn evenly in the logarithm over the
 box of the solver: speed 1e-12 to 1e6, load 1e-8 to 10, relative roughness 1e-6 to 1e3, one state in eight smooth.  The numbers
 of the laws are drawn over their ranges; relaxation times so that the Weissenberg number in the film is 0.01 to 1000.
 
 The true error is that against a mesh with each panel halved, four more nodes on each and panels that reach eight times as far,
 from which Newton's iteration starts anew.  A state is wrong where that exceeds ten times the stated error.  With --out each
 state is a line of that file, and a later run goes on behind the last; --table prints what a file holds, and solves nothing.
+With --outcomes the true error is left out: at --rtol 1e-3 five hundred states of a family take about five minutes.  With
+--before the outcomes are counted beside those of another file, that of the code before a change.
 """
 
 from __future__ import annotations
@@ -37,8 +40,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import minimum_estimate, solved_point
 from stribeck.solver.solve_error import SolveError
 
-FAMILIES = ("cavitation", "pressure", "thinning", "flow", "layer", "motion", "combined")
-RTOL = 1e-6
+FAMILIES = ("cavitation", "pressure", "thinning", "flow", "layer", "motion", "combined", "wide_thinning", "wide_cavitation")
 WRONG = 10.0
 """True over stated error from which a state counts as wrong."""
 
@@ -47,6 +49,12 @@ OUTWARDS = 3
 
 FRAME = 0.9
 """Length of a cavity on the mesh for the true error over that on the mesh of the state."""
+
+KEPT_VALUES = ("central_gap", "viscous_balanced")
+"""Observables of a state that a later run is compared with."""
+
+SAME_STATE_RTOLS = 10.0
+"""Difference of an observable over the tolerance above which two runs have found different states."""
 
 
 def draw(family: str, index: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]:
@@ -57,7 +65,7 @@ def draw(family: str, index: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]
     groups = sb.Groups(speed, load, kappa * load)
     if family != "combined":
         parts = PARTS[family](rng, groups)
-        if family not in ("cavitation", "motion"):
+        if family not in ("cavitation", "motion", "wide_thinning", "wide_cavitation"):
             parts["cavitation"] = str(rng.choice(["none", "exit"]))
         return groups, parts
     parts = cavitation(rng, groups) | motion_alone(rng)
@@ -72,11 +80,17 @@ def draw(family: str, index: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]
     return groups, parts
 
 
-def cavitation(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
-    """Return a film that ends, or one that forms anew."""
+def cavitation(rng: np.random.Generator, groups: sb.Groups, decades: tuple[float, float] = (-4, 0)) -> dict[str, Any]:
+    """Return a film that ends, or one that forms anew at a suction within some decades of the Hertz pressure."""
     if rng.random() < 0.5:
         return {"cavitation": "exit"}
-    return {"cavitation": "reform", "cavity_pressure": -float(10 ** rng.uniform(-4, 0))}
+    return {"cavitation": "reform", "cavity_pressure": -float(10 ** rng.uniform(*decades))}
+
+
+def wide_cavitation(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
+    """Return a film that ends or forms anew at any suction, of any fluid whose viscosity is that of its pressure."""
+    parts = cavitation(rng, groups, (-7, 1)) | motion_alone(rng)
+    return parts | {"fluid": sb.fluids.Fluid(None, viscosity(rng))} if rng.random() < 0.3 else parts
 
 
 def viscosity(rng: np.random.Generator) -> Any:
@@ -104,10 +118,18 @@ def film_of(groups: sb.Groups) -> float:
     return max(min(0.4459 * speed**0.6, (speed**2 / 24) ** (1 / 3)) if speed > 1 else 0.4459 * speed**0.6, roughness)
 
 
-def thinning(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
+def wide_thinning(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
+    """Return a fluid that thins over ten decades of its rate, in a full film, one that ends or one that forms anew."""
+    parts = thinning(rng, groups, (-4, 6), 0.05)
+    return parts | cavitation(rng, groups) if rng.random() < 2 / 3 else parts
+
+
+def thinning(
+    rng: np.random.Generator, groups: sb.Groups, decades: tuple[float, float] = (-2, 3), least_exponent: float = 0.2
+) -> dict[str, Any]:
     """Return a fluid that thins, and how the surfaces slide."""
-    time = film_of(groups) * float(10 ** rng.uniform(-2, 3))
-    exponent, least = float(rng.uniform(0.2, 0.95)), float(10 ** rng.uniform(-4, -1)) * (rng.random() < 0.5)
+    time = film_of(groups) * float(10 ** rng.uniform(*decades))
+    exponent, least = float(rng.uniform(least_exponent, 0.95)), float(10 ** rng.uniform(-4, -1)) * (rng.random() < 0.5)
     laws = (
         lambda: sb.fluids.Carreau(time, exponent, least),
         lambda: sb.fluids.Cross(time, exponent, least),
@@ -160,6 +182,8 @@ PARTS = {
     "flow": flow,
     "layer": layer,
     "motion": motion,
+    "wide_thinning": wide_thinning,
+    "wide_cavitation": wide_cavitation,
 }
 
 
@@ -182,20 +206,23 @@ def true_errors(point: RefinedState) -> np.ndarray:
     return np.abs(point.values.array(in_article) - exact) / point.estimate.scales
 
 
-def measured(groups: sb.Groups, parts: dict[str, Any]) -> dict[str, Any]:
-    """Return what became of one state."""
+def measured(groups: sb.Groups, parts: dict[str, Any], rtol: float, is_judged: bool) -> dict[str, Any]:
+    """Return what became of one state, with its true error if it is judged."""
     start = time.perf_counter()
     try:
-        point = one_blas_thread(solved_point)(with_parts(groups, **parts), RTOL)
+        point = one_blas_thread(solved_point)(with_parts(groups, **parts), rtol)
     except SolveError as error:
         return {"outcome": error.outcome.name, "seconds": time.perf_counter() - start}
     seconds = time.perf_counter() - start
     if point.state is None or point.estimate is None:
         return {"outcome": point.outcome.name, "seconds": seconds}
     found = {"outcome": point.outcome.name, "seconds": seconds, "nodes": point.state.mesh.size}
+    found |= {name: float(getattr(point.values, name)) for name in KEPT_VALUES}
     in_article = point.state.equations.operators.is_base_model
-    stated = np.maximum(point.estimate.relative, minimum_estimate(RTOL, in_article))
+    stated = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
     found["stated"] = float(np.nanmax(stated))
+    if not is_judged:
+        return found
     try:
         errors = one_blas_thread(true_errors)(point)
     except (ArithmeticError, ValueError) as problem:
@@ -205,16 +232,24 @@ def measured(groups: sb.Groups, parts: dict[str, Any]) -> dict[str, Any]:
     return {**found, "error": float(errors[worst]), "of": names[worst], "single": float(np.nanmax(errors / stated))}
 
 
-def run(family: str, number: int, seed: int, out: Path | None) -> Iterator[dict[str, Any]]:
+def rows_of(family: str, path: Path) -> list[dict[str, Any]]:
+    """Return the states of a family that a file holds."""
+    rows = [json.loads(line) for line in path.read_text().splitlines()]
+    return [row for row in rows if row["family"] == family]
+
+
+def run(
+    family: str, number: int, seed: int, out: Path | None, rtol: float = 1e-6, is_judged: bool = True
+) -> Iterator[dict[str, Any]]:
     """Yield the states of a family, those that are in the file first."""
-    known = [json.loads(line) for line in out.read_text().splitlines()] if out is not None and out.exists() else []
-    known = [row for row in known if row["family"] == family and row["seed"] == seed]
+    known = rows_of(family, out) if out is not None and out.exists() else []
+    known = [row for row in known if row["seed"] == seed and row["rtol"] == rtol]
     yield from known[:number]
     for index in range(len(known), number):
         groups, parts = draw(family, index, seed)
-        row = {"family": family, "seed": seed, "index": index, "speed": groups.speed, "load": groups.load}
+        row = {"family": family, "seed": seed, "index": index, "rtol": rtol, "speed": groups.speed, "load": groups.load}
         row |= {"relative_roughness": groups.relative_roughness, "parts": {name: repr(part) for name, part in parts.items()}}
-        row |= measured(groups, parts)
+        row |= measured(groups, parts, rtol, is_judged)
         if out is not None:
             with out.open("a") as file:
                 file.write(json.dumps(row) + "\n")
@@ -235,20 +270,42 @@ def table_row(family: str, rows: list[dict[str, Any]]) -> str:
     )
 
 
+def before_and_after(family: str, before: list[dict[str, Any]], after: list[dict[str, Any]]) -> str:
+    """Return how many states of a family were solved by two runs, and how many of these are different states."""
+    other = {(row["seed"], row["index"], row["rtol"]): row for row in before}
+    pairs = [(other[key], row) for row in after if (key := (row["seed"], row["index"], row["rtol"])) in other]
+    solved = [sum(row["outcome"] == "CONVERGED" for row in rows) for rows in zip(*pairs, strict=True)]
+    differ = sum(
+        any(abs(new[name] / old[name] - 1) > SAME_STATE_RTOLS * new["rtol"] for name in KEPT_VALUES)
+        for old, new in pairs
+        if old["outcome"] == new["outcome"] == "CONVERGED"
+    )
+    seconds = [sum(row["seconds"] for row in rows) for rows in zip(*pairs, strict=True)]
+    return f"| {family} | {len(pairs)} | {solved[0]} | {solved[1]} | {differ} | {seconds[0]:.0f} | {seconds[1]:.0f} |"
+
+
 def main() -> None:
     """Print the table of a family."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("family", choices=FAMILIES)
     parser.add_argument("--number", type=int, default=200)
     parser.add_argument("--seed", type=int, default=20261122)
+    parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--outcomes", action="store_true", help="leave out the true errors")
+    parser.add_argument("--before", type=Path, help="states of the code before a change, to count beside these")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--table", action="store_true")
     arguments = parser.parse_args()
     if arguments.table:
-        known = [json.loads(line) for line in arguments.out.read_text().splitlines()]
-        rows = [row for row in known if row["family"] == arguments.family]
+        rows = rows_of(arguments.family, arguments.out)
     else:
-        rows = list(run(arguments.family, arguments.number, arguments.seed, arguments.out))
+        asked = arguments.family, arguments.number, arguments.seed, arguments.out, arguments.rtol
+        rows = list(run(*asked, is_judged=not arguments.outcomes))
+    if arguments.before is not None:
+        print("| family | states | solved before | solved after | other states | s before | s after |")
+        print("|---|---|---|---|---|---|---|")
+        print(before_and_after(arguments.family, rows_of(arguments.family, arguments.before), rows))
+        return
     print(
         "| family | states | converged | bounded by rounding | failed | error covered | wrong | largest error/estimate "
         "| s, median | most |"
