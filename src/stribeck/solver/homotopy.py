@@ -46,10 +46,7 @@ __all__ = ["extended", "paths_to_model", "settled"]
 ORDER = 10
 MESH_TOLERANCE = 1e-3
 NEWTON_TOLERANCE = 1e-5
-FINER = (12, 1e-5)  # Nodes per panel and tolerance of the mesh if coarse ones fail
 MOST_STEPS = 100
-
-SOON_LOST = 40  # The same where a shorter step along a path costs less
 
 # The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones.
 FREE_STEPS = 15
@@ -90,8 +87,7 @@ MOST_WORK, UNIT_SIZE = 3000.0, 300.0
 MOST_WORK_TO_END = 6000.0  # The same for all paths of loads together on which the film is to end
 
 
-# Decay of the Newtonian part of a blend with a fluid that thins: films are powers of it; the other is for the thinnest.
-FADING, FADING_FAR = 8.0, 24.0
+FADING = 8.0  # Logarithmic decay of the Newtonian part of a blend with a fluid that thins, as films are powers of that part
 
 
 @dataclass
@@ -109,9 +105,6 @@ class Work:
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """What :func:`march` asks for a state."""
-
-Way = tuple[Callable[[Film, float], Film], int, float, int, float]
-"""How a fluid changes into another with its part, nodes per panel and tolerance of the mesh, most Newton steps, first part."""
 
 
 @dataclass(frozen=True)
@@ -246,28 +239,13 @@ class BlendedSolid:
         return (1 - self.part) * self.plain.far_gap(x) + self.part * self.solid.far_gap(x)
 
 
-def _blend(film: Film, part: float, fading: float = FADING) -> Film:
-    plain = (1 - part) * (math.exp(-fading * part) if is_thinning(film) else 1.0)
+def _blend(film: Film, part: float) -> Film:
+    plain = (1 - part) * (math.exp(-FADING * part) if is_thinning(film) else 1.0)
     return cast(Film, BlendedFilm(film, 1 - plain))
-
-
-def _fade(film: Film, part: float) -> Film:
-    return _blend(film, part, FADING_FAR)
 
 
 def _milder(film: Film, part: float) -> Film:
     return film.milder(part)
-
-
-# In the order in which they are tried; the whole change at once is tried on each mesh.
-WAYS: tuple[Way, ...] = (
-    (_blend, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0),
-    (_milder, ORDER, MESH_TOLERANCE, SOON_LOST, 0.25),
-    (_milder, *FINER, MOST_STEPS, 1.0),
-)
-
-# The one that is tried last, where the films of another were lost to rounding.
-TO_THINNEST: Way = (_fade, ORDER, MESH_TOLERANCE, MOST_STEPS, 1.0)
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
@@ -282,12 +260,8 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     elif model.film == Newtonian() and model.solid == solid:
         yield extended(path, state)
     else:
-        for way in WAYS:
-            found = _blended(groups, path, state, way)
-            yield found
-            if is_lost_to_rounding(found):
-                yield _blended(groups, path, state, TO_THINNEST)
-                break
+        for film_at in (_blend, _milder):
+            yield _blended(groups, path, state, film_at)
 
 
 def is_lost_to_rounding(path: Path[State]) -> bool:
@@ -312,16 +286,14 @@ def extended(path: Path[State], state: State) -> Path[State]:
     return replace(path, coordinates=coordinates, states=states, outcome=Outcome.CONVERGED)
 
 
-def _coarse(
-    groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE, max_steps: int = MOST_STEPS
-) -> State | None:
+def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state from a guess, or None."""
     ends = groups.model.cavitation is Cavitation.EXIT
     operators = _operators(groups, guess, order, tolerance)
     if operators is None:
         return None
     if not ends:
-        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, max_steps)
+        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MOST_STEPS)
     state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, FREE_STEPS)
     return state if state.outcome.ok else _with_exit_sought(groups, guess, state, order, tolerance)
 
@@ -452,10 +424,9 @@ def _seen_from_exit(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State, way: Way) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups in some way."""
+def _blended(groups: Groups, path: Path[State], start: State, film_at: Callable[[Film, float], Film]) -> Path[State]:
+    """Return the path on which fluid and solid change into those of the groups, at once if Newton's iteration converges."""
     own, plain = groups.model, start.groups.model
-    film_at, order, tolerance, most, first = way
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
         film: Film = own.film
@@ -464,13 +435,12 @@ def _blended(groups: Groups, path: Path[State], start: State, way: Way) -> Path[
             film = film_at(film, part) if film != plain.film else film
             solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
         here = replace(groups, model=replace(plain, film=film, solid=solid))
-        state = _coarse(here, extrapolate(history, part) if history else start, order, tolerance, most)
+        state = _coarse(here, extrapolate(history, part) if history else start)
         if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
             return state
-        return _coarse(here, state, order, tolerance, most)
+        return _coarse(here, state)
 
-    steps = replace(BLENDING, first=first)
-    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, steps, history=[(0.0, start)])
+    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
     again = settled(found.states[-1].groups, found.states[-1]) if found.outcome.ok else None
     return found if again is None else extended(found, again)
 
