@@ -29,7 +29,7 @@ from stribeck.contacts.line import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
 from stribeck.equations.guess import Guess
-from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.line import Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
 from stribeck.equations.state import MIN_GAP, State, is_thinning, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
@@ -53,8 +53,6 @@ FREE_STEPS = 15
 
 HELD_STEPS = 25  # The same with an exit that is given
 
-MANY_STEPS = 20  # Newton steps after which a state lies on a mesh that was made for another: from there no next one was found
-
 # Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film.
 MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
 
@@ -71,21 +69,10 @@ LOOKED_AT = 4001  # Points at which the end of the full film is searched
 
 NEAREST_EXIT = 0.4  # No film ends within this part of the half-width from the middle
 
-# Of a rigid parabola: exit over (2 h_0)**(1/2), flux gap over h_0, and h_0 over lambda where the film carries all.
-RIGID_EXIT, RIGID_FLUX, RIGID_LOAD = 0.4751299, 1.2257484, 0.25968614
-
-RIGID_SPEED = 300.0  # Speed above which the rigid parabola starts Newton's iteration
-
-HEIGHTS = (-400.0, 400.0)  # Logarithms of its smallest and largest height
-
 BLENDING = Steps(1.0, 1.0, 1e-3)
-SLOWING = Steps(0.7, 2.0, 1e-3)
 
 # Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100.
 MOST_WORK, UNIT_SIZE = 3000.0, 300.0
-
-MOST_WORK_TO_END = 6000.0  # The same for all paths of loads together on which the film is to end
-
 
 FADING = 8.0  # Logarithmic decay of the Newtonian part of a blend with a fluid that thins, as films are powers of that part
 
@@ -105,60 +92,6 @@ class Work:
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """What :func:`march` asks for a state."""
-
-
-@dataclass(frozen=True)
-class RigidEnding:
-    """The gap of a rigid parabola, seen from the exit of its film."""
-
-    speed: float  # Speed group [-]
-    offset: float  # Height of the parabola [u_Hz]
-    restart: float = math.inf  # Those of a film that does not begin anew
-    dilation: float = 1.0  # Those of a film that does not begin anew
-
-    @classmethod
-    def of(cls, groups: Groups) -> RigidEnding | None:
-        """Return the parabola whose film and asperities carry the load; None if it is outside double precision."""
-        speed, law = float(groups.speed), contact_law(groups)
-        x, dx = np.linspace(-6, 6, 241, retstep=True)
-        x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
-
-        def excess(log_height: float) -> float:
-            height = math.exp(log_height)
-            with np.errstate(over="ignore"):
-                contact = float(law.pressure(height + x * x / 2).sum() * dx)
-            return min(LOAD * (RIGID_LOAD * speed / height - 1) + contact, 1e9)
-
-        if not excess(HEIGHTS[0]) > 0 > excess(HEIGHTS[1]):
-            return None
-        low, high = HEIGHTS
-        while high - low > 1e-6:
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if excess(middle) > 0 else (low, middle)
-        return cls(speed, math.exp(0.5 * (low + high)))
-
-    @property
-    def flux_gap(self) -> float:
-        """That of the rigid parabola."""
-        return RIGID_FLUX * self.offset
-
-    @property
-    def exit(self) -> float:
-        """That of the rigid parabola."""
-        return RIGID_EXIT * math.sqrt(2 * self.offset)
-
-    @property
-    def minimum_position(self) -> float:
-        """The middle of the contact, seen from the exit."""
-        return -self.exit
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-        return np.asarray(self.fields(mesh.nodes)[0])
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
-        return np.asarray(np.log(self.offset + (x + self.exit) ** 2 / 2)[None, :])
 
 
 @dataclass(frozen=True)
@@ -361,53 +294,8 @@ def settled(groups: Groups, guess: Guess) -> State | None:
 
 
 def _ended(groups: Groups, full: Path[State]) -> State | None:
-    """Return the state whose film ends, from that of the full film; along the path of loads if that is too far away."""
-    rigid = RigidEnding.of(groups) if groups.speed > RIGID_SPEED else None
-    for guess in (rigid, _seen_from_exit(full.states[-1])):
-        found = None if guess is None else settled(groups, guess)
-        if found is not None:
-            return found
-    work = Work(MOST_WORK_TO_END)
-    for start in _farther_and_farther(len(full.states)):
-        if work.is_done:
-            break
-        begun = full.states[start]
-        here = replace(begun.groups, model=groups.model)
-        first = settled(here, _seen_from_exit(begun))
-        if first is None:
-            continue
-        path = _along(here, groups, first, work)
-        if path.outcome.ok:
-            return path.states[-1]
-    return None
-
-
-def _farther_and_farther(count: int) -> Iterator[int]:
-    """Yield places before the last of so many, each about twice as far from it as the one before, and the first."""
-    back = 2
-    while back < count:
-        yield count - back
-        back *= 2
-    if count > 1:
-        yield 0
-
-
-def _along(start: Groups, end: Groups, first: State, work: Work) -> Path[State]:
-    """Return the path of states between two groups, straight in their logarithms."""
-    names = ("speed", "load", "roughness")
-    ends = [(float(getattr(start, name)), float(getattr(end, name))) for name in names]
-    length = max(abs(math.log(b / a)) for a, b in ends if a > 0)
-
-    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
-        t = s / length
-        speed, load, roughness = (a ** (1 - t) * b**t if a > 0 else 0.0 for a, b in ends)
-        here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
-        state = _coarse(here, extrapolate(history, s))
-        if state is None or not state.outcome.ok or state.root.steps <= MANY_STEPS:
-            return state
-        return _coarse(here, state)
-
-    return march(_within(correct, work), 0.0, length, SLOWING, history=[(0.0, first)])
+    """Return the state whose film ends, from that of the full film."""
+    return settled(groups, _seen_from_exit(full.states[-1]))
 
 
 def _seen_from_exit(state: State) -> SeenFrom:
