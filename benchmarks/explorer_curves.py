@@ -89,7 +89,7 @@ def main() -> None:
         shown(model, now)
         for slider in SLIDERS:
             for _ in range(arguments.number):
-                now = inputs.slid(now, slider, inputs.position(now, slider) + STEP)
+                now = inputs.with_slider(now, slider, inputs.position(now, slider) + STEP)
                 units.append(factorisation())
                 times.append(spent(shown, model, now))
         curve = model(now).curve

@@ -36,8 +36,8 @@ from stribeck import Outcome
 from stribeck.cli import arguments
 from stribeck.cli import progress as progress_module
 from stribeck.cli.reports import explain
+from stribeck.cli.reports.printing import digits
 from stribeck.cli.reports.state_and_curve import print_solution
-from stribeck.cli.reports.words import digits
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")

@@ -60,8 +60,8 @@ def test_a_data_sheet_becomes_a_contact(sheet):
 
 @pytest.mark.quick
 def test_a_value_that_is_given_is_not_called_assumed():
-    assert read_given({"shore_a": 70}).said[0].endswith("poisson_ratio = 0.5 assumed.")
-    assert "assumed" not in read_given({"shore_a": 70, "poisson_ratio": 0.5}).said[0]
+    assert read_given({"shore_a": 70}).sentences[0].endswith("poisson_ratio = 0.5 assumed.")
+    assert "assumed" not in read_given({"shore_a": 70, "poisson_ratio": 0.5}).sentences[0]
 
 
 def test_shore_d_is_that_of_its_source():
@@ -111,7 +111,7 @@ def test_the_table_of_conversions_is_whole():
         assert row.of in QUANTITIES and row.formula and row.source
         values = {each.name: float(each.typical) if each.dimension == "number" else each.typical for each in row.inputs}
         found = read_given(values, INPUT_TABLES[row.geometry or "line"])
-        assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.said) == 1
+        assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.sentences) == 1
     assert not set(GIVEN) & set(QUANTITIES)
 
 

@@ -65,16 +65,16 @@ def reopened(query, start=START):
 
 @pytest.mark.parametrize("name", inputs.FIELDS["line"])
 def test_a_slider_moves_its_quantity_to_a_number_that_can_be_read_and_nothing_else(name):
-    moved = inputs.slid(START, name, inputs.position(START, name) + 0.25)
+    moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.25)
     value = getattr(moved.contact, name)
     assert value / getattr(START.contact, name) == pytest.approx(10**0.25, rel=5e-3)
-    assert inputs.typed(START, name, inputs.number_text(moved, name)).contact == moved.contact
+    assert inputs.with_text(START, name, inputs.number_text(moved, name)).contact == moved.contact
     assert moved.contact.replace(**{name: getattr(START.contact, name)}) == START.contact
 
 
 @pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
 def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(name):
-    moved = inputs.slid(START, name, inputs.position(START, name) - 0.5)
+    moved = inputs.with_slider(START, name, inputs.position(START, name) - 0.5)
     for other in inputs.GROUP_FIELDS:
         wanted = inputs.value_of(START, other) * (10**-0.5 if other == name else 1.0)
         assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
@@ -83,22 +83,22 @@ def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(na
 
 
 def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():
-    assert inputs.slid(START, "speed", 5.0).contact.speed == inputs.FIELDS["line"]["speed"].high
-    far = inputs.typed(START, "speed", "100 m/s")
+    assert inputs.with_slider(START, "speed", 5.0).contact.speed == inputs.FIELDS["line"]["speed"].high
+    far = inputs.with_text(START, "speed", "100 m/s")
     assert far.contact.speed == 100
     assert inputs.position(far, "speed") == math.log10(inputs.FIELDS["line"]["speed"].high)
-    assert inputs.position(inputs.typed(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["line"]["speed"].low)
+    assert inputs.position(inputs.with_text(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["line"]["speed"].low)
 
 
 def test_a_unit_typed_without_its_greek_letter_is_that_of_the_list():
-    assert inputs.typed(START, "roughness", "2 um").units["roughness"] == "µm"
+    assert inputs.with_text(START, "roughness", "2 um").units["roughness"] == "µm"
 
 
 def test_a_unit_that_is_typed_becomes_that_of_the_field():
-    typed = inputs.typed(START, "load", "1.5 kN/m")
+    typed = inputs.with_text(START, "load", "1.5 kN/m")
     assert typed.contact.load == 1500
     assert (typed.units["load"], inputs.number_text(typed, "load")) == ("kN/m", "1.5")
-    assert inputs.typed(typed, "load", "2").contact.load == 2000
+    assert inputs.with_text(typed, "load", "2").contact.load == 2000
 
 
 def test_another_unit_keeps_the_value():
@@ -130,7 +130,7 @@ def test_another_unit_keeps_the_value():
 )
 def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(name, text, sentence):
     with pytest.raises(sb.InputError) as problem:
-        inputs.typed(START, name, text)
+        inputs.with_text(START, name, text)
     assert sentence in str(problem.value)
 
 
@@ -145,7 +145,7 @@ def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(nam
     ],
 )
 def test_a_decimal_comma_is_read_as_in_files(name, text, value):
-    assert inputs.value_of(inputs.typed(START, name, text), name) == pytest.approx(value, rel=1e-12)
+    assert inputs.value_of(inputs.with_text(START, name, text), name) == pytest.approx(value, rel=1e-12)
 
 
 # --- all that a case can hold ---
@@ -293,7 +293,7 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     assert answer.solution.law == "persson"
     saved = files.read_case("saved.toml", files.content("toml", View(answer)))
     assert sb.solve(saved.contact).friction() == expected.friction()
-    assert "Persson, for the surface with hurst 0.8, longest wavelength 150 um" in carried.law_words(shown.model)
+    assert "Persson, for the surface with hurst 0.8, longest wavelength 150 um" in carried.law_text(shown.model)
 
 
 @pytest.mark.parametrize(
@@ -361,7 +361,7 @@ def test_a_cylinder_becomes_a_ball_of_the_same_pressure_and_back():
 
 @pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
 def test_a_group_of_a_ball_moves_alone(name):
-    moved = inputs.slid(BALL, name, inputs.position(BALL, name) - 0.5)
+    moved = inputs.with_slider(BALL, name, inputs.position(BALL, name) - 0.5)
     for other in inputs.GROUP_FIELDS:
         wanted = inputs.value_of(BALL, other) * (10**-0.5 if other == name else 1.0)
         assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
@@ -374,9 +374,9 @@ def test_a_headline_does_not_name_the_geometry_before():
 
 
 def test_what_a_ball_may_do_without_is_an_empty_field():
-    wet = inputs.typed(BALL, "wetted_radius", "30")
+    wet = inputs.with_text(BALL, "wetted_radius", "30")
     assert wet.contact.wetted_radius == 0.03 and inputs.number_text(wet, "wetted_radius") == "30"
-    dry = inputs.typed(wet, "wetted_radius", "")
+    dry = inputs.with_text(wet, "wetted_radius", "")
     assert dry.contact.wetted_radius is None and inputs.number_text(dry, "wetted_radius") == ""
     assert reopened(url.encode(dry), wet).inputs == dry
 
@@ -434,9 +434,9 @@ def test_what_many_changes_lead_to_goes_through_link_and_saved_case(start):
                     shown = choices.choose(shown, name, random.choice(options).item())
                 elif details := choices.state_of(shown, name)["details"]:
                     key = details[random.integers(len(details))][0]
-                    shown = choices.typed_detail(shown, name, key, f"{random.uniform(0.1, 0.9):.2g}")
+                    shown = choices.with_detail(shown, name, key, f"{random.uniform(0.1, 0.9):.2g}")
                 else:
-                    shown = inputs.slid(shown, slider, inputs.position(shown, slider) + random.uniform(-0.5, 0.5))
+                    shown = inputs.with_slider(shown, slider, inputs.position(shown, slider) + random.uniform(-0.5, 0.5))
             except sb.InputError:  # not with the rest
                 continue
         check_link_and_saved_case(shown)
@@ -465,11 +465,11 @@ def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
     shown = choices.choose(choices.choose(START, "solid", "layer"), "solid", "Prony")
     row = choices.state_of(shown, "solid")
     assert row["value"] == "Prony" and ["relaxation_times", "relaxation times", "1 ms, 10 ms", ""] in row["details"]
-    typed = choices.typed_detail(shown, "solid", "relaxation_times", "2 ms,20 ms")
+    typed = choices.with_detail(shown, "solid", "relaxation_times", "2 ms,20 ms")
     assert typed.contact.solid == Prony(["2 ms", "20 ms"], [1.0, 0.5])
-    assert choices.typed_detail(typed, "solid", "layer_thickness", "1 mm").contact.solid.base == sb.solids.Layer("1 mm")
+    assert choices.with_detail(typed, "solid", "layer_thickness", "1 mm").contact.solid.base == sb.solids.Layer("1 mm")
     with pytest.raises(sb.InputError, match="as many of both"):
-        choices.typed_detail(shown, "solid", "relaxation_times", "1 ms")
+        choices.with_detail(shown, "solid", "relaxation_times", "1 ms")
 
 
 @pytest.mark.parametrize("name", choices.CHOICES)
@@ -479,11 +479,11 @@ def test_an_empty_field_of_a_choice_says_the_number_that_it_stands_for(name):
             continue
         shown = choices.choose(START, name, value)
         if "layer_thickness" in optional:
-            shown = choices.typed_detail(shown, name, "layer_thickness", "1 mm")
+            shown = choices.with_detail(shown, name, "layer_thickness", "1 mm")
         for key, _, text, if_empty in choices.state_of(shown, name)["details"]:
             assert key not in optional or if_empty
             if not text and if_empty[:1].isdigit():
-                assert choices.typed_detail(shown, name, key, if_empty).contact == shown.contact, key
+                assert choices.with_detail(shown, name, key, if_empty).contact == shown.contact, key
 
 
 def test_the_axis_of_speeds_says_which_speed_it_is():
@@ -505,7 +505,7 @@ def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
 
 def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
     shown = choices.choose(START, "law", "persson")
-    longer = choices.typed_detail(shown, "law", "longest_wavelength", "300 um")
+    longer = choices.with_detail(shown, "law", "longest_wavelength", "300 um")
     surface = sb.surfaces.RoughSurface(
         h_rms=1e-6, hurst=0.8, longest_wavelength="300 um", shortest_wavelength="1.5 um"
     ).law.coefficients
@@ -526,7 +526,7 @@ def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
 def test_an_impossible_detail_is_refused_with_the_sentence_of_a_case(name, key, text, sentence):
     start = choices.choose(START, name, {"solid": "layer", "law": "persson"}[name])
     with pytest.raises(sb.InputError, match=sentence):
-        choices.typed_detail(start, name, key, text)
+        choices.with_detail(start, name, key, text)
 
 
 def test_the_cavity_of_a_cylinder_stays_when_it_becomes_a_ball():
@@ -542,14 +542,14 @@ def test_the_drawing_follows_layer_motion_and_roughness():
     assert ElementTree.fromstring(plain).get("aria-label").endswith("not to scale") and 'class="rigid"' not in plain
     assert 'class="rigid"' in drawn(choices.choose(START, "solid", "layer"))
     assert drawn(choices.choose(START, "motion", "rolling")).count('class="arrow"') == plain.count('class="arrow"') + 1
-    assert drawn(inputs.typed(START, "roughness", "0.1 um")) != plain
+    assert drawn(inputs.with_text(START, "roughness", "0.1 um")) != plain
 
 
 # --- whether the model applies ---
 
 
 def test_what_is_outside_the_model_stands_above_every_number():
-    steel = inputs.typed(inputs.typed(START, "modulus", "100 GPa"), "load", "100 kN/m")
+    steel = inputs.with_text(inputs.with_text(START, "modulus", "100 GPa"), "load", "100 kN/m")
     shown = Answerer()(steel)
     expected = sb.check(steel.contact)
     assert not expected.applies and shown.checks.verdict == "outside"
@@ -623,7 +623,7 @@ def test_a_measured_curve_is_fitted_and_the_inputs_follow():
     fitted = fit_measured(START, measured, lambda *_: None)
     assert fitted.inputs.contact.roughness == pytest.approx(1.4e-6, rel=1e-3)
     assert fitted.inputs.contact.boundary_friction == pytest.approx(0.5, rel=1e-3)
-    assert "roughness 1.4 µm" in fitted.words and fitted.words.startswith("Fitted to m.csv: ")
+    assert "roughness 1.4 µm" in fitted.report and fitted.report.startswith("Fitted to m.csv: ")
 
 
 def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
@@ -641,8 +641,8 @@ def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
 
 
 def test_an_address_brings_back_the_very_inputs_and_pins():
-    moved = inputs.slid(inputs.slid(START, "load_group", -1.37), "speed", -3.41)
-    moved = inputs.slid(moved, "roughness_group", -2.22)
+    moved = inputs.with_slider(inputs.with_slider(START, "load_group", -1.37), "speed", -3.41)
+    moved = inputs.with_slider(moved, "roughness_group", -2.22)
     assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
     moved = replace(inputs.in_unit(moved, "radius", "cm"), definition="balanced", abscissa="hersey", title="a & b = ü #1")
     pins = [url.Pin("load 3 N/m ~ twice", START.contact, "published"), url.Pin("two", moved.contact, "balanced")]
@@ -704,7 +704,7 @@ def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
 def test_the_numbers_are_those_of_solve_within_their_errors(name):
     model = Answerer()
     model(START)
-    moved = inputs.slid(START, name, inputs.position(START, name) + 0.3)
+    moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.3)
     rows = {row.key: row for row in table.numbers(model(moved))}
     solution = sb.solve(moved.contact)
     expected = {
@@ -725,7 +725,7 @@ def test_the_numbers_are_those_of_solve_within_their_errors(name):
 @pytest.mark.parametrize(("cavitation", "ends"), [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])])
 def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(cavitation, ends):
     shown = choices.choose(replace(START, contact=START.contact.replace(speed="100 mm/s")), "cavitation", cavitation)
-    shown = choices.typed_detail(shown, "cavitation", "pressure", "-10 kPa") if cavitation == "reform" else shown
+    shown = choices.with_detail(shown, "cavitation", "pressure", "-10 kPa") if cavitation == "reform" else shown
     rows = {row.key: row for row in table.numbers(Answerer()(shown))}
     assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
     solution = sb.solve(shown.contact)
@@ -764,7 +764,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     default = np.log(now.curve.friction[heavy.definition])
     friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), default))
     assert friction == pytest.approx(sb.solve(heavy.contact).friction(definition=heavy.definition).total, rel=0.02)
-    heavier = model(inputs.slid(heavy, "load", inputs.position(heavy, "load") + 0.1))
+    heavier = model(inputs.with_slider(heavy, "load", inputs.position(heavy, "load") + 0.1))
     assert heavier.curve.stale and heavier.curve.transitions == ()
     light = model(START)
     layered = model(choices.choose(START, "solid", "layer"))  # no table: what was read before stays too
@@ -800,7 +800,7 @@ def test_rows_of_a_solved_map_lie_around_their_transitions_which_the_whole_range
 
 
 def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
-    now = inputs.typed(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
+    now = inputs.with_text(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
     model = Answerer()
     assert model.settle(now, always)
     assert model.why_no_curve(now)
@@ -862,7 +862,7 @@ def test_axes_end_at_round_numbers(value, low, high):
 def test_a_moved_speed_moves_the_point_and_no_curve(answer):
     model = Answerer()
     before = charts.all_charts(model(START), [], [], LIGHT)
-    moved = inputs.slid(START, "speed", inputs.position(START, "speed") + 0.05)
+    moved = inputs.with_slider(START, "speed", inputs.position(START, "speed") + 0.05)
     after = charts.all_charts(model(moved), [], [], LIGHT)
     for name in ("friction", "diagram"):
         pairs = zip(before[name]["series"], after[name]["series"], strict=True)
@@ -911,7 +911,7 @@ def test_lines_and_text_stand_out_from_their_ground(palette):
 
 
 def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
-    odd = replace(inputs.slid(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
+    odd = replace(inputs.with_slider(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
     shown = View(Answerer()(odd))
     path = tmp_path / "case.toml"
     path.write_bytes(files.content("toml", shown))
@@ -971,7 +971,7 @@ def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
 
 def test_a_pin_is_named_after_what_differs_from_the_start():
     assert files.pin_name(START, START, []) == "start"
-    other = inputs.typed(inputs.typed(START, "load", "50"), "roughness", "2 um")
+    other = inputs.with_text(inputs.with_text(START, "load", "50"), "roughness", "2 um")
     assert files.pin_name(other, START, []) == "load 50 N/m, roughness 2 µm"
     assert files.pin_name(START, START, ["start"]) == "start (2)"
 
@@ -1169,7 +1169,7 @@ def test_between_solved_rows_a_map_bends_with_its_lines(monkeypatch):
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
     found = read_scan("../profile.csv", PROFILE)
-    assert found.words.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.7 to 1.84), beta 0.0197 (")
+    assert found.report.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.7 to 1.84), beta 0.0197 (")
     after = with_scan(START, found)
     surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
     law = surface.law
@@ -1196,7 +1196,7 @@ def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_rea
 
 def test_a_refused_value_is_told_in_the_unit_of_its_field():
     with pytest.raises(sb.InputError, match=r"or a bare number in mm/s\.$"):
-        inputs.typed(START, "speed", "fast")
+        inputs.with_text(START, "speed", "fast")
 
 
 def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
@@ -1294,7 +1294,7 @@ def test_a_scan_says_alpha_with_the_interval_of_its_probability_on_the_page_and_
     error = math.hypot(*(slope * size for slope, size in zip(slopes, sizes, strict=True)))
     assert main(["surface", str(path)]) == 0
     page = re.search(
-        r"alpha [0-9.]+ \((\S+) to (\S+)\), beta .*?, at (\d+) %\.", read_scan("scan.x3p", path.read_bytes()).words
+        r"alpha [0-9.]+ \((\S+) to (\S+)\), beta .*?, at (\d+) %\.", read_scan("scan.x3p", path.read_bytes()).report
     )
     text = re.search(r"alpha +[0-9.]+ +(\S+) to (\S+) \((\d+) %\)", capsys.readouterr().out)
     for low, high, per_cent in (page.groups(), text.groups()):

@@ -9,7 +9,7 @@ from command_line import call, case_text
 from rich.console import Console
 
 import stribeck as sb
-from stribeck.cli.reports.words import print_head
+from stribeck.cli.reports.printing import print_head
 from stribeck.contacts.contact import part_attributes
 from stribeck.quantities.formats import format_share
 

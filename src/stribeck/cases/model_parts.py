@@ -23,7 +23,7 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids.layer import Layer
 from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
-__all__ = ["KEYS", "in_file", "preset_facts", "preset_said", "take_parts"]
+__all__ = ["KEYS", "in_file", "preset_facts", "preset_source_text", "take_parts"]
 
 
 class Part(NamedTuple):
@@ -223,7 +223,7 @@ def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
     return {} if rate is None else {"thinning_rate": rate}
 
 
-def preset_said(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:
+def preset_source_text(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:
     """Return where the viscosity of a preset is from, in a sentence; nothing where no liquid is named."""
     table = tables.get("fluid")
     if not isinstance(table, dict) or "preset" not in table:

@@ -12,7 +12,7 @@ from typing import Any
 from stribeck.cases.case import Case, CurveSettings
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import INPUTS_OF_SURFACES, law_of_file
-from stribeck.cases.model_parts import in_file, preset_facts, preset_said, take_parts
+from stribeck.cases.model_parts import in_file, preset_facts, preset_source_text, take_parts
 from stribeck.cases.tables import error_sentence, example_of, file_model
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
@@ -102,8 +102,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         try:
             contact = CONTACTS[geometry](**contact_inputs(checked, path.parent), **parts)
         except InputError as problem:
-            said = str(problem).splitlines()
-            problems = [line if line.startswith(("[", "the table")) else in_file(line, "contact") for line in said]
+            lines = str(problem).splitlines()
+            problems = [line if line.startswith(("[", "the table")) else in_file(line, "contact") for line in lines]
         else:
             if "alpha" in errors and hasattr(contact.law, "fixed_alpha"):
                 problems.append(
@@ -125,7 +125,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         ),
         facts={**preset_facts(tables), **facts},
         errors={**errors, **part_errors},
-        conversions=(*conversions, *preset_said(tables, contact.viscosity)),
+        conversions=(*conversions, *preset_source_text(tables, contact.viscosity)),
         tables=tables,
         **checked["solver"],
     )
@@ -161,12 +161,12 @@ def _split_part_errors(table: dict[str, Any], problems: list[str]) -> dict[str, 
 def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> tuple[dict[str, float], tuple[str, ...]]:
     """Put inputs of the contact in the place of those that they follow from, and return their errors and what was done."""
     errors: dict[str, float] = {}
-    said: tuple[str, ...] = ()
+    sentences: tuple[str, ...] = ()
     sheet = table["contact"] if isinstance(table.get("contact"), dict) else {}
     if isinstance(table.get("contact"), dict):
         given = read_given(table["contact"], inputs)
         problems += [f"[contact] {each}" for each in given.problems]
-        table["contact"], errors, said = given.values, given.errors, given.said
+        table["contact"], errors, sentences = given.values, given.errors, given.sentences
     surface = table.get("surface")
     from_sheet = any(name in ("ra", "rq") for name in sheet)
     if from_sheet and isinstance(surface, dict) and not {"h_rms", "spectrum", "shape_only", "wavenumber"} & set(surface):
@@ -179,7 +179,7 @@ def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> 
         else:
             table["surface"] = surface | {"h_rms": height}
             errors |= {} if error is None else {"roughness": error}
-    return errors, said
+    return errors, sentences
 
 
 def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:

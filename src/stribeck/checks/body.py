@@ -88,8 +88,8 @@ def adhesion(subject: Subject) -> Check | None:
     if w is None:
         if E >= GEL_MODULUS_PA:
             return None
-        said = f"At E* = {format_si(E, 'pressure')} adhesion may matter, which is not modelled; give work_of_adhesion."
-        return Check("adhesion", E, GEL_MODULUS_PA, "doubtful", said, "Pa", at_least=True, condition="adhesion is small")
+        sentence = f"At E* = {format_si(E, 'pressure')} adhesion may matter, which is not modelled; give work_of_adhesion."
+        return Check("adhesion", E, GEL_MODULUS_PA, "doubtful", sentence, "Pa", at_least=True, condition="adhesion is small")
     pull_off = 1.5 * math.pi * w * R if contact.groups.geometry == "point" else 0.75 * (4 * math.pi * E * R * w * w) ** (1 / 3)
     ratio = pull_off / contact.load
     meanings: dict[Verdict, str] = {
@@ -115,13 +115,13 @@ def pores(subject: Subject) -> Check | None:
     if D is None:
         if contact.modulus >= GEL_MODULUS_PA:
             return None
-        said = (
+        sentence = (
             f"E* = {format_si(contact.modulus, 'pressure')} is that of gels and tissue, whose pores may carry and pass "
             "liquid, which is not modelled; give diffusivity or permeability."
         )
         value = contact.modulus
         return Check(
-            "pores", value, GEL_MODULUS_PA, "doubtful", said, "Pa", at_least=True, condition="no liquid flows in pores"
+            "pores", value, GEL_MODULUS_PA, "doubtful", sentence, "Pa", at_least=True, condition="no liquid flows in pores"
         )
     peclet = contact.speed * contact.hertz.half_width / D if D > 0 else 0.0
     drained = "the liquid in the pores leaves as the contact passes, and the solid carries the load."

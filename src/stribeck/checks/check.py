@@ -179,16 +179,16 @@ class Checks(Exported):
         """One sentence: whether the model applies, and which checks fail."""
         outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
         doubts = [each for each in doubtful if not each.condition or outside and not self.applies_with_another_law]
-        said = f" Doubtful: {_names(doubts)}." if doubts else ""
+        doubts_text = f" Doubtful: {_names(doubts)}." if doubts else ""
         largest = max((each for each in self.checks), key=lambda each: each.error, default=None)
         stated = largest is not None and largest.error >= MIN_HEADLINE_ERROR and largest.verdict == "fine"
         error = f" Largest error stated: {100 * largest.error:.0f} % ({largest.name})." if largest and stated else ""
         if self.applies_with_another_law:
-            return f"{self._applies}: the present one is outside its range ({_names(outside)}).{said}{error}"
+            return f"{self._applies}: the present one is outside its range ({_names(outside)}).{doubts_text}{error}"
         if outside:
-            return f"{OUTSIDE}: {_names(outside)}.{said}"
+            return f"{OUTSIDE}: {_names(outside)}.{doubts_text}"
         if self._conditions:
-            return f"{self._applies}.{said}{error}"
+            return f"{self._applies}.{doubts_text}{error}"
         if doubtful:
             return f"The model applies, with doubts about {_names(doubtful)}.{error}"
         return f"The model applies: all {len(self.checks)} checks are fine.{error}"
@@ -199,10 +199,10 @@ class Checks(Exported):
         outside = self.with_verdict("outside")
         unusual = [each.sentence for each in self.with_verdict("doubtful") if each.name == "inputs"]
         begin = self._applies if self.applies_with_another_law else OUTSIDE
-        said = [f"{begin}: {' '.join(each.sentence for each in outside)}"] if outside else []
+        sentences = [f"{begin}: {' '.join(each.sentence for each in outside)}"] if outside else []
         if self._conditions and not outside:
-            said = [f"{self._applies}."]
-        return " ".join([*said, *unusual])
+            sentences = [f"{self._applies}."]
+        return " ".join([*sentences, *unusual])
 
     def covers(self, note: str) -> bool:
         """Return whether the first line already contains a note, apart from its numbers.
@@ -217,8 +217,8 @@ class Checks(Exported):
         bool
             Whether to omit it below that line.
         """
-        said = [_words(each.sentence) for each in self.with_verdict("outside")]
-        return any(_words(note)[: len(text)] in text for text in said)
+        sentences = [_without_numbers(each.sentence) for each in self.with_verdict("outside")]
+        return any(_without_numbers(note)[: len(text)] in text for text in sentences)
 
     def to_dict(self) -> dict[str, Any]:
         """Return verdict and checks, ready for JSON.
@@ -244,7 +244,7 @@ class Checks(Exported):
         MissingExtraError
             If xarray is not installed.
         """
-        words = {
+        labels = {
             "value": "value for this contact, in its unit",
             "limit": "limit up to which, or from which, it is fine, in its unit",
             "at_least": "whether larger values than the limit are the fine ones",
@@ -253,7 +253,8 @@ class Checks(Exported):
             "unit": "unit of value and limit",
         }
         columns: dict[str, Column] = {
-            name: ("check", listed([getattr(each, name) for each in self.checks]), "1", said) for name, said in words.items()
+            name: ("check", listed([getattr(each, name) for each in self.checks]), "1", label)
+            for name, label in labels.items()
         }
         names: dict[str, Column] = {"check": ("check", listed([each.name for each in self.checks]), "1", "what is checked")}
         return new_dataset(columns, names, {"title": "Whether the model applies", "headline": self.headline})
@@ -263,8 +264,8 @@ class Checks(Exported):
         rows = [("check", "value", "fine", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-        said = [each.sentence for each in self.said]
-        return "\n".join([self.headline, "", *lines, *([""] if said else []), *said])
+        sentences = [each.sentence for each in self.said]
+        return "\n".join([self.headline, "", *lines, *([""] if sentences else []), *sentences])
 
     __repr__ = __str__
 
@@ -305,7 +306,7 @@ def number_text(value: float, unit: str) -> str:
     return format_si(value, kind)
 
 
-def _words(text: str) -> str:
+def _without_numbers(text: str) -> str:
     """Return a sentence without the numbers in it, which differ from state to state."""
     return re.sub(r"[-+]?[0-9][-+.0-9e]*", "", text)
 

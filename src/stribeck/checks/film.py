@@ -9,8 +9,14 @@ from stribeck.checks.subject import Subject
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction_rules import slide_to_roll
 from stribeck.quantities.formats import format_percent
-from stribeck.solver.notes import ATMOSPHERE, FLUID_PREFIX, SUCTION_PREFIX
-from stribeck.solver.point.solution import MAX_FILM_SLOPE, THICK_PREFIX, WETTED_PREFIX
+from stribeck.solver.notes import (
+    ATMOSPHERE,
+    FLUID_PREFIX,
+    MAX_FILM_SLOPE,
+    SUCTION_PREFIX,
+    THICK_PREFIX,
+    WETTED_PREFIX,
+)
 
 OIL_THINNING_RATE = 1e6  # Shear rate up to which oils without improvers keep their viscosity [1/s]
 WATER_THINNING_RATE = 1e9  # Shear rate up to which liquids as thin as water keep their viscosity [1/s]

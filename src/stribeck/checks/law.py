@@ -143,12 +143,12 @@ def tail(subject: Subject) -> Check | None:
         low, high = (format_si(float(subject.curve.values[end]), "speed") for end in (0, -1))
         raise InputError(f"friction has no minimum and no transition from {low} to {high}, where it was looked for.")
     largest = max(abs(change) for pair in moves.values() for change in pair)
-    said = "; ".join(
+    changes = "; ".join(
         f"{_place(name)}, speed {round(100 * speed, 0) + 0.0:+.0f} % and friction {round(100 * friction, 0) + 0.0:+.0f} %"
         for name, (speed, friction) in moves.items()
         if max(abs(speed), abs(friction)) >= MIN_STATED_CHANGE
     )
-    moved = f"these move: {said}" if said else "nothing moves by 1 % or more"
+    moved = f"these move: {changes}" if changes else "nothing moves by 1 % or more"
     sentence = f"With the highest asperities of a finite surface {moved}. A spectrum does not determine their height."
     verdict = verdict_of(largest, TAIL_CHANGE_FINE)
     is_notable = largest >= MIN_STATED_CHANGE

@@ -44,7 +44,7 @@ def plot_checks(
     figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", ax=ax, left=2.2, right=2.3)
     ax.set_xscale("log")
     for verdict, colour in VERDICT_COLOURS.items():
-        mine = [(row, used_part(each)) for row, each in enumerate(checks) if each.verdict == verdict]
+        mine = [(row, limit_fraction(each)) for row, each in enumerate(checks) if each.verdict == verdict]
         rows, parts = (np.array(each) for each in zip(*mine, strict=True)) if mine else (np.empty(0), np.empty(0))
         ax.hlines(rows, 1 / MAX_DRAWN_RATIO, parts, color=colour, lw=1.6)
         ax.plot(
@@ -64,7 +64,7 @@ def plot_checks(
     return finish_figure(figure, path, force)
 
 
-def used_part(check: Check) -> float:
+def limit_fraction(check: Check) -> float:
     """Return the part of its limit that a check takes, within what is drawn; the largest if its value is nan."""
     value, limit = (check.limit, check.value) if check.at_least else (check.value, check.limit)
     if math.isnan(check.value):

@@ -33,11 +33,11 @@ def complain(text: str, code: int) -> int:
             print(f"stribeck: {line}", file=sys.stderr)
         sys.stderr.flush()
     except OSError:
-        silence(sys.stderr)
+        redirect_to_null(sys.stderr)
     return code
 
 
-def attempted(actions: Mapping[Path, Callable[[], object]]) -> tuple[list[str], list[str]]:
+def write_each(actions: Mapping[Path, Callable[[], object]]) -> tuple[list[str], list[str]]:
     """Write files; return the names of those that were written, and a sentence about each that was not."""
     written, problems = [], []
     for path, action in actions.items():
@@ -50,7 +50,7 @@ def attempted(actions: Mapping[Path, Callable[[], object]]) -> tuple[list[str], 
     return written, problems
 
 
-def silence(stream: TextIO) -> None:
+def redirect_to_null(stream: TextIO) -> None:
     """Let a stream that takes no more lead nowhere, so that the interpreter does not stumble over it at its end."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)

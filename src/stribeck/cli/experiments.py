@@ -52,7 +52,7 @@ def next_command(
 
         print(report_json.dump(found.checks.to_dict() | plan.to_dict() | {"files": list(map(str, pictures))}))
         return 0
-    _say(found.checks.first_line, str(plan), *(f"Written: {picture}" for picture in pictures))
+    _print_texts(found.checks.first_line, str(plan), *(f"Written: {picture}" for picture in pictures))
     return 0
 
 
@@ -71,11 +71,11 @@ def compare_command(data: DataFile = None, case: CaseFile = None, /, *, models: 
 
         print(report_json.dump(found.to_dict()))
         return 0
-    _say(found.candidates[0].fit.checks.first_line, str(found))
+    _print_texts(found.candidates[0].fit.checks.first_line, str(found))
     return 0
 
 
-def _say(*texts: str) -> None:
+def _print_texts(*texts: str) -> None:
     console = stdout_console()
     for text in filter(None, texts):
         say(console, text)

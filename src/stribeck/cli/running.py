@@ -21,7 +21,7 @@ from stribeck.cli.exits import (
     OutputError,
     complain,
     prepare_streams,
-    silence,
+    redirect_to_null,
     stdout_console,
 )
 from stribeck.cli.experiments import compare_command, next_command
@@ -81,10 +81,10 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
     except KeyboardInterrupt:
         return complain("Interrupted; nothing was written.", EXIT_INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
-        silence(sys.stdout)
+        redirect_to_null(sys.stdout)
         return EXIT_BROKEN_PIPE
     except OutputError as problem:
-        silence(sys.stdout)
+        redirect_to_null(sys.stdout)
         return complain(f"The output could not be printed ({problem}); the requested files were written.", EXIT_FAILED)
     except MemoryError:
         return complain("Out of memory; ask for fewer points or a larger rtol.", EXIT_FAILED)

@@ -37,7 +37,7 @@ from stribeck.cli.arguments import (
     read_case,
     read_duration,
 )
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, attempted, complain, say, stdout_console
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, complain, say, stdout_console, write_each
 from stribeck.cli.progress import Progress, interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
@@ -92,7 +92,7 @@ def solve_command(
         solution.plot(picture, force=force, title=title, notes=not no_notes)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-    from stribeck.cli.reports.words import conversions_json, print_conversions
+    from stribeck.cli.reports.printing import conversions_json, print_conversions
 
     checks = None
     if loaded:
@@ -166,7 +166,7 @@ def curve_command(
         written, problems = _write(curve, title, outputs, pictures, force, shown)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-    from stribeck.cli.reports.words import conversions_json, print_conversions
+    from stribeck.cli.reports.printing import conversions_json, print_conversions
 
     if json:
         content = report_json.curve_json(curve, title, written, judged.checks) | conversions_json(loaded)
@@ -245,8 +245,8 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
     from stribeck.cli.reports import json as report_json
-    from stribeck.cli.reports.explain import print_words, regimes_of
-    from stribeck.cli.reports.words import conversions_json
+    from stribeck.cli.reports.explain import print_explanation, regimes_of
+    from stribeck.cli.reports.printing import conversions_json
 
     loaded = sb.load_case(case)
     with interruptible() as progress:
@@ -257,7 +257,7 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         content |= {"uncertainty": found.errors.to_dict()} if found.errors is not None else {}
         print(report_json.dump(content | conversions_json(loaded)))
     else:
-        print_words(stdout_console(), found, loaded)
+        print_explanation(stdout_console(), found, loaded)
     return 0 if found.curve.outcome.ok else complain(found.curve.outcome.value, EXIT_FAILED)
 
 
@@ -283,7 +283,7 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     if json:
         print(report_json.dump({"title": loaded.title} | found.to_dict() | {"unchecked": list(found.unchecked)}))
     else:
-        from stribeck.cli.reports.words import print_conversions
+        from stribeck.cli.reports.printing import print_conversions
 
         console = stdout_console()
         report_checks.print_checks(console, found, loaded.title)
@@ -355,7 +355,7 @@ def _write(
         from stribeck.curves.plot import plot_curve
 
         actions[path] = lambda path=path: plot_curve(curve, path, force=force, **shown)  # type: ignore[misc]
-    return attempted(actions)
+    return write_each(actions)
 
 
 def _say_unusual(boundary_friction: str | None, slide_to_roll: str | None) -> None:

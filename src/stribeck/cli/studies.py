@@ -23,7 +23,7 @@ from stribeck.cli.arguments import (
     data_and_case,
     need_extra,
 )
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, attempted, complain, stdout_console
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, complain, stdout_console, write_each
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 from stribeck.quantities.units import InputError
@@ -73,11 +73,11 @@ def sweep_command(
     with interruptible(after_point=True, sigterm=True) as progress:
         lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
 
-        def tell(state: SweepProgress) -> None:
+        def report_progress(state: SweepProgress) -> None:
             lines(state)
             progress(state.done, state.total, report_sweep.progress_text(state))
 
-        found = sweep(plan, out, workers=processes, scheduler=scheduler, on_progress=tell)
+        found = sweep(plan, out, workers=processes, scheduler=scheduler, on_progress=report_progress)
     written = []
     if export is not None and not found.interrupted:
         found.to_netcdf(export, force=force)
@@ -162,7 +162,7 @@ def fit_command(
         )
     if out is not None and found.converged:
         actions[out] = lambda: write_fitted_case(found, loaded, out, force=force)
-    written, problems = attempted(actions)
+    written, problems = write_each(actions)
     from stribeck.cli.reports import fit as report_fit
     from stribeck.cli.reports import json as report_json
 

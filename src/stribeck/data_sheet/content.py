@@ -145,11 +145,11 @@ def _inputs(case: Case) -> tuple[InputLine, ...]:
         source = next((sources[each] for each in names if each in sources), "")
         shown = "" if error is None else f"± {format_percent(error)}"
         lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
-    words = model_words(case.contact.groups, case.contact)
+    model = model_words(case.contact.groups, case.contact)
     uncertain = [
         f"{row.label} ± {format_percent(case.errors[name])}" for name, row in PART_INPUTS.items() if name in case.errors
     ]
-    return (*lines, *([InputLine("model", words, ", ".join(uncertain), "")] if words else []))
+    return (*lines, *([InputLine("model", model, ", ".join(uncertain), "")] if model else []))
 
 
 def _sources(path: Path) -> dict[str, str]:
@@ -232,11 +232,11 @@ def _levers(case: Case, solution: Solution, slopes: dict[str, float]) -> tuple[L
             after = solve(contact.replace(**changes), rtol=case.rtol).friction(definition=case.definition).total
         except SolveError:
             continue
-        word = f"x {factor:.3g}" if factor > 1 else f"/ {1 / factor:.3g}"
+        factor_text = f"x {factor:.3g}" if factor > 1 else f"/ {1 / factor:.3g}"
         found.append(
             Lever(
                 row.label,
-                f"{word} (to {format_si(value, row.dimension)})",
+                f"{factor_text} (to {format_si(value, row.dimension)})",
                 f"{after:.3g} ({100 * (after / before - 1):+.0f} %)",
             )
         )

@@ -160,7 +160,7 @@ class Comparison(Exported, Shown):
             "weight": ("relative probability among what is compared", [each.weight for each in self.candidates]),
             "noise": ("scatter of the data about the fit", [each.fit.noise for each in self.candidates]),
         }
-        columns: dict[str, Column] = {name: ("law", np.array(row), "1", words) for name, (words, row) in values.items()}
+        columns: dict[str, Column] = {name: ("law", np.array(row), "1", label) for name, (label, row) in values.items()}
         names: dict[str, Column] = {"law": ("law", listed([each.name for each in self.candidates]), "1", "law or model")}
         failed = "\n".join(f"{name}: {why}" for name, why in self.failed.items())
         return new_dataset(columns, names, {"title": "Comparison of fits", "sentence": self.sentence, "failed": failed})

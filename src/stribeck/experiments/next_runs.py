@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["NextRun", "Plan", "next_runs"]
 
-COLUMN_WORDS = {
+COLUMN_LABELS = {
     "curve": "curve whose contact it is",
     "speed": "sum of the surface speeds",
     "load": "load",
@@ -162,8 +162,8 @@ class Plan(Exported, Shown):
         """
         units = {"speed": "m s-1", "load": DIMENSIONS[self.load_dimension].unit, "viscosity": "Pa s"}
         columns: dict[str, Column] = {
-            name: ("run", listed([getattr(each, name) for each in self.runs]), units.get(name, "1"), words)
-            for name, words in COLUMN_WORDS.items()
+            name: ("run", listed([getattr(each, name) for each in self.runs]), units.get(name, "1"), label)
+            for name, label in COLUMN_LABELS.items()
         }
         for name in self.before:
             after = np.array([each.errors[name] for each in self.runs])

@@ -17,7 +17,7 @@ from stribeck.cases.reading import check_case
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.explorer.charts.picture import picture
 from stribeck.explorer.curves import hersey_scale
-from stribeck.explorer.inputs.carried import model_changes, model_words, tables_of, toml_text
+from stribeck.explorer.inputs.carried import model_changes, model_lines, tables_of, toml_text
 from stribeck.explorer.inputs.inputs import Inputs, exact_text
 from stribeck.explorer.view import View
 from stribeck.files.toml import parse_toml
@@ -199,7 +199,7 @@ def _head(shown: View) -> str:
         f"title: {inputs.title}",
         f"source: stribeck {version('stribeck')}",
         *(f"{name}: {text}" for name in inputs.fields if (text := exact_text(inputs, name))),
-        *model_words(inputs.model),
+        *model_lines(inputs.model),
         f"definition: {inputs.definition}",
         f"state: rtol {solution.rtol:g}, estimated error {solution.error_estimate:.1e}",
         *(f"note: {note}" for note in solution.notes),

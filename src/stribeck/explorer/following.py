@@ -79,8 +79,8 @@ class Following:
         self.measured: list[Measured] = []
         self.model = Answerer(shown.answer)
         self.states: list[Any] = list(shown.states)
-        self.said = ""
-        self.asked = False
+        self.message = ""
+        self.is_requested = False
         self.changes = self.answered_changes = 0
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
@@ -90,9 +90,9 @@ class Following:
         self.page = Page(self.inputs)
         self.history = History(self.inputs)
 
-    def ask(self) -> None:
+    def request(self) -> None:
         """Ask for the answer to the present inputs; only one is on its way."""
-        self.asked = True
+        self.is_requested = True
         if not self.working:
             self.working = True
             background_tasks.create(self.work(), name="explorer answers")
@@ -100,31 +100,31 @@ class Following:
     async def work(self) -> None:
         """Answer until nothing is asked any more, the last inputs last."""
         try:
-            while self.asked and not self.closed:
-                self.asked = False
+            while self.is_requested and not self.closed:
+                self.is_requested = False
                 now, changes = self.inputs, self.changes
                 try:
                     await self.compute_answer(now, changes)
-                    await self.page.draw(self.inputs, self.seen())
+                    await self.page.draw(self.inputs, self.view())
                 except Superseded:
                     continue
                 except Exception as problem:  # a page that silently no longer follows would be worse
-                    await self.kept(problem)
+                    await self.keep_last_answer(problem)
                 else:
-                    self.page.say(self.said)
-                    self.said = ""
+                    self.page.show_message(self.message)
+                    self.message = ""
                 self.answered_changes = changes
         finally:
             self.working = False
         self.rest()
 
-    async def kept(self, problem: Exception) -> None:
+    async def keep_last_answer(self, problem: Exception) -> None:
         """Keep the last answer, with all that belongs to it, and say why the next one is not there."""
         self.page.fail(f"{reason(problem)} What is shown belongs to the inputs before.")
         if not isinstance(problem, InputError | SolveError):
             self.model = Answerer(self.answer)  # what the failure left in the old one is not to be trusted
         try:
-            await self.page.draw(self.inputs, self.seen())
+            await self.page.draw(self.inputs, self.view())
         except Exception as again:
             self.page.fail(f"{reason(again)} Reload the page.")
 
@@ -149,7 +149,7 @@ class Following:
         states = [(pin.name, self.model.state_of_pin(pin.contact), pin.definition) for pin in pins]
         return answer, curves_of(self.model, pins, answer), states
 
-    def seen(self) -> View:
+    def view(self) -> View:
         """Return the answer, and the curves that are shown with it."""
         return View(self.answer, self.pinned, tuple(self.measured), self.states)
 
@@ -157,10 +157,10 @@ class Following:
         """Show what has been solved since for the inputs that are shown."""
         if self.is_shown(now) and not self.working:
             arguments = now, tuple(self.pins), speeds_of(self.measured, now)
-            found = await run(self.threads.live, self.compute, *arguments, watch=self.watcher(now))
+            found = await run(self.threads.live, self.compute, *arguments, watch=self.progress_callback(now))
             if self.is_shown(now) and not self.working:
                 self.answer, self.pinned, self.states = found
-                await self.page.draw(self.inputs, self.seen())
+                await self.page.draw(self.inputs, self.view())
 
     def is_shown(self, now: Inputs) -> bool:
         """Whether the page shows the answer to these inputs, and no others were asked for since."""
@@ -179,7 +179,7 @@ class Following:
     async def settle(self) -> None:
         """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
         now = self.answer.inputs
-        go_on = self.watcher(now)
+        go_on = self.progress_callback(now)
 
         def report(part: float) -> None:
             go_on()
@@ -265,7 +265,7 @@ class Following:
         """Whether a browser shows the page; what it left is given up at once, and done anew if it comes back."""
         return not self.closed and self.page.client.has_socket_connection
 
-    def watcher(self, now: Inputs) -> Callable[..., None]:
+    def progress_callback(self, now: Inputs) -> Callable[..., None]:
         """Return what slow work calls again and again: it ends where the inputs have changed."""
 
         def go_on(*_: Any) -> None:

@@ -47,7 +47,7 @@ class Fitted:
     """What a fit gave."""
 
     inputs: Inputs  # Those with the fitted values
-    words: str  # The values with their errors, in a sentence
+    report: str  # The values with their errors, in a sentence
 
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
@@ -57,13 +57,13 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
     contact = now.contact.replace(**values)
     after = replace(now, contact=contact, units=now.units)
-    words = ", ".join(
+    fitted = ", ".join(
         f"{now.fields[name].label.lower()} {si_text(value, name, 3, now.table)}" for name, value in values.items()
     )
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"
     target = measured.name if curves == 1 else f"{number} curves of {measured.file}"
-    return Fitted(after, f"Fitted to {target}: {words}. Undo brings back the values before; intervals: stribeck fit.")
+    return Fitted(after, f"Fitted to {target}: {fitted}. Undo brings back the values before; intervals: stribeck fit.")
 
 
 def speeds_of(measured: Sequence[Measured], now: Inputs) -> list[float]:

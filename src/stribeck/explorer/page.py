@@ -246,9 +246,9 @@ class Page:
         if isinstance(self.knobs.get(name), Slider | ChoiceRow):
             self.knobs[name].run_method("complain", text, sentence)
         else:
-            self.say(sentence, bad=True)
+            self.show_message(sentence, bad=True)
 
-    def say(self, sentence: str, *, bad: bool = False) -> None:
+    def show_message(self, sentence: str, *, bad: bool = False) -> None:
         """Show a sentence above the numbers, in red where something went wrong."""
         self.status.text = sentence
         self.status.classes(remove="said") if bad else self.status.classes("said")
@@ -256,7 +256,7 @@ class Page:
 
     def fail(self, sentence: str) -> None:
         """Say what went wrong, and offer to try again or to go back."""
-        self.say(sentence, bad=True)
+        self.show_message(sentence, bad=True)
         self.retry_row.set_visibility(True)
 
     def renew(self, name: str) -> None:
@@ -295,15 +295,15 @@ class Page:
         # Closed ones are removed, or each would stay with its page.
         dialog.on("hide", dialog.delete)
 
-    def draw_all(self, now: Inputs, seen: View) -> None:
+    def draw_all(self, now: Inputs, view: View) -> None:
         """Put all numbers into a page that is being made; its charts come with the first frame."""
-        for element, content in self.words(seen):
+        for element, content in self.text_elements(view):
             element.content = content
         self.shown |= {name: knob_state(now, name) for name in self.knobs}
 
-    def words(self, seen: View) -> list[tuple[ui.html, str]]:
+    def text_elements(self, view: View) -> list[tuple[ui.html, str]]:
         """Return the numbers, and the lines that go with the charts."""
-        answer = seen.answer
+        answer = view.answer
         waits = answer.curve is None or answer.curve.stale
         source = (self.progress or UPDATING_TEXT) if waits or answer.curve is None else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
@@ -315,10 +315,10 @@ class Page:
             (self.numbers, table.numbers_html(answer, table.numbers(answer, margins))),
             (self.source, escape(source)),
             (self.drawing, drawing(answer)),
-            (self.comparison, table.comparison_html(answer, seen.states)),
+            (self.comparison, table.comparison_html(answer, view.states)),
             (
                 self.diagram_head,
-                f"<h2>Regimes <span class='caption'>at this load (group {load}){_rows_words(answer)}</span></h2>",
+                f"<h2>Regimes <span class='caption'>at this load (group {load}){_rows_text(answer)}</span></h2>",
             ),
         ]
 
@@ -351,24 +351,24 @@ class Page:
 
     def show_progress(self) -> None:
         """Show the progress of the curve."""
-        words = self.shown[self.source.html_id] = escape(self.progress or UPDATING_TEXT)
-        self.client.run_javascript(f"document.getElementById({dumps(self.source.html_id)}).innerHTML = {dumps(words)}")
+        text = self.shown[self.source.html_id] = escape(self.progress or UPDATING_TEXT)
+        self.client.run_javascript(f"document.getElementById({dumps(self.source.html_id)}).innerHTML = {dumps(text)}")
 
     def show_fit(self, there: bool) -> None:
         """Offer a fit where there is something measured."""
         self.fit_button.set_visibility(there)
 
-    async def draw(self, now: Inputs, seen: View) -> None:
+    async def draw(self, now: Inputs, view: View) -> None:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": self.changed_knobs(now), "moved": self.moved}
-        shown = seen.answer.inputs
+        shown = view.answer.inputs
         frame |= {"waits": self.margins_text(shown), "geometry": shown.table.geometry}
         self.moved = None
-        for element, content in self.words(seen):
+        for element, content in self.text_elements(view):
             if self.shown.get(element.html_id) != content:
                 self.shown[element.html_id] = content
                 frame["html"].append([element.html_id, content])
-        for name, chart in charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette).items():
+        for name, chart in charts.all_charts(view.answer, view.pins, view.measured, self.palette).items():
             if self.drawn.get(name) != chart:
                 self.drawn[name] = chart
                 frame["charts"].append([self.charts[name].id, chart])
@@ -378,7 +378,7 @@ class Page:
             pass
 
 
-def _rows_words(answer: Answer) -> str:
+def _rows_text(answer: Answer) -> str:
     """Return how much of the diagram is solved."""
     diagram = answer.diagram
     if diagram is None or diagram.stale:

@@ -31,7 +31,7 @@ class Scan:
     """A measured surface."""
 
     table: dict[str, Any]  # The table `[surface]` of a case
-    words: str  # What was found, in a sentence
+    report: str  # What was found, in a sentence
 
 
 def read_scan(name: str, content: bytes) -> Scan:
@@ -48,8 +48,8 @@ def read_scan(name: str, content: bytes) -> Scan:
     notes = f" {' '.join(surface.notes)}" if surface.notes else ""
     height = format_si(surface.roughness.h_rms, "length")
     limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
-    words = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
-    return Scan(tomllib.loads(surface_table(surface))["surface"], words.replace(str(path), shown))
+    report = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
+    return Scan(tomllib.loads(surface_table(surface))["surface"], report.replace(str(path), shown))
 
 
 def _without_options(sentence: str) -> str:

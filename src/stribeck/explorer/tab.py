@@ -45,7 +45,7 @@ class Tab(Following):
         self.start = start
         TABS[self.page.client.id] = self
         self.connect()
-        self.page.draw_all(self.inputs, self.seen())
+        self.page.draw_all(self.inputs, self.view())
         self.problems = opened.problems
         self.page.show_history(self.history.steps)
 
@@ -68,7 +68,7 @@ class Tab(Following):
         page.pin_button.on("click", self.pin)
         page.fit_button.on("click", self.fit)
         page.theme_button.on("click", self.toggle_theme)
-        page.retry.on("click", self.ask)
+        page.retry.on("click", self.request)
         page.back.on("click", self.go_back)
         for path, item in page.examples.items():
             item.on("click", lambda path=path: self.take_example(path))
@@ -79,11 +79,11 @@ class Tab(Following):
     def slide(self, name: str, place: Any) -> None:
         """Take the place of a slider."""
         self.page.moved = self.page.knobs[name].id
-        self.attempt(name, str(place), lambda: inputs.slid(self.inputs, name, float(place)))
+        self.attempt(name, str(place), lambda: inputs.with_slider(self.inputs, name, float(place)))
 
     def commit(self, name: str, text: Any) -> None:
         """Take the text of a field."""
-        self.attempt(name, str(text), lambda: inputs.typed(self.inputs, name, str(text)))
+        self.attempt(name, str(text), lambda: inputs.with_text(self.inputs, name, str(text)))
 
     def choose_unit(self, name: str, unit: Any) -> None:
         """Show a field in another unit."""
@@ -96,7 +96,7 @@ class Tab(Following):
     def detail(self, name: str, given: Any) -> None:
         """Take the text of a field of a part of the model."""
         key, text = map(str, given)
-        self.attempt(name, key, lambda: choices.typed_detail(self.inputs, name, key, text))
+        self.attempt(name, key, lambda: choices.with_detail(self.inputs, name, key, text))
 
     def choose(self, name: str, value: str) -> None:
         """Take the definition of friction, or what the curve is drawn over."""
@@ -118,7 +118,7 @@ class Tab(Following):
         self.inputs = changed
         self.changes += 1
         self.page.show_choices(changed)
-        self.ask()
+        self.request()
 
     def go_back(self) -> None:
         """Return to the inputs that are shown, and from these to those before."""
@@ -152,7 +152,7 @@ class Tab(Following):
         """Take the colours of the theme."""
         self.page.set_theme(dark)
         self.show_chips()
-        self.ask()
+        self.request()
 
     def pin(self) -> None:
         """Keep the present curve."""
@@ -162,13 +162,13 @@ class Tab(Following):
         name = files.pin_name(self.inputs, self.start, [pin.name for pin in self.pins])
         self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.model))
         self.show_chips()
-        self.ask()
+        self.request()
 
     def unpin(self, pin: Pin) -> None:
         """Drop a pinned curve."""
         self.pins.remove(pin)
         self.show_chips()
-        self.ask()
+        self.request()
 
     def show_chips(self) -> None:
         """List the pinned and the measured curves."""
@@ -179,7 +179,7 @@ class Tab(Following):
         """Drop a measured curve."""
         self.measured.remove(found)
         self.show_chips()
-        self.ask()
+        self.request()
 
     async def take_example(self, path: Path) -> None:
         """Show an example."""
@@ -196,15 +196,15 @@ class Tab(Following):
         """Take a case, a measured curve or a surface that the browser sent."""
         kinds = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
-        self.page.say(f"Reading {name} ...")
+        self.page.show_message(f"Reading {name} ...")
         try:
             found = await run(FILES, read_file, kind, name, content, self.inputs.contact)
         except InputError as problem:
-            self.page.say("")
+            self.page.show_message("")
             self.page.complain(str(problem))
             return
         with self.page.client:
-            self.page.say("")
+            self.page.show_message("")
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):
@@ -212,7 +212,7 @@ class Tab(Following):
             else:
                 self.measured = [*self.measured, *found][-MAX_MEASURED:]
                 self.show_chips()
-                self.ask()
+                self.request()
 
     def take_scan(self, found: Scan) -> None:
         """Show the contact on a measured surface; undo brings back the one before."""
@@ -221,12 +221,12 @@ class Tab(Following):
         except InputError as problem:
             self.page.complain(str(problem))
         else:
-            self.said = found.words
+            self.message = found.report
 
     async def fit(self) -> None:
         """Fit the inputs to the measured curves of the last file; undo brings back those before."""
         now, last = self.inputs, self.measured[-1]
-        self.page.say(f"Fitting to {last.file} ...")
+        self.page.show_message(f"Fitting to {last.file} ...")
 
         def step(*_: Any) -> None:
             if self.closed or self.inputs is not now:
@@ -235,19 +235,19 @@ class Tab(Following):
         try:
             fitted = await run(self.threads.slow, fit_measured, now, last, step, watch=step)
         except Superseded:
-            self.page.say("The fit was given up, as the inputs changed.", bad=True)
+            self.page.show_message("The fit was given up, as the inputs changed.", bad=True)
         except Exception as problem:
-            self.page.say(f"No fit: {reason(problem)}", bad=True)
+            self.page.show_message(f"No fit: {reason(problem)}", bad=True)
         else:
             with self.page.client:
                 self.change(fitted.inputs)
-                self.said = fitted.words
+                self.message = fitted.report
 
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
         try:
             found: bytes = await run(
-                self.threads.slow, files.content, kind, self.seen(), self.while_open, watch=self.while_open
+                self.threads.slow, files.content, kind, self.view(), self.while_open, watch=self.while_open
             )
         except Superseded:
             return None
@@ -295,4 +295,4 @@ class Tab(Following):
             if dark:
                 self.set_theme(True)
             else:
-                self.ask()
+                self.request()

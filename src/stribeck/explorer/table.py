@@ -185,7 +185,7 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
     return "".join(
         [
             f'<div class="regime {answer.regime}" data-key="regime" data-value="{answer.regime}">{answer.regime}'
-            f"<small>{_regime_words(answer)}</small></div>",
+            f"<small>{_regime_text(answer)}</small></div>",
             f"<table>{head}",
             *(_line(row) for row in rows),
             "</table>",
@@ -194,13 +194,13 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
     )
 
 
-def _regime_words(answer: Answer) -> str:
-    words = {
+def _regime_text(answer: Answer) -> str:
+    meanings = {
         "boundary": "the fluid carries at most 5 % of the load",
         "mixed": "fluid and asperities both carry the load",
         "hydrodynamic": "asperities cause at most 10 % of the friction",
     }
-    return words[answer.regime]
+    return meanings[answer.regime]
 
 
 def _line(row: Row) -> str:
@@ -215,11 +215,11 @@ def _line(row: Row) -> str:
 def verdict_html(answer: Answer) -> str:
     """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it."""
     checks = answer.checks_with_curve
-    said = [each.sentence for each in checks.said]
+    sentences = [each.sentence for each in checks.said]
     look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
-    if not said:
+    if not sentences:
         return f"<p {look}>{escape(checks.headline)}</p>"
-    more = "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
+    more = "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
     opened = " open" if checks.verdict == "outside" else ""
     return f"<details {look}{opened}><summary>{escape(checks.headline)}</summary>{more}</details>"
 

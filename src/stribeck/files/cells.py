@@ -13,7 +13,7 @@ __all__ = [
     "MISSING_CELLS",
     "cells_of",
     "has_number",
-    "header_words",
+    "normalised_header",
     "is_called",
     "is_named",
     "looks_like_units",
@@ -67,7 +67,7 @@ def split_header(header: str) -> tuple[str, str]:
     return parts[1].strip(), "" if unit in QUANTITY_LETTERS else re.sub("_per_|_", "/", unit)
 
 
-def header_words(header: str) -> str:
+def normalised_header(header: str) -> str:
     """Return the words of a header in lower case, without its unit, what stands in brackets, and signs."""
     words = re.sub(r"\(.*?\)|\[.*?\]", " ", split_header(header)[0]) or header
     return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower()).split())
@@ -77,7 +77,7 @@ def is_named(header: str, pattern: str) -> bool:
     """Return whether the words of a header match a pattern."""
     # A word before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
     parts = (header, re.split(r"[.:]", split_header(header)[0])[-1])
-    words = [header_words(part) for part in parts]
+    words = [normalised_header(part) for part in parts]
     return any(re.fullmatch(pattern, each) for each in (*words, *(_LETTER.sub("", each) for each in words)))
 
 

@@ -100,7 +100,7 @@ class Heading:
                 continue
             if i > self.at and not units and _are_units(cells):
                 units = tuple("" if cell.lower() in MISSING_CELLS else cell.strip("[]()") for cell in cells)
-            elif not labels and self._tells_apart(cells):
+            elif not labels and self._distinguishes_columns(cells):
                 labels, first = cells, min(first, i)
         return replace(self, units=units, labels=labels, first=first)
 
@@ -111,7 +111,7 @@ class Heading:
             return []
         return cells if len(cells) == len(self.names) else []
 
-    def _tells_apart(self, labels: Sequence[str]) -> bool:
+    def _distinguishes_columns(self, labels: Sequence[str]) -> bool:
         """Return whether labels tell columns of the same name apart."""
         starts = [i for i, label in enumerate(labels) if label]
         blocks = [self.names[i:j] for i, j in zip(starts, [*starts[1:], len(self.names)], strict=True)]

@@ -49,8 +49,8 @@ def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int
     except InputError:
         raise
     except Exception as problem:  # zip and XML raise errors of many kinds, and each means the same
-        said = " ".join(str(problem).split())
-        raise InputError(f"{path} cannot be read as a spreadsheet ({said}); export it as CSV.") from None
+        message = " ".join(str(problem).split())
+        raise InputError(f"{path} cannot be read as a spreadsheet ({message}); export it as CSV.") from None
     counts = {name: sum(has_number(cell) for _, line in lines for cell in line.split("\t")) for name, lines in sheets.items()}
     if not any(counts.values()):
         which = "any of its sheets" if wanted is None else f"the sheet {show(wanted)}"

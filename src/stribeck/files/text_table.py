@@ -30,7 +30,7 @@ from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEET_ENDINGS, sheets_of
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["TextTable", "comparable", "read_table", "read_two_columns", "values_of"]
+__all__ = ["TextTable", "as_comparable", "read_table", "read_two_columns", "values_of"]
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
@@ -263,12 +263,14 @@ def _heading(
         there = next((each for each in tables.values() for one in each if one.at == plain[0]), [])
         own = [each for each in there if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
         return own[0], own, [each for each in found if each not in own and each.at > plain[0]]
-    told = {id(each): min(_count_settings(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
+    settings_count = (
+        {id(each): min(_count_settings(lines, each, knows), 2) for each in tables.values()} if len(tables) > 1 else {}
+    )
     count = {id(each): sum(one.rows for one in each) for each in tables.values()}
-    ranked = sorted(tables.values(), key=lambda each: (told.get(id(each), 0), count[id(each)]), reverse=True)
+    ranked = sorted(tables.values(), key=lambda each: (settings_count.get(id(each), 0), count[id(each)]), reverse=True)
     best = ranked[0]
     for other in ranked[1:]:
-        if told[id(other)] == told[id(best)] and 1 < count[id(best)] <= 2 * count[id(other)]:
+        if settings_count[id(other)] == settings_count[id(best)] and 1 < count[id(best)] <= 2 * count[id(other)]:
             (first, one), (second, two) = sorted((lines[each[0].at].number, count[id(each)]) for each in (best, other))
             raise InputError(
                 f"{path}: rows {first} and {second} are headers of two tables of {one} and {two} rows; say which one to "
@@ -347,7 +349,7 @@ def _body(
     return rows, numbers, steps, [each for each in text if numbers and each < numbers[-1]]
 
 
-def comparable(cell: str) -> Any:
+def as_comparable(cell: str) -> Any:
     """Return what is equal for cells that mean the same, such as ``0.50`` and ``0.5``."""
     return number_of(cell, ",") or cell
 
@@ -358,7 +360,7 @@ def _drop_repeated_columns(table: TextTable) -> TextTable:
     kept = []
     repeated = {name for name in table.header if table.header.count(name) > 1}
     for i, name in enumerate(table.header):
-        cells = tuple(comparable(row[i]) if name in repeated else row[i] for row in table.rows)
+        cells = tuple(as_comparable(row[i]) if name in repeated else row[i] for row in table.rows)
         if name and cells not in seen.setdefault(name, []):
             seen[name].append(cells)
             kept.append(i)
@@ -443,11 +445,11 @@ def _split_errors(table: TextTable) -> TextTable:
 
 def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:
     width, separator = len(heading.names), heading.separator
-    said = f"{path}: row {line.number} has {len(cells)} cell{'s' * (len(cells) != 1)} where the header has {width}"
+    problem = f"{path}: row {line.number} has {len(cells)} cell{'s' * (len(cells) != 1)} where the header has {width}"
     other = next((name for mark, name in SEPARATORS.items() if mark != separator and line.text.count(mark) == width - 1), None)
     if separator == "," and len(cells) > width and all(re.fullmatch(r"[+-]?[0-9]+", cell) for cell in cells if cell):
-        return f"{said}; commas cannot both separate columns and begin decimals: export with semicolons or tabs."
+        return f"{problem}; commas cannot both separate columns and begin decimals: export with semicolons or tabs."
     if other:
         mark = SEPARATORS.get(separator, "space")
-        return f"{said}: the header is separated by {mark}s and this row by {other}s; use one separator{elsewhere}."
-    return f"{said}; use one separator, and leave a cell empty if a value is missing{elsewhere}."
+        return f"{problem}: the header is separated by {mark}s and this row by {other}s; use one separator{elsewhere}."
+    return f"{problem}; use one separator, and leave a cell empty if a value is missing{elsewhere}."

@@ -48,9 +48,9 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
             f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file, saved as UTF-8."
         ) from None
     except (ValueError, RecursionError) as problem:
-        said = " ".join(str(problem).split())
-        advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))
-        raise InputError(f"{path} is not valid TOML: {said}{advice}.") from None
+        message = " ".join(str(problem).split())
+        advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if message.startswith(slip))
+        raise InputError(f"{path} is not valid TOML: {message}{advice}.") from None
     if not table:
         raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
     return table

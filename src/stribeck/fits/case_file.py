@@ -24,7 +24,7 @@ from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import ALTERNATIVES
-from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
+from stribeck.quantities.part_inputs import PART_INPUTS, all_input_rows
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError
 
@@ -96,7 +96,7 @@ def _write(
         back = load_case(temporary).contact
     except InputError as problem:
         raise InputError(str(problem).replace(str(temporary), str(path))) from None
-    for name in fitted_rows(contact.INPUTS):
+    for name in all_input_rows(contact.INPUTS):
         value, kept = getattr(contact, name, None), getattr(back, name, None)
         if value is not None and (kept is None or not math.isclose(kept, value, rel_tol=AGREEMENT)):
             table, key = _place(name)
@@ -222,7 +222,7 @@ def _comments(name: str, fit: Fit) -> list[str]:
 
 def _entry_of(name: str, contact: Contact) -> str:
     _, key = _place(name)
-    return _entry(key, getattr(contact, name), fitted_rows(contact.INPUTS)[name].dimension)
+    return _entry(key, getattr(contact, name), all_input_rows(contact.INPUTS)[name].dimension)
 
 
 def _entry(key: str, value: float, dimension: str) -> str:

@@ -37,7 +37,7 @@ from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import PartsOf
 from stribeck.fits.states.sources import in_atlas, ways_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.part_inputs import fitted_rows
+from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["fit"]
@@ -342,7 +342,7 @@ def _result(
             interval_68=_interval(free, ends[i][0]),
             interval_95=_interval(free, ends[i][1]),
             at_bound=bool(bound[i]),
-            dimension="number" if free.is_factor else fitted_rows(contact.INPUTS)[free.name].dimension,
+            dimension="number" if free.is_factor else all_input_rows(contact.INPUTS)[free.name].dimension,
         )
         for i, free in enumerate(model.free)
     )

@@ -10,7 +10,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
+from stribeck.quantities.part_inputs import PART_INPUTS, all_input_rows
 from stribeck.quantities.units import InputError
 
 __all__ = ["FreeInput", "free_inputs"]
@@ -103,7 +103,7 @@ def _free_input(
 
 
 def _text(name: str, value: float, contact: Contact) -> str:
-    return format_si(value, fitted_rows(contact.INPUTS)[name].dimension)
+    return format_si(value, all_input_rows(contact.INPUTS)[name].dimension)
 
 
 def _check_matters(name: str, data: Measurements) -> None:

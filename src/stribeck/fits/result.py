@@ -20,7 +20,7 @@ from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.fits.states.interpolation import Between
 from stribeck.quantities.inputs import LINE, InputTable
-from stribeck.quantities.part_inputs import fitted_rows
+from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import DIMENSIONS
 
@@ -355,4 +355,4 @@ class Fit(Exported, Shown, ByValue):
 
 def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[fitted_rows(table)[name].dimension].unit
+    return "" if is_factor else DIMENSIONS[all_input_rows(table)[name].dimension].unit

@@ -121,7 +121,7 @@ class Given:
 
     values: dict[str, Any]  # By name: what was made of others in SI units, the rest as it was given
     errors: dict[str, float]  # Standard errors over the values, where known
-    said: tuple[str, ...]  # One sentence for each conversion
+    sentences: tuple[str, ...]  # One sentence for each conversion
     problems: tuple[str, ...] = ()
 
 
@@ -140,13 +140,13 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
             except InputError as problem:
                 problems.append(str(problem))
                 values[name] = _typical(name, table)
-    said = []
+    sentences = []
     for row in CONVERSIONS:
         wrong = row.geometry not in ("", table.geometry)
         if wrong or not any(values.get(each.name) is not None for each in row.inputs):
             continue
         try:
-            said.append(_convert(row, values, errors, given, table))
+            sentences.append(_convert(row, values, errors, given, table))
         except InputError as problem:
             problems.append(str(problem))
             if values.get(row.of) is None:
@@ -155,7 +155,7 @@ def read_given(given: Mapping[str, Any], table: InputTable = LINE) -> Given:
     for name in [name for name in values if name in GIVEN and values[name] is not None and not problems]:
         problems.append(f"{name} = {show(given[name])} is not an input of a {table.contact}; remove it.")
     values = {name: value for name, value in values.items() if name not in GIVEN}
-    return Given(values, errors, tuple(said), tuple(problems))
+    return Given(values, errors, tuple(sentences), tuple(problems))
 
 
 def convert_inputs(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:

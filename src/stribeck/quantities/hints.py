@@ -97,7 +97,7 @@ def advice_on(key: str, known: Iterable[str]) -> str | None:
     if MEANT.get(key) in names:
         return f"write {MEANT[key]}"
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
-    absent = next((said for words, said in _HINTS if any(f"_{word}_" in text for word in words)), None)
+    absent = next((hint for words, hint in _HINTS if any(f"_{word}_" in text for word in words)), None)
     if absent is not None:
         return absent
     whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]

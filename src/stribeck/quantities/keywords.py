@@ -30,11 +30,11 @@ def answers_typos(function: Callable[P, R]) -> Callable[P, R]:
 
 def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
     """Return the error with the name that was probably meant, if it says that ``function`` has no such argument."""
-    said = re.fullmatch(r"(?:(\S+)\(\) )?got an unexpected keyword argument '(\w+)'", str(problem))
-    if said is None or (said[1] or function.__name__).rpartition(".")[2] != function.__name__:
+    match = re.fullmatch(r"(?:(\S+)\(\) )?got an unexpected keyword argument '(\w+)'", str(problem))
+    if match is None or (match[1] or function.__name__).rpartition(".")[2] != function.__name__:
         return problem
     parameters = inspect.signature(function).parameters.values()
     names = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD and each.name != "self"]
-    near = difflib.get_close_matches(said[2], names, n=1)
+    near = difflib.get_close_matches(match[2], names, n=1)
     hint = f"did you mean {near[0]}?" if near else f"it takes {', '.join(names)}."
-    return TypeError(f"{'' if said[1] else f'{function.__name__}() '}{problem}; {hint}")
+    return TypeError(f"{'' if match[1] else f'{function.__name__}() '}{problem}; {hint}")

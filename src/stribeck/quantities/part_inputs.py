@@ -13,7 +13,7 @@ from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "fitted_rows", "part_names", "part_value", "with_part_value"]
+__all__ = ["PART_INPUTS", "PART_LETTERS", "PartInput", "all_input_rows", "part_names", "part_value", "with_part_value"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +137,7 @@ PART_INPUTS = {row.name: row for row in _ROWS}
 PART_LETTERS = {letter: row.name for row in _ROWS for letter in row.letters}  # Other names of numbers of laws
 
 
-def fitted_rows(table: InputTable) -> dict[str, Input]:
+def all_input_rows(table: InputTable) -> dict[str, Input]:
     """Return all inputs of a geometry by name, numbers of laws among them."""
     return {**table.quantities, **PART_INPUTS}
 

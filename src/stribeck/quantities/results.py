@@ -27,9 +27,9 @@ class Shown:
     """A result shown as a :class:`Card`: lines in a terminal, a table in a notebook; by default its fields in short."""
 
     def _card(self) -> Card:
-        said = (inspect.getdoc(type(self)) or "").partition("\n")[0]
+        summary = (inspect.getdoc(type(self)) or "").partition("\n")[0]
         named = [each.name for each in fields(self) if each.name != "notes"]  # type: ignore[arg-type]
-        return Card(said, [(name, brief_text(getattr(self, name))) for name in named], getattr(self, "notes", ()))
+        return Card(summary, [(name, brief_text(getattr(self, name))) for name in named], getattr(self, "notes", ()))
 
     def __repr__(self) -> str:
         """Return the card as lines of text."""

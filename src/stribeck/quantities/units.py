@@ -288,9 +288,9 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
         raise InputError(f"{received} has a unit that cannot be read; {_advice(kind)}.") from None
     if base.dimensionality != registry.parse_units(kind.unit).dimensionality:
         found = next((text for text in _NOUNS if base.dimensionality == registry.parse_units(text).dimensionality), None)
-        said = f"{received} is {_noun(found, base)}; expected {kind.noun} such as '{kind.example}'"
+        message = f"{received} is {_noun(found, base)}; expected {kind.noun} such as '{kind.example}'"
         hint = _HINTS.get((found or "", kind.unit))
-        raise InputError(f"{said}: {hint}." if hint else f"{said}.")
+        raise InputError(f"{message}: {hint}." if hint else f"{message}.")
     return Fraction(factor)
 
 

@@ -31,6 +31,8 @@ __all__ = [
 HARD_PREFIX = "Hard elastohydrodynamics:"
 FLUID_PREFIX = "The fluid leaves the range of its laws:"
 SUCTION_PREFIX = "Behind the contact the fluid pressure falls"
+THICK_PREFIX = "The film is"
+WETTED_PREFIX = "The liquid ends at"
 
 OIL_COEFFICIENT = 2e-8  # Pressure-viscosity coefficient of mineral oil [1/Pa], amid the usual 15 to 25 1/GPa
 MAX_PRESSURE_EXPONENT = (
@@ -38,6 +40,7 @@ MAX_PRESSURE_EXPONENT = (
 )
 MAX_HERTZ_PRESSURE = MAX_PRESSURE_EXPONENT / OIL_COEFFICIENT  # Hertz pressure up to which an oil may count as isoviscous [Pa]
 MAX_CONTACT_SLOPE = 0.3  # Hertz half-width over the radius above which the model is coarse
+MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
 LAW_RANGE = (0.4, 2.0)  # Gaps over h_rms in which the exponential law follows a rough surface (contact_laws.md)
 USUAL_ALPHA = 2.0  # Decay coefficient of self-affine surfaces, by which groups alone are judged
 USUAL_BETA = 0.05  # Slope coefficient of self-affine surfaces, by which groups alone are judged

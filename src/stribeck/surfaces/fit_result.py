@@ -18,7 +18,7 @@ from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.surfaces.measured_spectrum import line_density
 
-__all__ = ["Estimate", "FitParameters", "SelfAffineFit", "differences"]
+__all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences"]
 
 STANDARD_ERRORS_95 = 1.959964  # Standard errors to each side that hold 95 % of a normal distribution
 
@@ -97,7 +97,7 @@ class FitParameters:
         return SelfAffine(math.exp(log_h), math.exp(q0), math.exp(q1), H, math.exp(max(q_r, q0)))
 
     @property
-    def unseen(self) -> list[tuple[float, float, bool]]:
+    def admissible_extensions(self) -> list[tuple[float, float, bool]]:
         """Factors on roll-off and q_0, and whether shorter waves go on, of surfaces that the scan does not exclude."""
         shorter = (False,) if self.q1_found else (False, True)
         if self.q0_found:
@@ -163,7 +163,7 @@ class SelfAffineFit:
         """
         known = self._parameters
         best = np.log(exponential_limit(known.surface(known.theta), gamma))
-        hidden = known.unseen
+        hidden = known.admissible_extensions
         profile = np.array([np.log(exponential_limit(known.surface(known.theta, *each), gamma)) for each in hidden])
         low, high = np.empty(2), np.empty(2)
         for i in (0, 1):
@@ -172,7 +172,7 @@ class SelfAffineFit:
                 def limit(theta: Array, each: tuple[float, float, bool] = hidden[at]) -> Array:
                     return np.log(exponential_limit(known.surface(theta, *each), gamma))
 
-                turn = differences(limit, known.theta)[i]
+                turn = central_differences(limit, known.theta)[i]
                 ends[i] = math.exp(
                     profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ known.covariance @ turn))
                 )
@@ -211,7 +211,7 @@ class SelfAffineFit:
         return clean + (self.noise if noise else 0.0)
 
 
-def differences(function: Callable[[Array], Array], x: Array) -> Array:
+def central_differences(function: Callable[[Array], Array], x: Array) -> Array:
     """Return central differences of a smooth function of parameters of order one."""
     columns = []
     for i in range(x.size):

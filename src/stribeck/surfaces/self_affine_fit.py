@@ -23,7 +23,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.units import InputError, checked_kind
-from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, differences
+from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, central_differences
 from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density
 
 __all__ = ["fit_self_affine"]
@@ -243,7 +243,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     def model(theta: Array) -> Array:
         return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
 
-    slopes = differences(model, trial.values)
+    slopes = central_differences(model, trial.values)
     information = slopes.T @ (part.modes[:, None] * slopes)
     freedom = max(q.size - trial.parameters, 1)
     excess = trial.deviance / freedom
@@ -255,7 +255,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
     parameters = FitParameters(theta, covariance, centre, measured.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
-    values, turn = parameters.physical(theta), differences(parameters.physical, theta)
+    values, turn = parameters.physical(theta), central_differences(parameters.physical, theta)
     spread = covariance.copy()
     if trial.roll_off and not cuts["q0"]:
         spread[-2, -2] = LONG_CUT_OFF_ERROR**2

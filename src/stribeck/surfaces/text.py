@@ -350,7 +350,7 @@ def _table(path: Path) -> _Table:
         kept = kept[1:]
     cells = [[row[j] for j in kept] for row in cells]
     header = header_of(path, above)
-    values, said = _values(path, cells, numbers, comma=comma, codes=header.codes)
+    values, missing_notes = _values(path, cells, numbers, comma=comma, codes=header.codes)
     if not names and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
         notes.append("The first column numbers the points and was left out.")
         values, cells = values[:, 1:], [row[1:] for row in cells]
@@ -358,7 +358,7 @@ def _table(path: Path) -> _Table:
     units = [unit_of(name) for name in names]
     if len(units) > 3 and any(units):
         units = [next(unit for unit in units if unit)] * len(units)
-    return _Table(values, cells, numbers, names, units, header, (*notes, *said))
+    return _Table(values, cells, numbers, names, units, header, (*notes, *missing_notes))
 
 
 def _longest_run(data: list[bool]) -> tuple[int, int]:

@@ -105,7 +105,7 @@ def header_of(path: Path, lines: Iterable[str]) -> Header:
             continue
         unit = _UNIT_LINE.fullmatch(line)
         if unit and not re.fullmatch(_NUMBER, unit[3]):
-            words = _words(unit[1] + " " + unit[2])
+            words = _normalised(unit[1] + " " + unit[2])
             symbol = unit_symbol(unit[3].strip("[]()\"'"))
             of_positions = re.search(r"\b(x|y|xy|lateral|horizontal|position\w*|distance)\b", words) is not None
             of_heights = re.search(r"\b(z|value|height|vertical|data|höhe)\b", words) is not None
@@ -118,14 +118,14 @@ def header_of(path: Path, lines: Iterable[str]) -> Header:
     return Header(lateral, vertical, steps, sizes, tuple(codes))
 
 
-def _words(text: str) -> str:
+def _normalised(text: str) -> str:
     return " ".join(re.sub(r"[^0-9a-zäöüßµμ]+", " ", text.lower()).split())
 
 
 def _size_or_step(
     path: Path,
     line: str,
-    said: str,
+    original: str,
     steps: dict[int, tuple[float, str]],
     sizes: dict[int, tuple[float, str]],
     heights: list[tuple[float, str]],
@@ -140,14 +140,14 @@ def _size_or_step(
     if unit is None:
         return
     per = bool(entry["per"] or entry["per2"] or (in_key and (in_key[2] or in_key[4])))
-    words = _words(_IN_KEY.sub(" ", entry["key"]) if own else entry["key"])
+    words = _normalised(_IN_KEY.sub(" ", entry["key"]) if own else entry["key"])
     is_step = per or _STEP.search(words) is not None
     if _OTHER.search(words) or not (is_step or _SIZE.search(words)):
         return
     numbers = [entry["first"], *([entry["second"]] if entry["second"] else [])]
     units = [entry["unit"] or unit, entry["other"] or unit]
     lengths = [
-        float(number.replace(",", ".")) * to_si(f"1 {unit_symbol(each)}", "length", f"{path}: {said}")
+        float(number.replace(",", ".")) * to_si(f"1 {unit_symbol(each)}", "length", f"{path}: {original}")
         for number, each in zip(numbers, units, strict=False)
     ]
     if not all(length > 0 and math.isfinite(length) for length in lengths):
@@ -156,11 +156,13 @@ def _size_or_step(
     on_y = re.search(r"\b(y|dy|rangey|vertical|rows?)\b", words) is not None
     target = steps if is_step else sizes
     if len(lengths) == 1 and not is_step and not on_y and words in ("height", "höhe", "scan height", "image height"):
-        heights.append((lengths[0], said))
+        heights.append((lengths[0], original))
         return
     axes = [0, 1] if on_x == on_y else [0] if on_x else [1]
     for axis in axes:
         length = lengths[axis] if len(lengths) == 2 else lengths[0]
         if axis in target and not math.isclose(target[axis][0], length, rel_tol=1e-3):
-            raise InputError(f"{path}: {show(target[axis][1])} and {show(said)} contradict each other; remove the wrong line.")
-        target.setdefault(axis, (length, said))
+            raise InputError(
+                f"{path}: {show(target[axis][1])} and {show(original)} contradict each other; remove the wrong line."
+            )
+        target.setdefault(axis, (length, original))

@@ -75,8 +75,8 @@ def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tup
     if isinstance(solution.groups.law, WithArea):
         values += [getattr(solution, name) for name in AREA_ROWS]
     values += [solution.nodes, solution.newton_steps, OUTCOMES.index(solution.outcome.name)]
-    said = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
-    return np.array(values), "\n".join(said)
+    messages = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
+    return np.array(values), "\n".join(messages)
 
 
 def failed_row(contact: Contact | None, physics: Physics, outcome: str, message: str) -> tuple[Array, str]:

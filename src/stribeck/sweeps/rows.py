@@ -47,13 +47,13 @@ class Writer:
 
     def __call__(self, row: int, values: Array, text: str) -> None:
         """Write one state: text and numbers first, then the flag that it is done."""
-        said = _text(text)
+        message = _text(text)
         numbers = values.astype("<f8").tobytes()
         try:
-            if said:
-                self._put("text", f"c.{row}.0", said)
+            if message:
+                self._put("text", f"c.{row}.0", message)
             self._put("values", f"c.{row}.0", numbers)
-            self._put("done", f"c.{row}", struct.pack("<I", _checksum(row, numbers, said)))
+            self._put("done", f"c.{row}", struct.pack("<I", _checksum(row, numbers, message)))
         except OSError as problem:
             remedy = "Make room" if problem.errno in FULL_DISK_ERRORS else "Mend that"
             raise SweepError(
@@ -95,14 +95,14 @@ def _finished(path: Path, row: int, columns: int) -> tuple[Array, str] | None:
         numbers = read_bounded(path / "values" / f"c.{row}.0", MAX_FILE_BYTES)
         flag = read_bounded(path / "done" / f"c.{row}", MAX_FILE_BYTES)
         try:
-            said = read_bounded(path / "text" / f"c.{row}.0", MAX_FILE_BYTES)
+            message = read_bounded(path / "text" / f"c.{row}.0", MAX_FILE_BYTES)
         except FileNotFoundError:
-            said = b""
+            message = b""
     except FileNotFoundError:
         return None
-    if len(flag) != 4 or len(numbers) != 8 * columns or struct.unpack("<I", flag)[0] != _checksum(row, numbers, said):
+    if len(flag) != 4 or len(numbers) != 8 * columns or struct.unpack("<I", flag)[0] != _checksum(row, numbers, message):
         return None
-    return np.frombuffer(numbers, dtype="<f8"), said.rstrip(b"\0").decode("utf-8", errors="replace")
+    return np.frombuffer(numbers, dtype="<f8"), message.rstrip(b"\0").decode("utf-8", errors="replace")
 
 
 def remove_unfinished(path: Path, rows: Rows) -> None:
@@ -150,6 +150,6 @@ def _text(text: str) -> bytes:
     return content.ljust(TEXT_BYTES, b"\0") if content else b""
 
 
-def _checksum(row: int, numbers: bytes, said: bytes) -> int:
+def _checksum(row: int, numbers: bytes, message: bytes) -> int:
     """Return what the flag of a state holds, which zero must not be."""
-    return zlib.crc32(said, zlib.crc32(numbers, zlib.crc32(struct.pack("<Q", row)))) or 1
+    return zlib.crc32(message, zlib.crc32(numbers, zlib.crc32(struct.pack("<Q", row)))) or 1

@@ -169,11 +169,13 @@ class _Run:
                 if not chains:
                     pass
                 elif self.scheduler is not None:
-                    solve_on_cluster(self.store, chains, self.scheduler, self._finished, self._tell)
+                    solve_on_cluster(self.store, chains, self.scheduler, self._finished, self._report_progress)
                 elif self.workers > 1:
-                    solve_on_processes(self.store, chains, min(self.workers, len(chains)), self._finished, self._tell)
+                    solve_on_processes(
+                        self.store, chains, min(self.workers, len(chains)), self._finished, self._report_progress
+                    )
                 else:
-                    solve_in_process(self.store, chains, self._finished, self._tell)
+                    solve_in_process(self.store, chains, self._finished, self._report_progress)
             except BrokenProcessPool:
                 if deaths > MAX_REPLACEMENTS:
                     raise SweepError(
@@ -206,7 +208,7 @@ class _Run:
         while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
             self.marks.popleft()
 
-    def _tell(self) -> None:
+    def _report_progress(self) -> None:
         if self.on_progress is None:
             return
         (began, first), now = self.marks[0], time.monotonic()

@@ -22,7 +22,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, fitted_rows
+from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, all_input_rows
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
@@ -168,7 +168,7 @@ def propagate(
 
 def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
     """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
-    rows = fitted_rows(contact.INPUTS)
+    rows = all_input_rows(contact.INPUTS)
     found: dict[str, float] = {}
     for name, error in errors.items():
         kept, exponent = SUBSTITUTES.get(name, (PART_LETTERS.get(name, name), 1.0))

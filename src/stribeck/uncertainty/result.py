@@ -13,7 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.files.datasets import Column, listed, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.formats import format_percent, format_share, format_si
-from stribeck.quantities.part_inputs import fitted_rows
+from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.units import DIMENSIONS
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ class Uncertainty(Exported):
             for end, name in enumerate(("low", "high")):
                 numbers[f"{name}_{percent}"] = (f"{name} end of the {percent} % interval", [each[end] for each in ends])
         columns: dict[str, Column] = {
-            name: ("quantity", np.array(values), "SI, see unit", words) for name, (words, values) in numbers.items()
+            name: ("quantity", np.array(values), "SI, see unit", label) for name, (label, values) in numbers.items()
         }
         columns["unit"] = ("quantity", listed([DIMENSIONS[each.dimension].unit for each in self.spreads]), "1", "SI unit")
         names: dict[str, Column] = {"quantity": ("quantity", listed([each.name for each in self.spreads]), "1", "quantity")}
@@ -193,7 +193,7 @@ class Uncertainty(Exported):
     @property
     def sources(self) -> tuple[str, ...]:
         """What intervals count, the share of each input in the variance of friction, and the notes, a sentence each."""
-        labels = fitted_rows(self.contact.INPUTS)
+        labels = all_input_rows(self.contact.INPUTS)
         exact = (exact_inputs(self.contact, self.errors),) if self.errors else ()
         named = {name: part for name, part in self.contributions.items() if part >= MIN_NAMED_SHARE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
@@ -204,13 +204,13 @@ class Uncertainty(Exported):
         rows = "".join(
             f"<tr><td>{html.escape(each.label)}</td><td>{html.escape(each.text)}</td></tr>" for each in self.spreads
         )
-        said = "".join(f"<p>{html.escape(each)}</p>" for each in (self.probabilities, *self.notes))
-        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table>{said}"
+        paragraphs = "".join(f"<p>{html.escape(each)}</p>" for each in (self.probabilities, *self.notes))
+        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table>{paragraphs}"
 
 
 def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
     """Return the sentence that says which inputs have an error in intervals, and which count as exact."""
-    rows = fitted_rows(contact.INPUTS)
+    rows = all_input_rows(contact.INPUTS)
     known = [row.label for name, row in rows.items() if name in errors]
     exact = [
         row.label

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
-from stribeck.cli.reports.words import print_table, table_of
+from stribeck.cli.reports.printing import print_table, table_of
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -13,8 +13,8 @@ import stribeck as sb
 from stribeck.checks.check import Checks
 from stribeck.checks.table import checks_of_curve
 from stribeck.cli.exits import say
+from stribeck.cli.reports.printing import print_conversions
 from stribeck.cli.reports.regimes import print_regimes, print_uncertainty
-from stribeck.cli.reports.words import print_conversions
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.result import StribeckCurve
@@ -29,7 +29,7 @@ from stribeck.solver.solution import Solution
 if TYPE_CHECKING:
     from rich.console import Console
 
-__all__ = ["Explanation", "Regimes", "explain", "print_words", "regimes_of"]
+__all__ = ["Explanation", "Regimes", "explain", "print_explanation", "regimes_of"]
 
 CURVE_POINTS = 41  # Points of the curve on which transitions are looked for, which are then located exactly.
 
@@ -74,7 +74,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
     return Regimes(solution, sensitivities, curve, margins, checks, errors, reason)
 
 
-def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
+def print_explanation(console: Console, found: Regimes, case: sb.Case) -> None:
     """Print everything about the regime of a case."""
     print_regimes(console, found.solution, found.sensitivities, found.curve, found.margins, case.title, found.checks)
     if found.reason:
@@ -115,5 +115,5 @@ def explain(problem: Contact | sb.Case, *, rtol: float = 1e-6, definition: Defin
         raise InputError(f"problem = {show(problem)}; give a contact, or a case from load_case.")
     stream = io.StringIO()
     console = Console(file=stream, width=100, color_system=None)
-    print_words(console, regimes_of(problem), problem)
+    print_explanation(console, regimes_of(problem), problem)
     return Explanation(stream.getvalue().rstrip())

@@ -8,12 +8,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from stribeck.cli.exits import say
-from stribeck.cli.reports.words import print_first
+from stribeck.cli.reports.printing import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.part_inputs import fitted_rows
+from stribeck.quantities.part_inputs import all_input_rows
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -100,7 +100,7 @@ def _held(fit: Fit) -> str:
     for name in fit.held:
         values = {getattr(contact, name, None) for contact in fit.contacts}
         [value, *others] = values
-        dimension = fitted_rows(fit.contact.INPUTS)[name].dimension
+        dimension = all_input_rows(fit.contact.INPUTS)[name].dimension
         known = "of each curve" if others or value is None else format_si(value, dimension, 4)
         shown.append(f"{name} {known}")
     return (
@@ -112,11 +112,11 @@ def _held(fit: Fit) -> str:
 
 def _noise(fit: Fit) -> str:
     quality = fit.quality
-    said = "no systematic misfit detected" if quality.structure_probability >= 0.01 else "systematic misfit detected"
+    misfit = "no systematic misfit detected" if quality.structure_probability >= 0.01 else "systematic misfit detected"
     if math.isnan(fit.noise):
         return (
             f"Residuals: chi squared {quality.chi_squared:.3g} for {quality.degrees_of_freedom:.3g} degrees of freedom "
-            f"(p = {quality.chi_squared_probability:.2g}); {said} (p = {quality.structure_probability:.2g})."
+            f"(p = {quality.chi_squared_probability:.2g}); {misfit} (p = {quality.structure_probability:.2g})."
         )
     size = format_percent(fit.noise) if fit.logarithmic else f"{fit.noise:.2g}"
-    return f"Residuals: {size} of noise; {said} (p = {quality.structure_probability:.2g})."
+    return f"Residuals: {size} of noise; {misfit} (p = {quality.structure_probability:.2g})."

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.checks.check import Checks
-from stribeck.cli.reports.words import Sensitivities, hersey_of, regime_now, strongest
+from stribeck.cli.reports.printing import Sensitivities, hersey_of, most_sensitive_input, regime_now
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, part_attributes
 from stribeck.quantities.inputs import unit_of
@@ -132,7 +132,7 @@ def regimes_json(
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
         "margins": {margin.name: _margin(margin, solution.contact) for margin in margins.margins},
         "sensitivities": sensitivities,
-        "moves_friction_most": strongest(sensitivities),
+        "moves_friction_most": most_sensitive_input(sensitivities),
         **law_json(solution.groups.law),
         "model": part_attributes(solution.groups, solution.contact),
         "inputs": _inputs(solution.contact),

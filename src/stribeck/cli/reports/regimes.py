@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
-from stribeck.cli.reports.words import (
+from stribeck.cli.reports.printing import (
     Sensitivities,
     mark_texts,
+    most_sensitive_input,
     print_head,
     print_outcome,
     print_table,
     regime_now,
-    strongest,
     table_of,
 )
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_share, format_si
-from stribeck.quantities.part_inputs import fitted_rows
+from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
@@ -78,7 +78,7 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
     if not sensitivities:
         return
     table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
-    rows = fitted_rows(contact.INPUTS)
+    rows = all_input_rows(contact.INPUTS)
     for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
         value, slope = getattr(contact, name), sensitivities[name]
         table.add_row(
@@ -88,7 +88,7 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
             _change_text(_change(1.1, slope)),
         )
     print_table(console, table)
-    most = strongest(sensitivities)
+    most = most_sensitive_input(sensitivities)
     if most is not None:
         slope = sensitivities[most]
         factor = 0.9 if slope > 0 else 1.1

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
-from stribeck.cli.reports.regimes import print_uncertainty
-from stribeck.cli.reports.words import (
+from stribeck.cli.reports.printing import (
     digits,
     error_text,
     hersey_of,
@@ -22,6 +21,7 @@ from stribeck.cli.reports.words import (
     print_table,
     table_of,
 )
+from stribeck.cli.reports.regimes import print_uncertainty
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import regime_of

@@ -47,7 +47,7 @@ def drawing(answer: Answer) -> str:
     upper, lower = 0.5 * (1 - srr / 2), 0.5 * (1 + srr / 2)
     what = "Cylinder" if contact.INPUTS.geometry == "line" else "Ball"
     film = format_si(solution.central_gap * scales.indentation, "length", 3)
-    words = f"{what} on a soft body, central film {film}"
+    label = f"{what} on a soft body, central film {film}"
     parts = [
         f'<rect class="soft" x="3" y="{SURFACE_Y:.1f}" width="{WIDTH - 6}" height="{deep - SURFACE_Y:.1f}"/>',
         f'<path class="film" d="{_path(film_of)} Z"/>',
@@ -67,7 +67,7 @@ def drawing(answer: Answer) -> str:
             start = CENTRE_X + side * 60.0
             parts.append(_arrow(start, y, start + 44 * share, y))
     parts.append(_text(WIDTH - 84, SURFACE_Y + 15, f"film {film}"))
-    return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{words}; not to scale">{"".join(parts)}</svg>'
+    return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{label}; not to scale">{"".join(parts)}</svg>'
 
 
 def _length(value: float, per_decade: float) -> float:
@@ -87,5 +87,5 @@ def _arrow(x: float, y: float, to_x: float, to_y: float) -> str:
     )
 
 
-def _text(x: float, y: float, words: str) -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}">{words.replace("*", "·")}</text>'
+def _text(x: float, y: float, label: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}">{label.replace("*", "·")}</text>'

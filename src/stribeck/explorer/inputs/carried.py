@@ -34,10 +34,10 @@ __all__ = [
     "fluid_table",
     "geometry_of",
     "json_text",
-    "law_words",
+    "law_text",
     "model_changes",
     "model_of_case",
-    "model_words",
+    "model_lines",
     "rest_of_case",
     "shape_of",
     "tables_of",
@@ -157,7 +157,7 @@ def errors_of(rest: str) -> dict[str, float]:
     return json.loads(rest).get("errors", {}) if rest else {}
 
 
-def law_words(model: str) -> str:
+def law_text(model: str) -> str:
     """Return the name of the contact law, and what its shape comes from."""
     tables = tables_of(model)
     name = LAW_NAMES[tables.get("law", "exponential")]
@@ -172,10 +172,10 @@ def law_words(model: str) -> str:
     return f"{name}, for the surface with {values}"
 
 
-def model_words(model: str) -> list[str]:
+def model_lines(model: str) -> list[str]:
     """Return a line for each part of the model that differs from the article's."""
     tables = tables_of(model)
-    lines = [f"contact law: {law_words(model)}"]
+    lines = [f"contact law: {law_text(model)}"]
     for name in KEYS:
         if name in tables:
             values = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in tables[name].items())

@@ -30,7 +30,7 @@ from stribeck.quantities.inputs import INPUT_TABLES, quantity
 from stribeck.quantities.units import InputError
 from stribeck.solver.point.solve import check_model
 
-__all__ = ["CHOICES", "Choice", "choose", "state_of", "typed_detail"]
+__all__ = ["CHOICES", "Choice", "choose", "state_of", "with_detail"]
 
 Keys = tuple[tuple[str, ...], tuple[str, ...]]  # Keys that a choice needs, and keys that it may have.
 
@@ -100,7 +100,7 @@ IF_EMPTY = {
 LAYER_KEYS: Keys = (("layer_thickness",), ("poisson_ratio",))
 
 
-def _words(name: str) -> str:
+def _label(name: str) -> str:
     return LABELS.get(name, name.replace("_", " ").replace("-", " "))
 
 
@@ -155,7 +155,7 @@ CHOICES = {
                 label,
                 "fluid",
                 key,
-                {law: (_words(law), (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
+                {law: (_label(law), (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
             )
             for name, label, key in LAW_OF_FLUID
         ),
@@ -164,7 +164,7 @@ CHOICES = {
             "Cavitation",
             "cavitation",
             "model",
-            {str(each): (_words(each), ((), ("pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
+            {str(each): (_label(each), ((), ("pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
         ),
         Choice(
             "motion",
@@ -178,7 +178,7 @@ CHOICES = {
             "Flow factors",
             "flow_factors",
             "model",
-            {name: (_words(name), NO_KEYS) for name in FLOW_FACTORS},
+            {name: (_label(name), NO_KEYS) for name in FLOW_FACTORS},
         ),
         Choice(
             "solid",
@@ -186,7 +186,7 @@ CHOICES = {
             "solid",
             "",
             {"half-space": ("half-space", NO_KEYS), "layer": ("bonded layer", LAYER_KEYS)}
-            | {each.__name__: (_words(each.__name__), (tuple(keys), sum(LAYER_KEYS, ()))) for each, keys in MEMORIES},
+            | {each.__name__: (_label(each.__name__), (tuple(keys), sum(LAYER_KEYS, ()))) for each, keys in MEMORIES},
         ),
     )
 }
@@ -198,7 +198,7 @@ def _where(choice: Choice) -> str:
     return "surface" if choice.name == "law" else choice.table
 
 
-def chosen(choice: Choice, tables: Mapping[str, Any]) -> str:
+def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
     """Return what is chosen in the tables of a model."""
     if not choice.table and not choice.key:
         return choice.first
@@ -213,7 +213,7 @@ def chosen(choice: Choice, tables: Mapping[str, Any]) -> str:
 
 
 @functools.cache
-def possible(name: str, geometry: str) -> tuple[str, ...]:
+def available_values(name: str, geometry: str) -> tuple[str, ...]:
     """Return what contacts of a geometry can have of a choice."""
     choice, check = CHOICES[name], CHECKS.get(geometry)
     if check is None or not choice.table:
@@ -238,7 +238,7 @@ def possible(name: str, geometry: str) -> tuple[str, ...]:
 def state_of(now: Inputs, name: str) -> dict[str, Any]:
     """Return what a row shows."""
     choice, tables = CHOICES[name], tables_of(now.model)
-    value = chosen(choice, tables)
+    value = chosen_value(choice, tables)
     given = tables.get(_where(choice), {})
     needed, optional = choice.options[value][1]
     keys = (*needed, *optional)
@@ -246,10 +246,10 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
         # A measured spectrum has no numbers to change; others keep those with which they came.
         own = [key for key in given if key not in ("h_rms", "wavenumber", "density", "title")]
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
-    details = [[key, _words(key), _text(given.get(key, "")), IF_EMPTY.get(key, "")] for key in keys]
+    details = [[key, _label(key), _text(given.get(key, "")), IF_EMPTY.get(key, "")] for key in keys]
     # A table of a contact law comes from a file only.
-    known = [key for key in possible(name, tables.get("geometry", "line")) if key != "table"]
-    options = [[key, words] for key, (words, _) in choice.options.items() if key in known or key == value]
+    known = [key for key in available_values(name, tables.get("geometry", "line")) if key != "table"]
+    options = [[key, label] for key, (label, _) in choice.options.items() if key in known or key == value]
     return {"hidden": len(known) < 2, "value": value, "options": options, "details": details}
 
 
@@ -264,7 +264,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         liquid = PRESETS[value]()
         tables["fluid"] = fluid_table(liquid.fluid)
         return _with(now, tables, viscosity=liquid.viscosity)
-    old, where = chosen(choice, tables), _where(choice)
+    old, where = chosen_value(choice, tables), _where(choice)
     if name == "law":
         for each in ("surface", "table"):
             tables.pop(each, None)
@@ -302,7 +302,7 @@ def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
     return {"alpha": alpha, "beta": beta}
 
 
-def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
+def with_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed for a key of a choice."""
     choice, tables = CHOICES[name], tables_of(now.model)
     where, text = _where(choice), text.strip()
@@ -310,7 +310,7 @@ def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     if text:
         several = isinstance(TYPICAL.get(key), list)
         table[key] = [_number(each.strip()) for each in text.split(",")] if several else _number(text)
-    elif key in choice.options[chosen(choice, tables)][1][0]:
+    elif key in choice.options[chosen_value(choice, tables)][1][0]:
         raise InputError(f"{key} is missing, which this choice needs; add {key} = {_text(TYPICAL[key])}.")
     tables[where] = table
     return _of_surface(now, tables) if where == "surface" else _with(now, tables)

@@ -38,8 +38,8 @@ __all__ = [
     "number_text",
     "position",
     "read_field",
-    "slid",
-    "typed",
+    "with_slider",
+    "with_text",
     "units_of",
     "value_of",
     "with_model",
@@ -184,7 +184,7 @@ def value_of(inputs: Inputs, name: str) -> float:
     return math.inf if value is None else float(value)
 
 
-def typed(inputs: Inputs, name: str, text: str) -> Inputs:
+def with_text(inputs: Inputs, name: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed into a field."""
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, read_number(name, _with_point(name, _present(name, text))))
@@ -211,15 +211,15 @@ def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]
         value = quantity(name, text, table)
     except InputError as problem:
         si = DIMENSIONS[table.quantities[name].dimension].unit
-        said = str(problem)
-        if said.endswith(f"or a bare number in {si}."):
-            said = f"{said.removesuffix(f'{si}.')}{unit}."
-        raise InputError(said) from None
+        message = str(problem)
+        if message.endswith(f"or a bare number in {si}."):
+            message = f"{message.removesuffix(f'{si}.')}{unit}."
+        raise InputError(message) from None
     unit = re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
     return value, next((known for known in shown.units if known.replace("µ", "u") == unit), unit)
 
 
-def slid(inputs: Inputs, name: str, place: float) -> Inputs:
+def with_slider(inputs: Inputs, name: str, place: float) -> Inputs:
     """Return the inputs after a slider was moved to ``place``, the logarithm to base ten of its value in SI units."""
     shown = inputs.shown_as(name)
     factor = _factor(inputs, name)

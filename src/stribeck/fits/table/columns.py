@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import header_words, is_called, is_named, number_of, split_header
-from stribeck.files.text_table import TextTable, comparable
+from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
+from stribeck.files.text_table import TextTable, as_comparable
 from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.input_rows import ROWS
@@ -88,7 +88,7 @@ def with_errors_named(table: TextTable) -> TextTable:
         if not is_named(name, _ERROR):
             of = name
         elif table.header.count(name) > 1:
-            header[at] = f"{header_words(of)} {name}"
+            header[at] = f"{normalised_header(of)} {name}"
     return replace(table, header=tuple(header))
 
 
@@ -175,7 +175,7 @@ def _refuse_twice(table: TextTable, names: Sequence[str], meaning: str) -> None:
     """Refuse columns that may mean the same and hold different cells."""
     first = table.header.index(names[0])
     for at, name in enumerate(table.header):
-        if at == first or name not in names or all(comparable(row[at]) == comparable(row[first]) for row in table.rows):
+        if at == first or name not in names or all(as_comparable(row[at]) == as_comparable(row[first]) for row in table.rows):
             continue
         if name == names[0]:
             raise InputError(
@@ -204,7 +204,7 @@ def _error_of(table: TextTable, settings: FitSettings, found: dict[str, list[str
     if "error" in settings.columns or "friction" not in found:
         return ""
     names = [name for name in _candidates(table, settings, "error") if not any(name in each for each in found.values())]
-    named = [name for name in names if re.search(_FRICTION, header_words(name))]
+    named = [name for name in names if re.search(_FRICTION, normalised_header(name))]
     if named:
         _refuse_twice(table, named, "error")
         return named[0]
@@ -227,7 +227,7 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
                 _refuse_logarithm(table, name, meaning)
     used = {name for names in found.values() for name in names}
     unknown = [name for name in table.written if name not in used and name in table.header and not _LOGARITHM.search(name)]
-    unknown = [name for name in unknown if not _OF_ERROR.fullmatch(header_words(name))]
+    unknown = [name for name in unknown if not _OF_ERROR.fullmatch(normalised_header(name))]
     mean = re.compile("mean|average|entrain|rolling|ball|disc|disk|upper|lower", re.IGNORECASE)  # no sum of speeds
     examples: dict[str, list[str | list[str]]] = {
         "speed": [name for name in unknown if has_dimension(table.unit(name), "speed") and not mean.search(name)],
@@ -244,7 +244,9 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
     if [name.lower() for name in unknown] == ["x", "y"]:
         examples = {"speed": [unknown[0]], "friction": [unknown[1]]}  # of a program that reads curves off pictures
         units = ", and the unit of the speed in [fit.units]"
-    several = [name for name in unknown if re.match(rf"(?:{_FRICTION}) .", header_words(name)) and table.unit(name) in BARE]
+    several = [
+        name for name in unknown if re.match(rf"(?:{_FRICTION}) .", normalised_header(name)) and table.unit(name) in BARE
+    ]
     if len(several) > 1:
         examples["friction"] = [several]
     sure = [f"{name} = {show(examples[name][0])}" for name in missing if len(examples[name]) == 1]
@@ -299,7 +301,7 @@ def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
             f"{table.path}: {show(name)} is in {unit}; the load of a cylinder is per length, so that its Hersey number "
             "eta U/F_N is a bare number: divide the force by the length of the cylinder."
         )
-    if ball and not unit and not re.search(r"\bu r\b", header_words(name)):
+    if ball and not unit and not re.search(r"\bu r\b", normalised_header(name)):
         raise InputError(
             f"{table.path}: {show(name)} of a ball may be eta U R/F_N, a number, or eta U/F_N, in 1/m; write the unit in the "
             "header, as in 'Hersey number [-]' or 'Hersey number [1/m]', or hersey_number = \"1\" or \"1/m\" in "
@@ -311,7 +313,7 @@ def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
 def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:
     """Refuse an abscissa of two moving surfaces of which nobody said whether it holds their mean speed or the sum."""
     ratio = any(is_named(each, PATTERNS["slide_to_roll"]) for each in table.header)
-    if header_words(name) in SUMS or not (ratio or settings.rolls):
+    if normalised_header(name) in SUMS or not (ratio or settings.rolls):
         return
     said = " or ".join(f"{each:g}" for each in settings.ratios)
     why = "the file has a slide-to-roll ratio" if ratio else f"both surfaces move (slide-to-roll ratio {said})"

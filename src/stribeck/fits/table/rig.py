@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING_CELLS, header_words, is_called, is_named, number_of, split_header
+from stribeck.files.cells import MISSING_CELLS, is_called, is_named, normalised_header, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.repeats import FEWEST
 from stribeck.fits.table.units import BARE, has_dimension, si_factor
@@ -156,7 +156,7 @@ def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], setti
 def temperature_note(table: TextTable) -> tuple[str, ...]:
     """Return a sentence on the measured temperature, for which the viscosity of a case has to be; none without it."""
     names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
-    names.sort(key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", header_words(name)) is None)
+    names.sort(key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", normalised_header(name)) is None)
     for name in names:
         values = [value for value in _cells_or_none(table, name) if value is not None]
         if values:
@@ -231,7 +231,7 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
                 continue  # a stroke in mm
             if meaning == "entrainment_speed" and is_mean_of_time(table, name, settings):
                 continue
-            if not unit and meaning in ("rotation", "torque") or (not unit and header_words(name) == "friction"):
+            if not unit and meaning in ("rotation", "torque") or (not unit and normalised_header(name) == "friction"):
                 continue
             found.setdefault(meaning, []).append(name)
             break
@@ -242,14 +242,14 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
 
 def is_set(name: str) -> bool:
     """Return whether a column holds what was asked of the rig and not what it measured."""
-    return re.search(r"\b(?:nominal|set|target)\b", header_words(name)) is not None
+    return re.search(r"\b(?:nominal|set|target)\b", normalised_header(name)) is not None
 
 
 def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
     """Return whether a column called mean speed is a mean of samples, as other columns of the table are."""
-    if settings.rolls or re.search("entrain|rolling", header_words(name)):
+    if settings.rolls or re.search("entrain|rolling", normalised_header(name)):
         return False
-    words = [header_words(each) for each in table.header if each != name]
+    words = [normalised_header(each) for each in table.header if each != name]
     return not any(re.fullmatch(PATTERNS["slide_to_roll"], each) for each in words) and any(
         re.search(r"\b(?:mean|average|avg)\b", each) and not re.search(_SPEED, each) for each in words
     )
@@ -258,12 +258,12 @@ def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
 def unit_in(table: TextTable, name: str, meaning: str, settings: FitSettings) -> str:
     """Return the unit of a column: that of [fit.units], or as the file has it; one that is called RPM needs none."""
     unit = settings.units.get(meaning)
-    if meaning == "normal_force" and header_words(name) == MADE_LOAD:
+    if meaning == "normal_force" and normalised_header(name) == MADE_LOAD:
         unit = unit or settings.units.get(MADE_LOAD)
     unit = unit or table.unit(name)
     if not unit and DIMENSIONS_OF.get(meaning) == "speed":
         unit = settings.units.get("speed", "")
-    return "rpm" if meaning == "rotation" and not unit and header_words(name) == "rpm" else unit
+    return "rpm" if meaning == "rotation" and not unit and normalised_header(name) == "rpm" else unit
 
 
 def _rounded(value: float) -> float:

@@ -26,7 +26,15 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
-from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
+from stribeck.solver.notes import (
+    MAX_FILM_SLOPE,
+    THICK_PREFIX,
+    WETTED_PREFIX,
+    cavitation_notes,
+    fluid_notes,
+    law_notes,
+    shape_notes,
+)
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve_error import SolveError, describe
 
@@ -36,10 +44,6 @@ if TYPE_CHECKING:
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
 MAX_POINTS = 2001  # Points along a side of a dataset: a file of more would take gigabytes
-MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
-# Beginnings of notes, by which checks find them
-THICK_PREFIX = "The film is"
-WETTED_PREFIX = "The liquid ends at"
 WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
     "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "

@@ -47,7 +47,7 @@ def hersey_of(solution: BaseSolution, beta: float | None) -> float:
     return solution.hersey_number
 
 
-def strongest(sensitivities: Sensitivities) -> str | None:
+def most_sensitive_input(sensitivities: Sensitivities) -> str | None:
     """Return the input to which friction is most sensitive; None if there is none."""
     found = max(DESIGN_INPUTS, key=lambda name: abs(np.nan_to_num(sensitivities[name])))
     return found if abs(np.nan_to_num(sensitivities[found])) > 0 else None
