@@ -17,17 +17,16 @@ from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import model_words
-from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.quantities.formats import format_percent, format_share, format_si
+from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margin_limits import scanned_rtol
 from stribeck.regimes.margins import regime_margins
-from stribeck.regimes.sentences import ways_to
+from stribeck.regimes.sentences import regime_sentence, ways_to
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
@@ -105,7 +104,9 @@ def content_of(
     step(2, 5)
     found = propagate(contact, case.errors, definition=definition) if case.errors else None
     step(3, 5)
-    margins = with_intervals(contact, regime_margins(contact, rtol=case.rtol, definition=definition), case.errors, definition)
+    margins = with_intervals(
+        contact, regime_margins(contact, rtol=case.rtol, definition=definition, curve=curve), case.errors, definition
+    )
     step(4, 5)
     levers = _levers(case, solution, slopes)
     step(5, 5)
@@ -172,19 +173,9 @@ def _sources(path: Path) -> dict[str, str]:
 
 
 def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[str, ...]:
-    friction = solution.friction(definition=case.definition)
-    share = friction.contact_share
-    regime = regime_of(solution.fluid_load_share, share)
-    first = (
-        f"{regime.capitalize()} lubrication at {format_si(case.contact.speed, 'speed')}: friction {friction.total:.3g} "
-        f"({format_share(share, 1e-6)} from asperities); the fluid carries "
-        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
-    )
+    first = regime_sentence(solution, case.definition)
     if found is None:
-        return (
-            first,
-            NO_ERRORS_TEXT,
-        )
+        return first, NO_ERRORS_TEXT
     return (first, f"Probability of each regime: {found.probabilities}.", *found.sources)
 
 

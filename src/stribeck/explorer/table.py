@@ -9,7 +9,6 @@ from html import escape
 
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.curves.regime import regime_of
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
 from stribeck.quantities.formats import format_factor, format_si
@@ -18,7 +17,7 @@ from stribeck.quantities.outputs import RUPTURE_ROWS
 from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
-from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.base_solution import BaseSolution, regime_of_state
 
 __all__ = ["Row", "comparison_html", "curve_notes_html", "margins_html", "numbers", "numbers_html", "verdict_html"]
 
@@ -251,12 +250,8 @@ def _film(state: BaseSolution, gap: float) -> str:
     return format_si(gap * state.contact.hertz.indentation, "length", 3)
 
 
-def _regime(state: BaseSolution, definition: Definition) -> str:
-    return regime_of(state.fluid_load_share, state.friction(definition=definition).contact_share)
-
-
 COMPARED: dict[str, Callable[[BaseSolution, Definition], str]] = {
-    "Regime": _regime,
+    "Regime": regime_of_state,
     "Friction µ": lambda state, definition: f"{state.friction(definition=definition).total:.3g}",
     "Central film": lambda state, _: _film(state, state.central_gap),
     "Minimum film": lambda state, _: _film(state, state.minimum_gap),

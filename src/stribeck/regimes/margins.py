@@ -10,13 +10,13 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.groups import Geometry
-from stribeck.curves.regime import Regime, regime_of
+from stribeck.curves.regime import Regime
 from stribeck.curves.result import StribeckCurve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margin_limits import physical_bounds, scanned_rtol
 from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan
-from stribeck.solver.solution import Solution
+from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.solve import check_rtol, solve
 
 __all__ = ["RegimeMargins", "regime_margins"]
@@ -83,7 +83,7 @@ def regime_margins(
     rtol = scanned_rtol(contact, rtol)
     is_known = curve is not None and curve.values[0] <= contact.speed <= curve.values[-1]
     there = curve.solve_at(contact.speed) if curve is not None and is_known else solve(contact, rtol=rtol)
-    present = _regime(there, definition)
+    present = regime_of_state(there, definition)
     scan = Scan(contact, present, rtol, definition, on_point, curve)
     notes = []
     if contact.speed == 0 and contact.roughness > 0:
@@ -132,7 +132,3 @@ def _of_viscosity(contact: Contact, speed: Margin) -> Margin:
 
 def _at_threshold(mark: Crossing) -> bool:
     return 0 < mark.factor < math.inf and abs(math.log(mark.factor)) < THRESHOLD
-
-
-def _regime(solution: Solution, definition: Definition) -> Regime:
-    return regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share)

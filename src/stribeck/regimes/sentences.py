@@ -1,16 +1,29 @@
-"""The way to the next regimes in sentences."""
+"""The regime of a contact and the way to the next ones in sentences."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from stribeck.quantities.formats import format_factor, format_si
+from stribeck.contacts.friction import Definition
+from stribeck.quantities.formats import format_factor, format_share, format_si
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
 from stribeck.regimes.margin_scan import Crossing, Margin
 from stribeck.regimes.margins import RegimeMargins
+from stribeck.solver.base_solution import BaseSolution, regime_of_state
 
-__all__ = ["ways_to"]
+__all__ = ["regime_sentence", "ways_to"]
+
+
+def regime_sentence(solution: BaseSolution, definition: Definition) -> str:
+    """Return the sentence on the regime of a contact, its friction and what carries the load."""
+    assert solution.contact is not None
+    friction = solution.friction(definition=definition)
+    return (
+        f"{regime_of_state(solution, definition).capitalize()} lubrication at {format_si(solution.contact.speed, 'speed')}: "
+        f"friction {friction.total:.4g} ({format_share(friction.contact_share, friction.relative_error)} from asperities); "
+        f"the fluid carries {format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
+    )
 
 
 def ways_to(margins: RegimeMargins) -> Iterator[str]:

@@ -29,7 +29,7 @@ from stribeck.solver.notes import law_notes
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "hysteresis_coefficient", "si_films"]
+__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "hysteresis_coefficient", "regime_of_state", "si_films"]
 
 UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions, gaps and pressures
 
@@ -345,3 +345,8 @@ def si_films(solution: BaseSolution) -> dict[str, tuple[float, str, str]]:
     values = {row.film: getattr(solution, row.name) * scales[row.scale] for row in solution.outputs.rows if row.film}
     values |= zip(HERTZ, (hertz.half_width, hertz.indentation, hertz.pressure), strict=True)
     return {name: (values[name], *about) for name, about in solution.outputs.films.items()}
+
+
+def regime_of_state(solution: BaseSolution, definition: Definition) -> Regime:
+    """Return the regime of a state by a definition of the viscous friction."""
+    return regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share)

@@ -28,10 +28,11 @@ from stribeck.files.writing import path_of
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.points import Axis, Kind, points_of
-from stribeck.sweeps.tables import COEFFICIENTS, GROUPS, axis_of, design_problems, file_model, kind_of, missing
+from stribeck.sweeps.tables import COEFFICIENTS, axis_of, design_problems, file_model, kind_of, missing
 
 __all__ = ["SweepDesign", "load_sweep"]
 

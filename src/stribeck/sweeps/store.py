@@ -24,6 +24,7 @@ from stribeck._types import Array
 from stribeck.files.reading import read_bounded
 from stribeck.files.writing import MissingExtraError, PathLike, path_of, reason_of, sync_folder
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
 from stribeck.sweeps.design import SweepDesign
@@ -82,7 +83,7 @@ def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     n, columns = len(design), columns_of(design.si, design.physics)
     inputs = {
         **design.inputs,
-        **{f"{name}_group": design.groups[:, k] for k, name in enumerate(("speed", "load", "roughness"))},
+        **{f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)},
     }
     attributes = {
         "stribeck_sweep": FORMAT,

@@ -11,14 +11,14 @@ from stribeck.contacts.groups import Groups
 from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM_KINDS, Axis, Kind
 
-__all__ = ["COEFFICIENTS", "GROUPS", "axis_of", "design_problems", "file_model", "kind_of", "missing"]
+__all__ = ["COEFFICIENTS", "axis_of", "design_problems", "file_model", "kind_of", "missing"]
 
 MAX_STATES = 1_000_000
 
-GROUPS = ("speed", "load", "roughness")
 COEFFICIENTS = ("boundary_friction", "beta")  # Inputs of friction beside groups
 
 

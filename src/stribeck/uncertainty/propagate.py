@@ -22,6 +22,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, all_input_rows
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
@@ -110,7 +111,7 @@ def propagate(
         return np.array([_power(contact, function, inputs) for inputs in moves]).reshape(len(names), -1)
 
     groups = contact.groups
-    of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
+    of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in GROUPS])
     rtol = STATE_RTOL[groups.geometry]
     solution, sensitivities, _ = sensitivities_if_known(contact, rtol=rtol, definition=definition)
     rule = RULES[groups.geometry]

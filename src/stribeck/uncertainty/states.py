@@ -27,7 +27,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
 from stribeck.quantities.formats import format_percent
-from stribeck.quantities.outputs import OUTPUT_TABLES
+from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
@@ -253,9 +253,7 @@ def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
 
 def _scale_groups(groups: Groups, offsets: Array) -> Groups:
     factors = np.exp(offsets)
-    speed, load, roughness = (
-        np.asarray(getattr(groups, name)) * factors[..., i] for i, name in enumerate(("speed", "load", "roughness"))
-    )
+    speed, load, roughness = (np.asarray(getattr(groups, name)) * factors[..., i] for i, name in enumerate(GROUPS))
     if np.ndim(factors) == 1:
         return replace(groups, speed=float(speed), load=float(load), roughness=float(roughness))
     return replace(groups, speed=speed, load=load, roughness=roughness)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.checks.check import Checks
-from stribeck.cli.reports.printing import Sensitivities, hersey_of, most_sensitive_input, regime_now
+from stribeck.cli.reports.printing import Sensitivities, hersey_of, most_sensitive_input
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, part_attributes
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
-from stribeck.solver.base_solution import BaseSolution, si_films
+from stribeck.solver.base_solution import BaseSolution, regime_of_state, si_films
 
 if TYPE_CHECKING:
     from stribeck.curves.landmarks import Landmark
@@ -116,7 +116,7 @@ def regimes_json(
     return {
         **checks_json(checks),
         "title": title,
-        "regime": regime_now(solution, curve.definition),
+        "regime": regime_of_state(solution, curve.definition),
         "speed": speed,
         "unit": unit_of("speed"),
         "fluid_load_share": solution.fluid_load_share,

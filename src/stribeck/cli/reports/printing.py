@@ -12,9 +12,7 @@ from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, in_words, model_words
-from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.curves.regime import regime_of
 from stribeck.quantities.formats import format_bound, format_si
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.outputs import GROUPS
@@ -33,11 +31,6 @@ DESIGN_INPUTS = tuple(row.name for row in ROWS if not row.derived and not row.fo
 MIN_TABLE_WIDTH = 100  # Smallest width of a table [columns].
 
 Sensitivities = dict[str, float]
-
-
-def regime_now(solution: BaseSolution, definition: Definition) -> str:
-    """Return the regime of a state."""
-    return regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share)
 
 
 def hersey_of(solution: BaseSolution, beta: float | None) -> float:

@@ -13,16 +13,15 @@ from stribeck.cli.reports.printing import (
     print_head,
     print_outcome,
     print_table,
-    regime_now,
     table_of,
 )
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_share, format_si
+from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_si
 from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.regimes.margins import RegimeMargins
-from stribeck.regimes.sentences import ways_to
+from stribeck.regimes.sentences import regime_sentence, ways_to
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.uncertainty.result import Uncertainty
 
@@ -46,13 +45,7 @@ def print_regimes(
     assert contact is not None
     print_head(console, title, contact, solution.groups, checks=checks)
     friction = solution.friction(definition=curve.definition)
-    speed = format_si(contact.speed, "speed")
-    say(
-        console,
-        f"{regime_now(solution, curve.definition).capitalize()} lubrication at {speed}: friction {friction.total:.4g} "
-        f"({format_share(friction.contact_share, friction.relative_error)} from asperities); the fluid carries "
-        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load.",
-    )
+    say(console, regime_sentence(solution, curve.definition))
     for line in ways_to(margins):
         say(console, line)
     if curve.transitions:
