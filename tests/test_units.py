@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck import InputError
-from stribeck.quantities.formats import format_factor, format_percent, format_si
+from stribeck.quantities.formats import format_bound, format_factor, format_percent, format_share, format_si
 from stribeck.quantities.units import DIMENSIONS, to_si
 
 pytestmark = pytest.mark.quick
@@ -183,3 +183,11 @@ def test_short_text_has_a_fitting_prefix(value, dimension, text):
 )
 def test_numbers_that_people_read_have_no_exponent_without_need(text, expected):
     assert text == expected
+
+
+@pytest.mark.quick
+def test_numbers_for_people_are_short_and_honest():
+    assert format_si(3.1e-4, "speed") == "310 µm/s"
+    assert (format_bound(3.2e-8), format_factor(5.527), format_factor(189600.0)) == ("< 4e-08", "5.53", "190000")
+    assert (format_percent(0.9999), format_percent(0.1462)) == ("100 %", "15 %")
+    assert (format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)) == ("20.3 %", "< 0.01 %")

@@ -22,21 +22,11 @@ DEFAULT_POINTS_AND_RTOL: dict[str, tuple[int, float]] = {"line": (101, 1e-6), "p
 
 @dataclass(frozen=True)
 class CurveSettings:
-    """The ``[curve]`` table of a case.
+    """The ``[curve]`` table of a case."""
 
-    Parameters
-    ----------
-    over : {"speed", "load", "roughness"}
-        The quantity that varies along the curve.
-    range : tuple of float, optional
-        Its lowest and highest value in SI units; None is the automatic range.
-    points : int
-        Number of states on the curve.
-    """
-
-    over: Axis = "speed"
-    range: tuple[float, float] | None = None
-    points: int = 101
+    over: Axis = "speed"  # Quantity that varies along the curve
+    range: tuple[float, float] | None = None  # Its lowest and highest value in SI units; None is the automatic range
+    points: int = 101  # States on the curve
 
 
 @dataclass(frozen=True)

@@ -50,18 +50,10 @@ MAX_PRIOR_FACTOR = 1e6  # A wider prior knows nothing
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known of an input before the data: normal in its logarithm.
+    """Knowledge of an input before the data: normal in its logarithm."""
 
-    Parameters
-    ----------
-    value : float
-        Its median, in SI units.
-    factor : float
-        The factor > 1 by which it is known: ``value / factor`` to ``value * factor`` holds it with 68 % probability.
-    """
-
-    value: float
-    factor: float
+    value: float  # Median, in SI units
+    factor: float  # Factor > 1: value/factor to value*factor holds the input with 68 % probability
 
 
 @dataclass(frozen=True)

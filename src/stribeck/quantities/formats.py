@@ -11,27 +11,7 @@ __all__ = ["format_bound", "format_factor", "format_percent", "format_share", "f
 
 
 def format_si(value: float, dimension: str, digits: int = 3) -> str:
-    """Return an SI number as short text with a fitting prefix, for people.
-
-    Parameters
-    ----------
-    value : float
-        The number, in the SI unit of its dimension.
-    dimension : str
-        One of the keys of :data:`DIMENSIONS`.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Text that :func:`to_si` reads back (where the value is finite and has a unit).
-
-    Examples
-    --------
-    >>> format_si(3.1e-4, "speed")
-    '310 µm/s'
-    """
+    """Return an SI number as short text with a fitting prefix, such as ``310 µm/s``, that :func:`to_si` reads back."""
     value = float(value)
     steps = DIMENSIONS[dimension].steps
     power = 0
@@ -46,13 +26,7 @@ def format_si(value: float, dimension: str, digits: int = 3) -> str:
 
 
 def format_bound(error: float) -> str:
-    """Return a bound by a positive error with one digit, rounded up.
-
-    Examples
-    --------
-    >>> format_bound(3.2e-8)
-    '< 4e-08'
-    """
+    """Return a bound by a positive error with one digit, rounded up, such as ``< 4e-08``."""
     digits = f"{error:.0e}"
     if float(digits) < error * (1 - 1e-9):  # rounding of the error itself is no reason
         step = 10.0 ** int(digits.partition("e")[2])
@@ -61,24 +35,12 @@ def format_bound(error: float) -> str:
 
 
 def format_factor(factor: float) -> str:
-    """Return a factor with three digits, written out up to a million.
-
-    Examples
-    --------
-    >>> format_factor(5.527), format_factor(189600.0)
-    ('5.53', '190000')
-    """
+    """Return a factor with three digits, written out up to a million."""
     return f"{float(f'{factor:.3g}'):.0f}" if 999.5 <= factor < 999_500 else f"{factor:.3g}"
 
 
 def format_percent(part: float, digits: int = 2) -> str:
-    """Return a part of a whole (1) in per cent, with ``digits`` significant digits.
-
-    Examples
-    --------
-    >>> format_percent(0.9999), format_percent(0.1462)
-    ('100 %', '15 %')
-    """
+    """Return a part of a whole (1) in per cent, with ``digits`` significant digits."""
     return f"{float(f'{100 * part:.{digits}g}'):g} %"
 
 
@@ -86,13 +48,7 @@ MIN_STATED_SHARE = 1e-4  # Smallest share that is worth a number in text; files 
 
 
 def format_share(part: float, error: float) -> str:
-    """Return a share, 0 to 1, in per cent, or a bound where it is below its absolute error or a ten-thousandth.
-
-    Examples
-    --------
-    >>> format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)
-    ('20.3 %', '< 0.01 %')
-    """
+    """Return a share, 0 to 1, in per cent, or a bound where it is below its absolute error or a ten-thousandth."""
     if 0 < part <= max(error, MIN_STATED_SHARE):
         return f"{format_bound(100 * max(error, MIN_STATED_SHARE))} %"
     return f"{100 * part:.3g} %"

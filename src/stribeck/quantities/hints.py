@@ -68,31 +68,7 @@ _HINTS = (
 
 
 def advice_on(key: str, known: Iterable[str]) -> str | None:
-    """Return what to write in place of an unknown key.
-
-    Parameters
-    ----------
-    key : str
-        The key.
-    known : iterable of str
-        Keys that may stand there.
-
-    Returns
-    -------
-    str or None
-        Advice that completes "... is not a known key; ..."; None where there is none.
-
-    Notes
-    -----
-    Only a slip of the pen is taken for another key: ``pressure_viscosity`` is no viscosity.
-
-    Examples
-    --------
-    >>> advice_on("spede", ["speed", "load"])
-    'did you mean speed'
-    >>> advice_on("diameter", ["radius"])
-    'give radius, half the diameter; of a shaft that turns, shaft_diameter with rotational_speed'
-    """
+    """Return what to write in place of an unknown key, to complete "... is not a known key; ..."; None where nothing fits."""
     names = list(known)
     if MEANT.get(key) in names:
         return f"write {MEANT[key]}"
@@ -101,5 +77,6 @@ def advice_on(key: str, known: Iterable[str]) -> str | None:
     if absent is not None:
         return absent
     whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
+    # Only a slip of the pen is taken for another key: pressure_viscosity is no viscosity.
     near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
     return f"did you mean {near[0]}" if near else None

@@ -122,35 +122,7 @@ _MAX_UNIT_LETTERS = 40  # A longer text is no unit, and slow to parse
 
 
 def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:
-    """Return ``value`` as a float in SI units.
-
-    Parameters
-    ----------
-    value : str or number or pint.Quantity
-        Text with a unit, such as ``"10 mPa*s"``, a quantity of any registry of pint, or a real number that is already in SI
-        units.
-    dimension : str
-        One of the keys of :data:`DIMENSIONS`; ``"number"`` accepts bare numbers only.
-    name : str
-        What the value is called, for the error sentence.
-    example : str, optional
-        Such a value, as people write it, for the error sentence; one of its dimension if omitted.
-
-    Returns
-    -------
-    float
-        The value in the SI unit of its dimension.
-
-    Raises
-    ------
-    InputError
-        Where the value is no finite real number, or its unit is missing, unknown or of another dimension.
-
-    Examples
-    --------
-    >>> to_si("2.5 um", "length", "roughness")
-    2.5e-06
-    """
+    """Return text with a unit, a quantity of pint or a number in SI units as a float in SI units, or refuse it by its name."""
     kind = replace(DIMENSIONS[dimension], example=example) if example else DIMENSIONS[dimension]
     value = _text_of_quantity(value, kind)
     exact = _from_text(value, kind, name) if isinstance(value, str) else value

@@ -24,19 +24,11 @@ BAND_POINTS = {"line": 13, "point": 7}
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """The 95 % interval of the friction along a curve.
+    """The 95 % interval of the friction along a curve."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (n,)
-        Speeds, loads or roughnesses at which errors were propagated, in SI units.
-    low, high : ndarray, shape (n,)
-        Ends of the interval over the friction for the inputs as given [-].
-    """
-
-    values: Array
-    low: Array
-    high: Array
+    values: Array  # Speeds, loads or roughnesses at which errors were propagated, in SI units
+    low: Array  # Lower end of the interval over the friction for the inputs as given [-]
+    high: Array  # Upper end of the same
 
     def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
         """Return the ends of the interval of friction at other places."""
