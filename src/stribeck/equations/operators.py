@@ -32,9 +32,9 @@ from stribeck.solids.solid import Solid, deflecting
 LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
 
-# Range of the logarithm of the dilation over which the deflection of a solid with lengths of its own is interpolated, and the
-# number of dilations at which it is computed there: right to 1e-9 of what changes with the dilation.
-DILATION_CELL, DILATIONS_PER_CELL = 0.05, 4
+DILATION_CELL = 0.05  # Range of ln(dilation) on which the deflection of a solid with lengths of its own is interpolated
+
+DILATIONS_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
 
 MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 

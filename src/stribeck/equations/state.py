@@ -28,10 +28,10 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
-# Ends of Newton's iteration after which one of monotone steps is tried for a fluid that thins.
+# Outcomes of Newton's iteration after which monotone steps are tried for a shear-thinning fluid.
 RETRY_MONOTONE_AFTER = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
 
-MONOTONE_AFTER_STEPS = 25  # Steps after which it is: most films take less than 20, and what takes longer goes to and fro
+MONOTONE_AFTER_STEPS = 25  # Newton steps after which steps are monotone: most films take less than 20, others oscillate
 
 CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
 
@@ -40,13 +40,9 @@ ROUNDING_RTOL = 1e-9  # Relative rounding in the position of a panel
 # Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
 LONG_REACH_ORDER = 14
 
-END_RESOLUTION_GAIN = (
-    5.0  # Factor by which the error of the end of a film falls when the panels beside it are halved, at least
-)
+END_RESOLUTION_GAIN = 5.0  # Factor by which the error of the exit falls, at least, when the panels beside it are halved
 
-END_TAIL_RTOL = (
-    3.5e-4  # Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels
-)
+END_TAIL_RTOL = 3.5e-4  # Mesh tolerance below which the panels beside the exit are halved: its error falls with their square
 
 LAYER_DOMAIN_RADIUS = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
 
@@ -56,16 +52,16 @@ LAYER_DRAG_FRACTION = 0.02
 
 UNESTIMATED_RTOL_FRACTION = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
 
-LAYER_DECAY = 6.0  # Distance in thicknesses of a layer beyond which the gap is that of the layer
+LAYER_DECAY = 6.0  # Distance from the contact at which the gap has the far shape of the layer [thicknesses]
 
-# Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there.
+# Extra refinement at infinity for power-law fluids, whose pressure decays with a non-integer exponent.
 FRACTIONAL_DECAY_FACTOR = 30.0
 
-FRACTIONAL_DECAY_RADIUS = 512.0  # Distance, over the scale of the mesh, up to which panels resolve such a power
+FRACTIONAL_DECAY_RADIUS = 512.0  # Distance up to which panels resolve a non-integer decay [scale of the mesh]
 
-# Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
-# along the path is steeper there than the gap.
-MINIMUM_ZONE, MOVING_MINIMUM_FACTOR = 0.05, 30.0
+MINIMUM_ZONE = 0.05  # Distance from a moving minimum of the gap within which the gap is resolved better [a]
+
+MOVING_MINIMUM_FACTOR = 30.0  # Extra resolution near a moving minimum, where the gap's change along the path is steep
 
 NODAL_NOISE = 2.0**-48  # Rounding of a nodal gap, over that gap: no mesh resolves less
 
@@ -74,10 +70,11 @@ MIN_GAP = NODAL_NOISE / ROUNDING_STEP
 
 MAX_NODAL_NOISE = 0.01  # Relative rounding of a gap beyond which it counts as lost
 
-MAX_FAR_PANEL = 0.5  # Half-width over the distance of panels on which a broken power is resolved
+MAX_FAR_PANEL = 0.5  # Largest half-width over distance of panels that resolve a non-integer decay
 
-# How often a kink is looked for between so many places of its bracket; then the line through two of them tells.
-KINK_SEARCHES, KINK_SCAN_POINTS = 2, 17
+KINK_SEARCHES = 2  # Scans of the bracket of a kink, before linear interpolation
+
+KINK_SCAN_POINTS = 17  # Points of one scan of the bracket
 
 # Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
 # asks for no shorter ones.
@@ -92,9 +89,7 @@ TAIL_RTOL_FRACTION = 0.2  # Tolerance of a mesh for an error of one
 # Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels].
 EXIT_PANEL_MAX = 16.0
 
-MAX_FRAME_RATIO = (
-    1.5  # Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made
-)
+MAX_FRAME_RATIO = 1.5  # Ratio of the cavity's length to that of the mesh above which the mesh is made for another length
 
 SCAN_POINTS = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
 

@@ -15,9 +15,7 @@ import scipy
 
 from stribeck._types import Array
 
-UPWARD_RECURRENCE_BELOW = (
-    1.5  # Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits
-)
+UPWARD_RECURRENCE_BELOW = 1.5  # Product of the highest degree and ln(r/s) above which the upward recurrence loses digits
 
 # Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
 # which is 1e-4 or less.

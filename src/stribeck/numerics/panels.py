@@ -29,8 +29,9 @@ PLACE_RTOL = 2.0**-34
 
 TAIL_HALVINGS = 12  # Panels on each side of infinity on which integrands that hold a logarithm there are summed
 
-# Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes.
-SPLIT_MARGIN, MIN_SPLIT_FRACTION = 1.05, 0.25
+SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields
+
+MIN_SPLIT_FRACTION = 0.25  # Least length of a panel that is longer than the fields need, over that length
 
 # Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding.
 MIN_DISTANCE_RATIO = 2.0**-40

@@ -43,9 +43,7 @@ __all__ = [
 
 MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 
-COEFFICIENT_NOISE = (
-    1e-12  # Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it
-)
+COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
 
 INTERVAL_ORDER = 12  # Values on an interval, unless more are asked for
 

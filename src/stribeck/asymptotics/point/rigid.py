@@ -24,9 +24,8 @@ from stribeck.contacts.line import Groups
 
 LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid over lambda**2 h_0**(-5/2).
 
-GAP_COEFFICIENT = (
-    3 * LIFT_COEFFICIENT / (2 * math.pi)
-) ** 0.4  # h_0 over lambda**(4/5), 0.18162, at which that load is 2 pi/3.
+# h_0 over lambda**(4/5), 0.18162, at which that load is 2 pi/3.
+GAP_COEFFICIENT = (3 * LIFT_COEFFICIENT / (2 * math.pi)) ** 0.4
 
 FAST_RANGE = (Limit("speed", 1e2),)
 

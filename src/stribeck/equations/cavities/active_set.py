@@ -37,26 +37,29 @@ GMRES_RTOL = 1e-3  # Relative error of a step that GMRES may leave; less near th
 
 GMRES_RTOL_ACTIVE_SET = 3e-2  # The same while nodes still break or heal
 
-# Part of the load by which what both pressures carry may miss it, over the tolerance of the gap; and the tolerance above which
-# it may be larger by their ratio, as such a state is there for comparison only.
-LOAD_RTOL_FACTOR, STRICT_RTOL = 5e-3, 1e-6
+LOAD_RTOL_FACTOR = 5e-3  # Relative error of the load over the tolerance of the gap: friction is read off the load
 
-CONTRACTION_ACTIVE_SET = 2.0  # Error that is left over the size of the last step, where torn nodes changed with it
+# Tolerance of the gap up to which load and film pressure are held to their factors: states of a larger one serve to compare
+# meshes, and a load that misses less would cost steps for nothing.
+STRICT_RTOL = 1e-6
 
-# Part of the film pressure that GMRES may leave over the tolerance of the gap, which counts up to :data:`STRICT_RTOL`: slow
-# films
-# carry little, and a mesh for comparison would tell their flow worse than it is.
+CONTRACTION_ACTIVE_SET = 2.0  # Remaining error over the size of the last step if the active set changed in that step
+
+# Relative residual of the film pressure that GMRES may leave over the tolerance of the gap, up to STRICT_RTOL: slow films
+# carry little, and a mesh for comparison would show their flow worse than it is.
 PRESSURE_RTOL_FACTOR = 10.0
 
-# Corrections by the last Jacobian of a state that is near but for its load, and the most that GMRES may leave of them.
-MAX_CORRECTIONS, MAX_CORRECTION_RESIDUAL = 3, 0.3
+MAX_CORRECTIONS = 3  # Corrections by the last Jacobian of a state that is converged but for its load
 
-# Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one.
-MAX_FRONT_NODES, FRONT_STEP = 10, 0.1
+MAX_CORRECTION_RESIDUAL = 0.3  # Relative residual that GMRES may leave in such a correction
 
-# Steps of GMRES for a digit from which the next step makes its own preconditioner; and from which a neighbour's capacitance
-# matrix is factorised anew.
-REBUILD_PRECONDITIONER_AT, REFACTOR_AT = 4.0, 2.0
+MAX_FRONT_NODES = 10  # Most nodes that the rupture line may move downstream in one step
+
+FRONT_STEP = 0.1  # Largest relative step of the gap after which the rupture line moves by more than one node
+
+REBUILD_PRECONDITIONER_AT = 4.0  # GMRES steps per digit above which the next Newton step has a new preconditioner
+
+REFACTOR_AT = 2.0  # GMRES steps per digit above which the capacitance matrix of a neighbouring state is factorised again
 
 
 def advect_front(gas: Array, now: Flags, before: Flags) -> Flags:

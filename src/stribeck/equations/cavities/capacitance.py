@@ -26,9 +26,9 @@ __all__ = ["Capacitance", "Preconditioner"]
 
 Single = npt.NDArray[np.float32]
 
-REFACTOR_FRACTION = (
-    0.15  # Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve
-)
+# Change of the active set over the nodes of the factorised capacitance matrix up to which these factors are bordered; beyond
+# that bordering costs more than factorising.
+REFACTOR_FRACTION = 0.15
 
 STORAGE_GROWTH = 1.2  # Room for columns over those of the known nodes, as a few more come with each step
 

@@ -25,9 +25,7 @@ from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
 
-STREAK_ERROR_FACTOR = (
-    0.18  # Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns
-)
+STREAK_ERROR_FACTOR = 0.18  # Stated error of the shear missing in dry streaks, over the spacing of the angles in half turns
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,9 +24,9 @@ __all__ = ["Expanded", "as_row", "corrected_once", "expand", "from_row"]
 
 SAMPLE_COUNT = 20  # Places at which the equations are evaluated
 
-# Weight of one order between states over that of the order before, as the distance of states is near the radius of
-# convergence; and the largest residual that GMRES may leave in any.
-ORDER_RATIO, MAX_GMRES_RTOL = 0.4, 1e-4
+ORDER_RATIO = 0.4  # Weight of an order between states over that of the order before: states lie near the radius of convergence
+
+MAX_GMRES_RTOL = 1e-4  # Largest relative residual that GMRES may leave in an order
 
 SHARE_COLUMN = SMOOTH.index("contact_load_share")
 

@@ -25,8 +25,9 @@ from stribeck.quantities.outcome import Outcome
 
 MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
 
-# Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it.
-REBUILD_AT, REBUILD_AT_NEAR_SOLUTION = 12, 16
+REBUILD_AT = 12  # GMRES steps above which the next Newton step has a new preconditioner
+
+REBUILD_AT_NEAR_SOLUTION = 16  # GMRES steps for the same near the solution, where few Newton steps are left to save on
 
 MAX_BAND = 16  # Band of a new preconditioner if one with a narrower band does not serve
 
@@ -40,8 +41,8 @@ GMRES_RTOL = 3e-2  # Relative error of a Newton step that GMRES may leave
 
 ACCEPTED_RESIDUAL = 0.1  # Error above which a kept preconditioner is given up
 
-# Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
-# hundredths of it.
+# Change of the rim pressure by the last step over the tolerance, where the film outside the rim is shear-thinning; steps leave
+# a few hundredths of it.
 MAX_RIM_CHANGE_RATIO = 100.0
 
 MIN_CURVATURE = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it

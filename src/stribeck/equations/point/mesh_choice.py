@@ -33,24 +33,29 @@ PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
 
 RIM_RADIUS = 50.0  # Radius of the rim over the scale of the contact
 
-# Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
-# the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim.
-THINNING_AT_RIM, THINNING_AT_RIM_CAVITATED, MAX_EXTRA_FAR_PANELS = 1e-3, 1e-7, 6
+# Largest fraction of the viscosity lost to shear-thinning at RIM_RADIUS; farther out it grows with the square of the radius,
+# as the far film solves for a gap of r**2/2.
+THINNING_AT_RIM = 1e-3
 
-# Pressure at the rim of a film that ends and thins, at least [p_Hz]: nodes whose pressure rounding and GMRES do not resolve
-# break and heal by chance. The friction that is lost beyond a nearer rim is stated.
+THINNING_AT_RIM_CAVITATED = 1e-7  # Largest lost fraction at the rim of a cavitated film, whose far film is Newtonian
+
+MAX_EXTRA_FAR_PANELS = 6  # Most panels between RIM_RADIUS and the rim
+
+# Smallest pressure at the rim of a cavitated shear-thinning film [p_Hz]: below it rounding would decide which nodes cavitate.
+# The friction that a nearer rim leaves out is stated.
 MIN_RIM_PRESSURE = 1e-9
 
-POWER_LAW_FAR_PANELS = 1  # Panels beyond the usual rim for a power law
+POWER_LAW_FAR_PANELS = 1  # Panels between RIM_RADIUS and the rim for a power law
 
 FILM_ROUNDS = 20  # Iterations for a film that is thinned by its own shear rate
 
 FAR_PANELS = 2  # Panels in ln r beyond twice the scale
 
-CAVITY_GROWTH = 1.5  # Largest width of far panels over their radius where a film may form anew
+CAVITY_GROWTH = 1.5  # Largest width of far panels over their radius if the film may re-form on them
 
-# Width of the far panels over the widest panel that a body allows near the contact, or over their radius, if larger.
-FAR_PANEL_WIDTH, FAR_PANEL_GROWTH = 4.0, 0.6
+FAR_PANEL_WIDTH = 4.0  # Width of far panels over the widest panel that the body allows near the contact
+
+FAR_PANEL_GROWTH = 0.6  # Width of far panels over their radius, if that is wider than FAR_PANEL_WIDTH allows
 
 MAX_BYTES = 670_000_000  # Memory that operators and preconditioner of a mesh may take
 
@@ -70,12 +75,18 @@ COARSE_MODES_RATIO = 0.25  # Modes over those of the minimum film with which the
 # of an edge fall with 4.4**-n on the panels that lead to it.
 MIN_LEGENDRE_DECAY = 2.6
 
-MIN_PANEL_WIDTH, MAX_SPLITS = 1e-3, 16  # Width below which panels are not split [a], and the largest number of splits
+MIN_PANEL_WIDTH = 1e-3  # Width below which panels are not split [a]
+
+MAX_SPLITS = 16  # Most splits of the panels of one mesh
 
 
-# Edges around the line at which roughness closes the flow lie on multiples of the first, times the scale, at a distance of
-# this part of it at least; and by how many of them the rings between may be wider than those that the line crosses.
-EDGE_GRID, EDGE_MARGIN, MAX_EXTRA_EDGE_STEPS = 1 / 64, 0.25, 6.0
+# Panel edges around the line at which roughness closes the flow lie on multiples of this [scale of the contact]: neighbouring
+# states share a mesh.
+EDGE_GRID = 1 / 64
+
+EDGE_MARGIN = 0.25  # Distance of these edges from the line, at least [steps of the grid]
+
+MAX_EXTRA_EDGE_STEPS = 6.0  # Width of the rings between kept edges beyond what the line crosses, at most [steps of the grid]
 
 
 class MeshTooLargeError(Exception):

@@ -34,9 +34,13 @@ LOG_STEP = 1e-4  # Step of the logarithm of a group in the central differences o
 
 MAX_GAP_CHANGE = 1e-4  # Largest relative change of the gap in those of the observables along the change of the unknowns
 
-# Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
-# single precision, and the next round removes the error that it leaves.
-GMRES_RTOL, MAX_KRYLOV_STEPS, MIN_RESIDUAL = 1e-6, 90, 1e-18
+# Preconditioned residual that GMRES leaves in one round: the preconditioner is in single precision, and the next round removes
+# the error that it leaves.
+GMRES_RTOL = 1e-6
+
+MAX_KRYLOV_STEPS = 90  # GMRES steps of one round
+
+MIN_RESIDUAL = 1e-18  # Residual that all rounds together leave
 
 
 def log_derivatives(

@@ -33,35 +33,36 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import RateLaw
 
-# Gauss points on each side of the smallest stress: the fewest with which columns of very different rates differ by this part
-# from those of the next rule but one.
-QUADRATURE_POINTS, CONVERGED = (14, 20, 28, 40, 56), 1e-8
+QUADRATURE_POINTS = (14, 20, 28, 40, 56)  # Gauss points on each side of the smallest stress that are tried for a law
 
-# Slips, rates that the pressure gradient alone would make at the walls, and angles between them, of these columns.
+QUADRATURE_RTOL = 1e-8  # Relative difference of SAMPLE_STATES to the next rule but one from which a rule serves
+
+# Columns at which rules are compared: slips, shear rates at the walls by the pressure gradient alone, angles between them.
 SAMPLE_STATES = np.array(
     [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
 ).T
 
-LOG_SPACING = 0.0025  # Of the table of a law in ln(stress): cubics between its points are good to 1e-13
+LOG_SPACING = 0.0025  # Spacing of a law's table in ln(stress): cubics between its points are good to 1e-13
 
-# Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate; and
-# the highest rate of the table.
-NEWTONIAN_BELOW, NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE = 1e-9, 1e-60, 1e13
+NEWTONIAN_BELOW = 1e-9  # Lowest shear rate of the table over that at which shear-thinning begins: constant viscosity below
 
-# Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below.
-MIN_RATE_POWER_LAW = 1e-2
+NEWTONIAN_BELOW_WITHOUT_PLATEAU = 1e-60  # Lowest shear rate of the table for laws that thin at every rate
+
+MAX_RATE = 1e13  # Highest shear rate of the table
+
+MIN_RATE_POWER_LAW = 1e-2  # Lowest shear rate of the table of a power law, which is extrapolated as such below
 
 CONVERGED_STEP = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
 
 FIRST_ORDER_STRESS_CHANGE = 0.3  # Change of the stress over the largest stress up to which first order is a good start
 
-MAX_STRESS_STEP = 1.0  # Step over the largest stress at most
+MAX_STRESS_STEP = 1.0  # Largest Newton step over the largest stress
 
-OVERSHOOT_FRACTION = 0.9  # Slope of the potential after a step, over that before it, from which the step was too long
+OVERSHOOT_FRACTION = 0.9  # Slope of the potential after a step over that before, above which the step is shortened
 
-MAX_STEPS = 80
+MAX_STEPS = 80  # Most Newton steps of a column
 
-TINY = 1e-150
+TINY = 1e-150  # Smallest divisor: its square is a normal number
 
 
 @lru_cache(maxsize=16)
@@ -117,7 +118,7 @@ def flow_curve(law: Any) -> FlowCurve:
     sample = slope, np.stack([slip, np.zeros_like(slip)])
     found = [_solved(law, replace(curve, points=points), *sample).carried for points in QUADRATURE_POINTS]
     for coarse, fine, points in zip(found, found[2:], QUADRATURE_POINTS, strict=False):
-        if (np.hypot(*(coarse - fine)) <= CONVERGED * np.hypot(*fine)).all():
+        if (np.hypot(*(coarse - fine)) <= QUADRATURE_RTOL * np.hypot(*fine)).all():
             return replace(curve, points=points)
     return replace(curve, points=QUADRATURE_POINTS[-1])
 

@@ -28,22 +28,23 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 from stribeck.quantities.lazy import cached_property
 
-# Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end.
-ANGLE_COUNT, MAX_DEGREE, MAX_ROUNDS, CONVERGED = 20, 5, 40, 1e-9
+ANGLE_COUNT = 20  # Angles of the columns in half a turn
 
-# Factor of the sources that a power of v needs, over the lost part, below which it is left out: near a power with which the
-# pressure falls without sources, rounds go astray.
+MAX_DEGREE = 5  # Highest degree of the polynomial in powers of the radius
+
+MAX_ROUNDS = 40  # Most fixed-point iterations
+
+CONVERGED = 1e-9  # Change of the pressure coefficients over the speed at which the fixed-point iteration ends
+
+# Distance from a resonance over the lost fraction below which an exponent is left out: fixed-point iteration diverges there.
 RESONANCE_FACTOR = 20.0
 
-MIN_LOST_FRACTION = (
-    1e-9  # Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves
-)
+MIN_LOST_FRACTION = 1e-9  # Lost fraction of the viscosity at the rim below which the far film is Newtonian to column accuracy
 
-FIRST_ORDER = 1e-6  # Lost part at which its power is read
+FIRST_ORDER = 1e-6  # Lost fraction of the viscosity at which its exponent in the rate is read
 
-
-# Stated error of the friction over the speed, the lost part at the rim and the offset over the square of the rim; it is up to
-# 5 for Cross's law with powers from 0.1 to 0.8.
+# Stated error of friction over speed, lost fraction at the rim, and offset over the squared rim radius; the true factor is up
+# to 5 for Cross's law with exponents from 0.1 to 0.8.
 OFFSET_ERROR_FACTOR = 12.0
 
 ROLLING_SHEAR_RATE = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness

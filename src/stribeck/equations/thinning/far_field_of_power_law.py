@@ -31,21 +31,24 @@ from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.quantities.lazy import cached_property
 
-# Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends.
-ANGLE_COUNT, MAX_STEPS, CONVERGED = 64, 40, 1e-11
+ANGLE_COUNT = 64  # Angles in half a turn
 
-DIFFERENCE_STEP, GAP_DIFFERENCE_STEP = (
-    1e-6,
-    1e-3,
-)  # Step of the derivative by a coefficient, and change of the gap for that by the offset
+MAX_STEPS = 40  # Most Newton steps
 
-# Smallest stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same over
-# the square of the part by which the gap differs.
-FAR_DRAG_RTOL, OFFSET_ERROR = 3e-6, 50.0
+CONVERGED = 1e-11  # Largest residual of the equations at which Newton's iteration ends
+
+DIFFERENCE_STEP = 1e-6  # Step of the derivatives with respect to the coefficients
+
+GAP_DIFFERENCE_STEP = 1e-3  # Relative change of the gap for the derivative with respect to the offset
+
+FAR_DRAG_RTOL = 3e-6  # Least stated error of the far friction over the drag up to the rim: the finite parts are differences
+
+OFFSET_ERROR = 50.0  # Stated error of the far friction over that drag and the squared relative change of the gap
 
 
-# Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is.
-STEEP_EXPONENT, EXPONENT_STEP_RATIO = 0.2, 1.5
+STEEP_EXPONENT = 0.2  # Exponent below which Newton's iteration starts from the film of a larger exponent
+
+EXPONENT_STEP_RATIO = 1.5  # That larger exponent over the smaller one
 
 
 class _Similar(NamedTuple):

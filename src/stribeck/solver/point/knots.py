@@ -23,9 +23,8 @@ from stribeck.solver.point.state import LOOSE_OBSERVABLES, PointState, ReadState
 __all__ = ["BallKnots", "KnotState"]
 
 STATE_RTOL_FRACTION = 0.7  # Share of rtol for solving the states; the rest is for the interpolation
-SLOPE_RTOL = (
-    1e-12  # Residual of the slopes: GMRES takes two rounds, as one with a neighbour's preconditioner leaves errors of 1e-4
-)
+# Residual of the slopes: GMRES takes two rounds, as one round with a neighbour's preconditioner leaves errors of 1e-4.
+SLOPE_RTOL = 1e-12
 REST_STEP = 1e-3  # Step of the coordinate in central differences between states at rest, which cost next to nothing
 UNIT_STEP = 0.5  # Step of the coordinate in differences of units, which are powers of what varies
 
