@@ -29,6 +29,7 @@ FIRST_STEP = 0.5  # Length of the first step; the length of each later one follo
 MAX_STEP = 3.0  # Longest step: from farther away the last state is no start for the next one
 MIN_STEP = 0.02  # Shortest step: the path ends where shorter ones would be needed, and an interval keeps its error
 MAX_STEP_GROWTH = 1.4  # Largest ratio of a step to the one before
+STEP_REDUCTION = 0.5  # Ratio of a step to the one before from which no state was found, and least ratio to any
 ERROR_GOAL = 0.5  # Share of the allowed error for the next step: a shorter step costs less than an interval that is halved
 MAX_STATES = 400  # Limit on work
 
@@ -225,11 +226,11 @@ def interpolate_to(
             else:
                 outcome, here = first, here + sign * FIRST_STEP
         while (left := abs(end - here)) > 0:
-            step = min(step, MAX_STEP, left if left < 1.3 * step else math.inf)
-            there = end if step > 0.99 * left else here + sign * step
+            step = min(step, MAX_STEP, left)
+            there = end if step == left else here + sign * step
             new = knots.get(there) or problem.solve(there)
             if isinstance(new, Outcome):
-                step *= 0.5
+                step *= STEP_REDUCTION
                 if step < MIN_STEP:
                     outcome = new
                     break
@@ -241,8 +242,10 @@ def interpolate_to(
             if len(knots) >= WINDOW:
                 now = path()
                 k = len(now.knots) - 3 if sign > 0 else 1  # the last interval with states on both sides
-                growth = (ERROR_GOAL / max(now.excess(k, rtol), 1e-6)) ** (0.5 / (WINDOW - 2))
-                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * min(max(growth, 0.5), MAX_STEP_GROWTH)
+                excess = now.excess(k, rtol)
+                growth = (ERROR_GOAL / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else MAX_STEP_GROWTH
+                growth = min(max(growth, STEP_REDUCTION), MAX_STEP_GROWTH)
+                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * growth
         while len(knots) < MAX_STATES:
             now = path()
             wide = [k for k in range(len(now.knots) - 1) if now.coordinates[k + 1] - now.coordinates[k] > 2 * MIN_STEP]
