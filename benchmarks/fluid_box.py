@@ -197,8 +197,8 @@ def true_errors(point: RefinedState) -> np.ndarray:
     out = edges[-1] * 2.0 ** np.arange(1, OUTWARDS + 1)
     below = edges[0] * 2.0 ** np.arange(1, OUTWARDS + 1)
     mesh = replace(coarse, edges=np.concatenate([below[::-1], edges, out]), order=coarse.order + 4)
-    if mesh.restart < math.inf:  # in another frame too
-        mesh = replace(mesh, edges=FRAME * mesh.edges, restart=FRAME * mesh.restart)
+    if mesh.reformation < math.inf:  # in another frame too
+        mesh = replace(mesh, edges=FRAME * mesh.edges, reformation=FRAME * mesh.reformation)
     fine = solve_state(state.groups, Operators(mesh, state.groups.model), state, 1e-11)
     if not fine.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {fine.outcome.value}")

@@ -374,14 +374,14 @@ def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends()
 
 
 @pytest.mark.parametrize("solid", [sb.solids.HalfPlane(), sb.solids.Layer(1.0, 0.4)])
-@pytest.mark.parametrize(("exit_position", "dilation"), [(5e4, 1.0), (0.1, -0.5), (0.1, math.nan)])
-def test_a_series_beyond_its_radius_is_no_number_and_no_error(solid, exit_position, dilation):
+@pytest.mark.parametrize(("exit_position", "cavity_stretch"), [(5e4, 1.0), (0.1, -0.5), (0.1, math.nan)])
+def test_a_series_beyond_its_radius_is_no_number_and_no_error(solid, exit_position, cavity_stretch):
     """Curves through the place where a cavity opens ended with an error of arithmetic."""
     groups = with_parts(sb.Groups(0.05, 0.5, 0.04), cavitation="reform", cavity_pressure=-0.1, solid=solid)
-    mesh = Mesh(np.array([-8.0, -1.0, 0.0, 0.25, 1.0, 8.0]), 12, restart=0.25)
+    mesh = Mesh(np.array([-8.0, -1.0, 0.0, 0.25, 1.0, 8.0]), 12, reformation=0.25)
     equations = Equations(Operators(mesh, groups.model), 0.05, contact_law(groups), 1.0)
     y, at = np.ones(equations.layout.size), equations.layout
-    y[at.gap], y[at.exit], y[at.dilation] = np.exp(np.sin(3 * mesh.nodes)), exit_position, dilation
+    y[at.gap], y[at.exit], y[at.cavity_stretch] = np.exp(np.sin(3 * mesh.nodes)), exit_position, cavity_stretch
     with np.errstate(all="ignore"):
         wrong = equations.residual(y[None]), *(each.central_gap for each in observables_of_stacked(equations, y[None], 0.5))
     assert not all(np.isfinite(each).all() for each in wrong)

@@ -11,8 +11,8 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.cavities.fixed_cavity_length import OfLength, solve_of_length
-from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
+from stribeck.equations.cavities.fixed_cavity_length import FixedLengthEquations, solve_of_length
+from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_at_fixed_exit
 from stribeck.equations.line import Coupled, Eliminated, Operators
 from stribeck.equations.observables import gradients, observables
 from stribeck.equations.prediction import SeenFrom, extrapolate
@@ -260,7 +260,7 @@ def test_a_cavity_in_a_contact_of_asperities_lies_where_it_does_in_the_gap_of_th
     assert slope < 0
     state = sb.solve(groups, cavitation="reform", cavity_pressure=-2.5e-4)
     assert guess.exit == pytest.approx(state.exit_position, abs=0.01)
-    assert guess.exit + guess.restart == pytest.approx(state.reformation_position, abs=0.01)
+    assert guess.exit + guess.reformation == pytest.approx(state.reformation_position, abs=0.01)
     assert guess.flux_gap == pytest.approx(state.flux_gap, rel=1e-3)
     assert _cavity_in_gap(with_parts(groups, cavitation="reform", cavity_pressure=-2.0), full) is None
 
@@ -271,7 +271,7 @@ def test_a_film_of_given_exit_holds_all_but_the_end_and_points_to_the_free_exit(
     free = point.state
     assert free is not None
     for moved in (-0.02, 0.02):
-        held, step = solve_of_exit(point.groups, free.equations.operators, SeenFrom(free, free.exit + moved), 1e-9, 30)
+        held, step = solve_at_fixed_exit(point.groups, free.equations.operators, SeenFrom(free, free.exit + moved), 1e-9, 30)
         at, residual = held.equations.layout, held.equations.residual(held.y)
         assert held.root.outcome.ok
         assert held.exit == free.exit + moved
@@ -304,10 +304,10 @@ def test_an_exit_is_sought_where_the_gap_grows_through_that_of_the_flux_not_at_i
     assert state is not None
     assert state.outcome.ok
     assert state.exit < guess.exit - 0.2
-    held, step = solve_of_exit(state.groups, state.equations.operators, SeenFrom(state, guess.exit), 1e-5, 30)
+    held, step = solve_at_fixed_exit(state.groups, state.equations.operators, SeenFrom(state, guess.exit), 1e-5, 30)
     assert held.root.outcome.ok
     assert step[held.equations.layout.exit.start] > 0 > distance_to_flux_gap(held) > 2 * (state.exit - guess.exit)
-    held, _ = solve_of_exit(state.groups, state.equations.operators, SeenFrom(state, state.exit - 1e-3), 1e-5, 30)
+    held, _ = solve_at_fixed_exit(state.groups, state.equations.operators, SeenFrom(state, state.exit - 1e-3), 1e-5, 30)
     assert held.root.outcome.ok
     assert 0 < distance_to_flux_gap(held) < 0.01
 
@@ -393,7 +393,8 @@ def test_a_newton_step_is_the_same_with_the_pressure_eliminated_or_not(length_is
     equations = state.equations
     assert equations.operators.has_reformation
     if length_is_given:
-        equations = OfLength(equations.operators, equations.speed, equations.law, equations.flux_scale, state.dilation)
+        known = equations.operators, equations.speed, equations.law, equations.flux_scale
+        equations = FixedLengthEquations(*known, state.cavity_stretch)
     residuals = np.random.default_rng(1).standard_normal(state.y.size)
     whole, eliminated = (inverse(equations, state.y)(residuals) for inverse in (Coupled, Eliminated))
     np.testing.assert_allclose(whole, eliminated, rtol=0, atol=1e-6 * np.abs(eliminated).max())

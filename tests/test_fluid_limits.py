@@ -71,7 +71,7 @@ def test_the_film_with_a_cavity_becomes_the_full_film_as_its_pressure_falls():
 @pytest.mark.quick
 @pytest.mark.parametrize("suction", [1e-9, 1e-15, 1e-18])
 def test_the_friction_with_a_cavity_becomes_that_of_a_film_that_ends_as_its_pressure_rises(suction):
-    """The film behind begins anew at ``x_r = (4 speed / 3 suction)^(1/3)`` from afar, and its drag goes as ``1/x_r``."""
+    """The film behind re-forms at ``x_r = (4 speed / 3 suction)^(1/3)`` from afar, and its drag goes as ``1/x_r``."""
     groups = sb.Groups(speed=5.7e-2, load=0.4, roughness=5e-3)
     ending = sb.solve(groups, cavitation="exit")
     anew = sb.solve(groups, cavitation="reform", cavity_pressure=-suction * groups.speed)

@@ -117,11 +117,11 @@ def stiffening():
     return solved(Model(Newtonian(Barus(1.0)), Cavitation.EXIT, Layer(3.0)), 1e-3, 0.1, 1e-2)
 
 
-def stacked(layout, gap, pressure, offset, flux_gap, leaving, dilation):
+def stacked(layout, gap, pressure, offset, flux_gap, leaving, cavity_stretch):
     """Return the vector of these unknowns, as far as the layout has them."""
     y = np.empty(layout.size)
     y[layout.gap], y[layout.offset], y[layout.flux_gap], y[layout.exit] = gap, offset, flux_gap, leaving
-    y[layout.dilation] = dilation
+    y[layout.cavity_stretch] = cavity_stretch
     if layout.pressure.start < layout.pressure.stop:
         y[layout.pressure] = pressure
     return y
@@ -134,7 +134,7 @@ def stacked(layout, gap, pressure, offset, flux_gap, leaving, dilation):
 def test_the_inverse_undoes_the_derivative_of_the_residual(film, growth, cavitation, stiffening, monkeypatch):
     """The last by LU factors of all unknowns, as where a thin film is compressed."""
     monkeypatch.setattr(line, "MAX_LOG_GROWTH", growth)
-    mesh = replace(stiffening.mesh, restart=0.25)
+    mesh = replace(stiffening.mesh, reformation=0.25)
     operators = Operators(mesh, Model(film, cavitation, cavity_pressure=-0.02))
     equations = Equations(operators, 1e-3, stiffening.equations.law, stiffening.flux_gap**2)
     layout, rng = equations.layout, np.random.default_rng(83)
@@ -181,10 +181,10 @@ def test_equations_are_solved_by_an_iterative_inverse_too(stiffening):
     np.testing.assert_allclose(found[1].x, found[0].x, rtol=1e-9)
 
 
-@pytest.mark.parametrize("restart", [0.0, 1.0, np.inf])
-def test_a_volterra_equation_is_solved_as_by_its_matrix(restart):
+@pytest.mark.parametrize("reformation", [0.0, 1.0, np.inf])
+def test_a_volterra_equation_is_solved_as_by_its_matrix(reformation):
     mesh = Mesh(np.array([-4.0, -2, -1, -0.5, 0, 0.5, 1, 2, 4]), 8)
-    integral = RunningIntegral(mesh, restart)
+    integral = RunningIntegral(mesh, reformation)
     rng = np.random.default_rng(11)
     matrix = np.stack([integral(column) for column in np.eye(mesh.size)], axis=1)
     factor = rng.uniform(-1, 1, mesh.size) / (1 + mesh.nodes**4)

@@ -106,8 +106,8 @@ def test_a_cavity_is_found_by_its_length_where_its_inlet_is_thin():
 def test_a_cavity_on_a_solid_with_a_length_does_not_know_the_frame_in_which_it_is_solved(monkeypatch, solid):
     """The frame stretched the layer with the cavity: the film was wrong by 4 % at a stated 2e-7, in another frame by 4 %."""
     found = []
-    for restart in (0.25, 0.3):
-        monkeypatch.setattr(stribeck.equations.state, "_cavity_on_mesh", lambda guess, restart=restart: restart)
+    for reformation in (0.25, 0.3):
+        monkeypatch.setattr(stribeck.equations.state, "_cavity_on_mesh", lambda guess, reformation=reformation: reformation)
         parts = {"cavitation": "reform", "cavity_pressure": -0.02, "solid": solid}
         found.append(sb.solve(sb.Groups(1e-2, 0.1, 1e-3), **parts).observables.array(in_article=False))
     np.testing.assert_allclose(found[0], found[1], rtol=1e-6)

@@ -198,7 +198,7 @@ def test_a_curve_along_which_a_body_remembers_more_and_more_of_the_panel_at_infi
 @pytest.mark.parametrize("cavitation", ["none", "exit"])
 def test_rows_of_states_are_deflected_each_by_its_own_solid(cavitation):
     groups = sb.solve(sb.Groups(1e-3, 0.1, 1e-2), cavitation=cavitation, solid=StandardLinearSolid(0.3, 2.0)).groups
-    mesh = replace(FINE, restart=math.inf)
+    mesh = replace(FINE, reformation=math.inf)
     solids = tuple(TwoBodies(StandardLinearSolid(time, 3.0), Layer(2.0), 0.4) for time in (0.1, 0.3, 2.0))
     together = OperatorsOfRows(mesh, groups.model, solids)
     pressure = bump(mesh.nodes + np.array([[0.1], [0.3], [0.0]]))

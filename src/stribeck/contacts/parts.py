@@ -97,7 +97,7 @@ class Parts:
             unit, highest = "p_Hz" if units.pressure == 1.0 else "Pa", -MIN_SUCTION * units.pressure
             raise InputError(
                 f"cavity_pressure = {self.cavity_pressure:g} {unit} is the ambient pressure but for rounding: the film would "
-                f"begin anew 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
+                f"re-form 1e8 half-widths behind the contact; give 0, or {highest:.3g} {unit} or less."
             )
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed

@@ -75,7 +75,7 @@ def friction_sensitivities(
         names = [name for name in GROUP_EXPONENTS if getattr(contact, name, None)] + list(part_names(contact))
         names = names if groups.model != BASE_MODEL else []
         changes = {name: beside for name in names if (beside := models_at_both_sides(contact, name)) is not None}
-        state = point.state  # of a film that may form anew, with a cavity or without
+        state = point.state  # of a film that may re-form, with a cavity or without
         along = [
             (with_ending_of(state, below), with_ending_of(state, above), width) for below, above, width in changes.values()
         ]

@@ -59,7 +59,7 @@ def friction_scale(load: Numbers, speed: Numbers) -> Array:
 def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal) -> Array:
     """Return the viscous friction for beta = 1: published, balanced and upper, shape (3, rows)."""
     op, at, film = equations.operators, equations.layout, equations.film
-    mesh, d, h_star = nodal.integral.mesh, equations.dilation(y), y[..., at.flux_gap]
+    mesh, d, h_star = nodal.integral.mesh, equations.cavity_stretch(y), y[..., at.flux_gap]
     far, last = equations.far_gap(y), slice(-mesh.order, None)
     xi, beyond, to_beyond = mesh.beyond
     h = (nodal.gap[..., last] - far(mesh.nodes[last])) @ to_beyond.T + far(xi)
@@ -75,7 +75,7 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
         own = y[..., at.pressure] if film.uses_pressure else None
         walls = nodal.settled(walls, _walls(film, y[..., at.gap], own, h_star, _parts(op.integral)))
     far_parts = (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)
-    lower, upper, pull = walls @ weights + _walls(film, h, p, h_star, far_parts) @ beyond
+    lower, upper, wall_stress_integral = walls @ weights + _walls(film, h, p, h_star, far_parts) @ beyond
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
     wet = far_parts[0]
     g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)
@@ -84,7 +84,7 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     x_c, speed = (y[..., at.exit.start] if op.has_exit else 0.0), np.squeeze(equations.speed)
     contact, whole = equations.law.pressure(nodal.gap), nodal.pressure @ nodal.weights
     moment = stretch * (stretch * (nodal.pressure @ arm + speed * stretch * (g @ leverage)) + x_c * whole)
-    balance = -stretch * (speed * pull + stretch * (contact @ arm) + x_c * (contact @ weights))
+    balance = -stretch * (speed * wall_stress_integral + stretch * (contact @ arm) + x_c * (contact @ weights))
     moment = moment + _share_balanced(equations, stretch * whole) * (balance - moment)
     found = np.empty((3, *moment.shape))
     found[1], found[2] = lower * stretch, upper * stretch
@@ -96,15 +96,15 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
 def _walls(
     film: Film, gap: Array, pressure: Array | None, flux_gap: Numbers, parts: tuple[slice | Flags, slice | Flags | None]
 ) -> Array:
-    """Return drag on substrate and cylinder and the pull h G, zero where the film is torn, shape (3, ..., nodes)."""
-    wet, torn = parts
-    found = np.empty((3, *gap.shape)) if torn is None else np.zeros((3, *gap.shape))
+    """Return drag on substrate and cylinder and h G, zero where the film is cavitated, shape (3, ..., nodes)."""
+    wet, cavitated = parts
+    found = np.empty((3, *gap.shape)) if cavitated is None else np.zeros((3, *gap.shape))
     column = (gap[..., wet], None if pressure is None else pressure[..., wet], flux_gap)
     found[0][..., wet], found[1][..., wet] = film.tractions(*column)
     found[2][..., wet] = gap[..., wet] * film.gradient(*column)
-    if torn is not None:
-        liquid = film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], flux_gap)
-        found[:2][..., torn] = liquid
+    if cavitated is not None:
+        liquid = film.cavity_traction(gap[..., cavitated], None if pressure is None else pressure[..., cavitated], flux_gap)
+        found[:2][..., cavitated] = liquid
     return found
 
 
@@ -116,7 +116,7 @@ def _share_balanced(equations: Equations, fluid_load: Array) -> Array:
 
 def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | None]:
     """Return the nodes in the film and those in the cavity, on the panels in x at least."""
-    if integral.restart == 0.0:
+    if integral.reformation == 0.0:
         return slice(None), None
     if integral.one_sided:
         end = integral.middle * integral.mesh.order
@@ -129,7 +129,7 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
 
     ``slopes`` are those of G at the nodes, see :func:`stribeck.equations.film.slopes_in_film`, if they are known.
     """
-    op, at, film, d = equations.operators, equations.layout, equations.film, equations.dilation(y)
+    op, at, film, d = equations.operators, equations.layout, equations.film, equations.cavity_stretch(y)
     h, h_star = y[..., at.gap], y[..., at.flux_gap]
     p = y[..., at.pressure] if film.uses_pressure else None
     scale = friction_scale(load, equations.speed)
@@ -137,9 +137,9 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
     found = np.zeros((3, *y.shape))
     published, lower, upper = found
     wet, dry = op.parts if op.has_exit else (slice(None), slice(0, 0))
-    torn = None
+    cavitated = None
     if op.has_exit:
-        torn = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
+        cavitated = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
     of_walls = film.traction_slopes(h[..., wet], None if p is None else p[..., wet], h_star)
     of_sum, own = scale * stretch, op.mesh.weights
     for row, (by_gap, by_pressure, by_flux, _) in zip((lower, upper), of_walls, strict=True):
@@ -147,11 +147,11 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
         row[..., at.flux_gap] = (by_flux @ own[wet])[..., None]
         if by_pressure is not None:
             row[..., at.pressure][..., wet] = by_pressure
-        if torn is not None:
-            row[..., at.gap][..., dry] = torn.by_gap
-            row[..., at.flux_gap] += (torn.by_flux @ own[dry])[..., None]
-            if torn.by_pressure is not None:
-                row[..., at.pressure][..., dry] = torn.by_pressure
+        if cavitated is not None:
+            row[..., at.gap][..., dry] = cavitated.by_gap
+            row[..., at.flux_gap] += (cavitated.by_flux @ own[dry])[..., None]
+            if cavitated.by_pressure is not None:
+                row[..., at.pressure][..., dry] = cavitated.by_pressure
         row[..., at.flux_gap] *= of_sum
         row[..., at.gap] *= of_sum * own
         if p is not None:
@@ -180,18 +180,18 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
         published[..., at.exit] += of_moment * stretch * whole
     if d is not None:
         values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))[..., None]
-        lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
+        lower[..., at.cavity_stretch], upper[..., at.cavity_stretch] = values[1] / d, values[2] / d
         moments = of_moment * (2 * d * (fluid @ op.moment)[..., None] + x_c * whole)
         moments += (3 * beyond * g).sum(axis=-1, keepdims=True) / d
         if p is None:
             moments += (of_pressure * (fluid - op.cavity_pressure)).sum(axis=-1, keepdims=True) / d
-        published[..., at.dilation] += upper[..., at.dilation] + moments
+        published[..., at.cavity_stretch] += upper[..., at.cavity_stretch] + moments
     return found
 
 
 def _of_balance(equations: Equations, y: Array, g: Array, slopes: Slopes, factor: Array, row: Array) -> None:
     """Add to ``row`` the derivatives of the moment of the fluid pressure by the balance of forces, times ``factor``."""
-    op, at, law, d = equations.operators, equations.layout, equations.law, equations.dilation(y)
+    op, at, law, d = equations.operators, equations.layout, equations.law, equations.cavity_stretch(y)
     h = y[..., at.gap]
     contact = law.pressure(h)
     stretch = np.ones(1) if d is None else d
@@ -207,4 +207,4 @@ def _of_balance(equations: Equations, y: Array, g: Array, slopes: Slopes, factor
     if d is not None:
         arm = op.mesh.weights * op.mesh.nodes
         balance = ((through * h * g + pressed * contact) / d).sum(axis=-1, keepdims=True)
-        row[..., at.dilation] += balance - factor * d * (contact @ arm)[..., None]
+        row[..., at.cavity_stretch] += balance - factor * d * (contact @ arm)[..., None]

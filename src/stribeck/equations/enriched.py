@@ -62,9 +62,9 @@ class FineOperators:
     def _integrals(self) -> dict[float, RunningIntegral]:
         return {}
 
-    def integral(self, restart: float = 0.0) -> RunningIntegral:
+    def integral(self, reformation: float = 0.0) -> RunningIntegral:
         """Return the integral from infinity on that mesh, see :class:`RunningIntegral`."""
-        return self._integrals.setdefault(restart, RunningIntegral(self.mesh, restart))
+        return self._integrals.setdefault(reformation, RunningIntegral(self.mesh, reformation))
 
     @cached_property
     def _lowered(self) -> Array:
@@ -104,10 +104,10 @@ class FineOperators:
         found[own] = (tail.weights @ tail.interpolation(mesh.order)) * mesh.stretch[own]
         return found
 
-    def deflection(self, pressure: Array, operators: Operators, dilation: Array | None = None) -> Array:
+    def deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None = None) -> Array:
         """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh.
 
-        In a frame that is dilated, over that and but for its logarithm.
+        With a cavity stretch d the result is that over d, without ln(d).
         """
         if operators.deflection_by_tail is not None and operators.tail is not None:
             own = slice(-self.mesh.order, None)
@@ -115,11 +115,11 @@ class FineOperators:
             inner = pressure.copy()
             inner[:, own] = 0.0
             return self._deflection(inner, operators, None) + density @ operators.deflection_by_tail.T
-        return self._deflection(pressure, operators, dilation)
+        return self._deflection(pressure, operators, cavity_stretch)
 
-    def _deflection(self, pressure: Array, operators: Operators, dilation: Array | None) -> Array:
+    def _deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None) -> Array:
         density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
         lowered = self.lowered(pressure)
         highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
-        found = lowered @ operators.deflection.T if dilation is None else operators.by_kernel(lowered, dilation)
+        found = lowered @ operators.deflection.T if cavity_stretch is None else operators.by_kernel(lowered, cavity_stretch)
         return found + highest.reshape(len(pressure), -1) @ self._of_highest.T

@@ -146,7 +146,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     """Return the changes of states by defect, quadrature and rounding; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, film, far_gap = fine.coarse, fine.mesh, states.equations.film, states.equations.far_gap(states.y)
-    integral, d = fine.integral(op.restart), equations.dilation(y)
+    integral, d = fine.integral(op.reformation), equations.cavity_stretch(y)
     h, z0, h_star = y[:, at.gap], y[:, at.offset], y[:, at.flux_gap]
     balance, net = at.offset.start, at.flux_gap.start
     gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
@@ -255,14 +255,14 @@ def _of_ends(
     at_edge = at_end[:, of_fine] @ reference(mesh.order).left_end[::-1]
     residual[0][:, at.exit] = (scale * (np.abs(at_edge) + steep * missed))[:, None]
     residual[1:, :, at.exit] = (size * scale * steep)[:, None]
-    dilation = equations.dilation(y)
-    if dilation is not None:
-        d, in_cavity = dilation[:, 0], op.model.cavity_pressure / np.ravel(equations.speed)
+    cavity_stretch = equations.cavity_stretch(y)
+    if cavity_stretch is not None:
+        d, in_cavity = cavity_stretch[:, 0], op.model.cavity_pressure / np.ravel(equations.speed)
         net = at.flux_gap.start
         residual[0, :, net] = d * residual[0, :, net] - scale * in_cavity
-        residual[0, :, at.dilation.start] = scale * (d * (slopes @ integral.weights_beyond) + in_cavity)
+        residual[0, :, at.cavity_stretch.start] = scale * (d * (slopes @ integral.weights_beyond) + in_cavity)
         beyond = np.abs(slopes) @ integral.weights_beyond
-        residual[1:, :, at.dilation.start] = size * scale * (d * beyond + np.abs(in_cavity))
+        residual[1:, :, at.cavity_stretch.start] = size * scale * (d * beyond + np.abs(in_cavity))
 
 
 def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array) -> Array:
@@ -313,7 +313,7 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
     centres, stretch = np.zeros(len(values)), np.ones(len(values))
     if op.has_exit:
-        d, exits = states.equations.dilation(states.y), states.y[:, states.equations.layout.exit.start]
+        d, exits = states.equations.cavity_stretch(states.y), states.y[:, states.equations.layout.exit.start]
         stretch = stretch if d is None else d[:, 0]
         centres, positions = -exits / stretch, (positions - exits) / stretch
     effects[:, FRICTION_ROWS if op.is_base_model else DRAG_ROWS, 0] += changed.friction.T

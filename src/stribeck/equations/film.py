@@ -13,7 +13,7 @@ __all__ = ["by_pressure_of", "gradient_in_film", "slopes_in_film"]
 
 def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
     """Return G at the nodes where the film is full, zero in the cavity."""
-    if integral.restart == 0.0:
+    if integral.reformation == 0.0:
         return film.gradient(h, p, flux_gap)
     wet = integral.filled
     return scattered(film.gradient(h[..., wet], None if p is None else p[..., wet], flux_gap), wet, h)
@@ -21,7 +21,7 @@ def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array |
 
 def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Slopes:
     """Return the derivatives of G at the nodes where the film is full, zero in the cavity."""
-    if integral.restart == 0.0:
+    if integral.reformation == 0.0:
         return film.slopes(h, p, flux_gap)
     wet = integral.filled
     by_gap, by_pressure, by_flux, by_speed = film.slopes(h[..., wet], None if p is None else p[..., wet], flux_gap)

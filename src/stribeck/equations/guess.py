@@ -24,12 +24,12 @@ class Guess(Protocol):
         """Guess of the exit, from which x is measured if the film has a free one."""
 
     @property
-    def dilation(self) -> float:
-        """Guess of the dilation of the frame, one if the film does not begin anew."""
+    def cavity_stretch(self) -> float:
+        """Guess of stretch of the cavity, one if the film does not re-form."""
 
     @property
-    def restart(self) -> float:
-        """Coordinate at which the film begins anew; infinite if it does not."""
+    def reformation(self) -> float:
+        """Coordinate at which the film re-forms; infinite if it does not."""
 
     @property
     def minimum_position(self) -> float:

@@ -15,8 +15,8 @@ is an unknown too, with the rows ``p_f - lambda A G``; Newton's step eliminates 
 With a free exit the film ends at x_c, and x is measured from there: D, A and w do not depend on x_c, which enters by the
 parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there; where the
 fluid thins, G at low rates, which vanishes with it: G itself may be a small power of the gap, which no polynomial follows.
-A film that ends at the pressure p_cav of the cavity and begins anew behind it has one more unknown still, the length of the
-cavity, which dilates the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and
+A film that ends at the pressure p_cav of the cavity and re-forms behind it has one more unknown still, the length of the
+cavity, which stretches the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and
 minus that.
 
 Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
@@ -75,7 +75,7 @@ class Equations:
             flux_gap=slice(fields + 1, fields + 2),
             pressure=slice(n, fields),
             exit=slice(fields + 2, exit),
-            dilation=slice(exit, size),
+            cavity_stretch=slice(exit, size),
         )
 
     @cached_property
@@ -98,20 +98,20 @@ class Equations:
         at_exit = slopes_in_film(self.ending, self.operators.integral, y[..., at.gap], p_f, y[..., at.flux_gap])
         return (slopes, at_exit, slopes)[: len(self.operators.ends)]
 
-    def dilation(self, y: Array) -> Array | None:
-        """Return the dilation of the frame, a column of stacked states; None where the film does not begin anew."""
-        return y[..., self.layout.dilation] if self.operators.has_reformation else None
+    def cavity_stretch(self, y: Array) -> Array | None:
+        """Return stretch of the cavity, a column of stacked states; None where the film does not re-form."""
+        return y[..., self.layout.cavity_stretch] if self.operators.has_reformation else None
 
     def positions(self, y: Array) -> Array:
         """Return x at the nodes [a]."""
-        nodes, d = self.operators.mesh.nodes, self.dilation(y)
+        nodes, d = self.operators.mesh.nodes, self.cavity_stretch(y)
         if not self.operators.has_exit:
             return nodes
         return np.asarray(y[..., self.layout.exit] + (nodes if d is None else d * nodes))
 
     def far_gap(self, y: Array) -> Callable[[Array], Array]:
         """Return the far gap as a function of the coordinate, up to a smooth function of the inverse coordinate."""
-        solid, d = self.operators.model.solid, self.dilation(y)
+        solid, d = self.operators.model.solid, self.cavity_stretch(y)
         if not self.operators.has_exit:
             return solid.far_gap
         x_c = y[..., self.layout.exit]
@@ -124,7 +124,7 @@ class Equations:
 
     def fluid_pressure(self, y: Array) -> Array:
         """Return the fluid pressure at the nodes [p_Hz]."""
-        at, op, film, d = self.layout, self.operators, self.film, self.dilation(y)
+        at, op, film, d = self.layout, self.operators, self.film, self.cavity_stretch(y)
         if film.uses_pressure:
             return y[..., at.pressure]
         fluid = np.asarray(
@@ -134,7 +134,7 @@ class Equations:
 
     def cavity_pressure(self, y: Array) -> Array:
         """Return the pressure of the cavity [p_Hz], a column of stacked states."""
-        return np.full_like(y[..., self.layout.dilation], self.operators.model.cavity_pressure)
+        return np.full_like(y[..., self.layout.cavity_stretch], self.operators.model.cavity_pressure)
 
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
@@ -147,7 +147,7 @@ class Equations:
 
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, in its layout."""
-        op, at, film, d = self.operators, self.layout, self.film, self.dilation(y)
+        op, at, film, d = self.operators, self.layout, self.film, self.cavity_stretch(y)
         h, z0, h_star = y[..., at.gap], y[..., at.offset], y[..., at.flux_gap]
         p_f = y[..., at.pressure] if film.uses_pressure else None
         g = gradient_in_film(film, op.integral, h, p_f, h_star)
@@ -171,7 +171,7 @@ class Equations:
         if d is not None:
             in_cavity = self.cavity_pressure(y) / self.speed
             r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
-            r[..., at.dilation] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
+            r[..., at.cavity_stretch] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
             r[..., at.offset] += (d - 1) * (r[..., at.offset] + LOAD)
         return r
 
@@ -221,11 +221,11 @@ class Equations:
             [   s**2 w diag(dG/dh)                          0     s**2 w dG/dh*           0      ]
             [   s**2 e diag(dG/dh)                          0     s**2 e dG/dh*           0      ]
 
-        The last row and column are those of a free exit, with e the value there; a film that begins anew has one more of each.
+        The last row and column are those of a free exit, with e the value there; a film that re-forms has one more of each.
         A fluid pressure among the unknowns is eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
         """
         op, at, film = self.operators, self.layout, self.film
-        n, dilation = op.mesh.size, self.dilation(y)
+        n, cavity_stretch = op.mesh.size, self.cavity_stretch(y)
         h = y[at.gap]
         numbers = at.size - at.numbers.start
         u, v = (np.ones(n), np.ones(numbers)) if units is None else (units[at.gap], units[at.numbers])
@@ -235,9 +235,9 @@ class Equations:
         of_ends = self.slopes_of_ends(y, slopes)
         by_h, by_p, by_flux, _ = slopes
         g_h, g_flux = by_h * u, by_flux * v[1]
-        d = None if dilation is None else float(dilation[0])
+        d = None if cavity_stretch is None else float(cavity_stretch[0])
         speed = self.speed if d is None else self.speed * d
-        scaled = op.dilated(d, self.is_sliding and by_p is None)
+        scaled = op.stretched(d, self.is_sliding and by_p is None)
         matrix = np.empty((n + numbers, n + numbers), order="F")
         matrix[n:], matrix[:, n:] = 0.0, 0.0
         block, offset, flux = matrix[:n, :n], n, n + 1
@@ -270,18 +270,18 @@ class Equations:
         if op.has_exit:
             matrix[:n, n + 2] = -v[2] * self.positions(y)
         if d is not None:
-            matrix[:, n + 3] = v[3] * self.by_dilation(y, d, by_p)
+            matrix[:, n + 3] = v[3] * self.by_cavity_stretch(y, d, by_p)
         return matrix
 
-    def by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
-        """Return the derivative of the residual with respect to the dilation, the fluid pressure eliminated."""
+    def by_cavity_stretch(self, y: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return the derivative of the residual with respect to the cavity stretch, the fluid pressure eliminated."""
         op, at = self.operators, self.layout
         p_f = y[at.pressure] if by_pressure is not None else None
         g = gradient_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap])
-        scaled = op.dilated(d, of_gradient=False)
-        of_fluid = self.fluid_by_dilation(g, d, by_pressure)
+        scaled = op.stretched(d, of_gradient=False)
+        of_fluid = self.fluid_by_cavity_stretch(g, d, by_pressure)
         of_ends = self.slopes_of_ends(y, slopes_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap]))
-        found, n = self.by_dilation_alone(y, d, g), op.mesh.size
+        found, n = self.by_cavity_stretch_alone(y, d, g), op.mesh.size
         found[:n] -= scaled.deflection @ of_fluid
         found[n] += scaled.weights @ of_fluid
         for k, (end, of) in enumerate(zip(scaled.ends, of_ends, strict=True)):
@@ -289,7 +289,7 @@ class Equations:
                 found[n + 1 + k] += self.flux_scale * (end @ (of.by_pressure * of_fluid))
         return found
 
-    def by_dilation_alone(self, y: Array, d: float, g: Array) -> Array:
+    def by_cavity_stretch_alone(self, y: Array, d: float, g: Array) -> Array:
         """Return the same at a fixed fluid pressure, without the rows of the pressure; g is the gradient of the pressure."""
         op, n = self.operators, self.operators.mesh.size
         contact, fluid = self.pressures(y)
@@ -303,8 +303,8 @@ class Equations:
         found[n + 1 :] = self.flux_scale * (first @ g), 0.0, self.flux_scale * (second @ g)
         return found
 
-    def fluid_by_dilation(self, g: Array, d: float, by_pressure: Array | None) -> Array:
-        """Return the derivative of the fluid pressure with respect to the dilation, at fixed gap and flux gap."""
+    def fluid_by_cavity_stretch(self, g: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return the derivative of the fluid pressure with respect to the cavity stretch, at fixed gap and flux gap."""
         integral = self.operators.integral
         if by_pressure is None:
             return np.asarray(self.speed * integral(g))
@@ -312,16 +312,16 @@ class Equations:
 
     def parameter_derivative(self, y: Array, name: str) -> Array:
         """Return the derivative of the residual with respect to the logarithm of one group, in the layout of ``y``."""
-        op, at, film, dilation = self.operators, self.layout, self.film, self.dilation(y)
+        op, at, film, cavity_stretch = self.operators, self.layout, self.film, self.cavity_stretch(y)
         h, found = y[at.gap], np.zeros_like(y)
-        d = None if dilation is None else float(dilation[0])
-        scaled = op.dilated(d, of_gradient=name == "speed")
+        d = None if cavity_stretch is None else float(cavity_stretch[0])
+        scaled = op.stretched(d, of_gradient=name == "speed")
         if name == "speed":
             p_f = y[at.pressure] if film.uses_pressure else None
             speed = self.speed if d is None else self.speed * d
             g = speed * gradient_in_film(film, op.integral, h, p_f, y[at.flux_gap])
             slopes = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap])
-            blocks = (at.flux_gap, at.exit, at.dilation)
+            blocks = (at.flux_gap, at.exit, at.cavity_stretch)
             if slopes.by_speed is not None:
                 g = g + speed * slopes.by_speed
                 for block, end, of in zip(blocks, scaled.ends, self.slopes_of_ends(y, slopes), strict=False):
@@ -329,7 +329,7 @@ class Equations:
             if d is not None:
                 in_cavity = self.flux_scale * op.model.cavity_pressure / self.speed
                 found[at.flux_gap] += in_cavity
-                found[at.dilation] -= in_cavity
+                found[at.cavity_stretch] -= in_cavity
             if p_f is not None:
                 found[at.pressure] = -op.integral(g)
             else:
@@ -356,19 +356,20 @@ class Equations:
             far = 0.3 * np.sqrt(1.0 + y[at.gap].min())
             part = min(part, far / max(far, abs(dy[at.exit.start])))
         if self.operators.has_reformation:
-            part = min(part, 0.3 / max(0.3, abs(dy[at.dilation.start] / y[at.dilation.start])))
+            part = min(part, 0.3 / max(0.3, abs(dy[at.cavity_stretch.start] / y[at.cavity_stretch.start])))
         return longest_step(self.law, y[at.gap], dy[at.gap], float(part))
 
     def size(self, y: Array, dy: Array) -> float:
         """Return the relative size of a step: the largest relative change of gap and flux gap, in any row.
 
-        Pressure, exit and dilation change in their own units, p_Hz, a and one.
+        Pressure, exit and cavity stretch change in their own units, p_Hz, a and one.
         """
         at = self.layout
         gaps = dy[..., at.gap] / y[..., at.gap]
         unit = y[..., at.flux_gap] if self.operators.is_base_model else self._flux_unit(y)
         fluxes = dy[..., at.flux_gap] / unit
-        others = [np.abs(dy[..., block]).max() for block in (at.pressure, at.exit, at.dilation) if block.start < block.stop]
+        blocks = (block for block in (at.pressure, at.exit, at.cavity_stretch) if block.start < block.stop)
+        others = [np.abs(dy[..., block]).max() for block in blocks]
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
 
 
@@ -376,10 +377,10 @@ class Coupled:
     """The inverse of the Jacobian with the fluid pressure among the unknowns, by LU factors of all of it."""
 
     def __init__(self, equations: Equations, y: Array) -> None:
-        op, at, film, dilation = equations.operators, equations.layout, equations.film, equations.dilation(y)
-        d = None if dilation is None else float(dilation[0])
+        op, at, film, cavity_stretch = equations.operators, equations.layout, equations.film, equations.cavity_stretch(y)
+        d = None if cavity_stretch is None else float(cavity_stretch[0])
         h, n, units = y[at.gap], op.mesh.size, equations.units(y)
-        scaled, speed = op.dilated(d, of_gradient=False), equations.speed if d is None else equations.speed * d
+        scaled, speed = op.stretched(d, of_gradient=False), equations.speed if d is None else equations.speed * d
         slopes = slopes_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap])
         by_gap, by_pressure, by_flux = slopes.by_gap, by_pressure_of(slopes), slopes.by_flux
         matrix = np.zeros((at.size, at.size), order="F")
@@ -400,10 +401,10 @@ class Coupled:
         if op.has_exit:
             matrix[gap, at.exit.start] = -equations.positions(y)
         if d is not None:
-            g, column = gradient_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap]), at.dilation.start
-            explicit = equations.by_dilation_alone(y, d, g)
+            g, column = gradient_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap]), at.cavity_stretch.start
+            explicit = equations.by_cavity_stretch_alone(y, d, g)
             matrix[gap, column], matrix[offset:, column] = explicit[:n], explicit[n:]
-            matrix[pressure, column] = -equations.fluid_by_dilation(g, d, None)
+            matrix[pressure, column] = -equations.fluid_by_cavity_stretch(g, d, None)
         matrix *= units
         self.factors = LU.of(matrix, overwrite=True)
 
@@ -427,19 +428,19 @@ class Eliminated:
     def __init__(self, equations: Equations, y: Array) -> None:
         self.equations = equations
         op, at, film = equations.operators, equations.layout, equations.film
-        dilation = equations.dilation(y)
-        d = None if dilation is None else float(dilation[0])
+        cavity_stretch = equations.cavity_stretch(y)
+        d = None if cavity_stretch is None else float(cavity_stretch[0])
         self.units = equations.units(y)
         self.slopes = slopes_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
         self.by_pressure = by_pressure_of(self.slopes)
         self.of_ends = equations.slopes_of_ends(y, self.slopes)
         self.speed = equations.speed if d is None else equations.speed * d
-        self.scaled = op.dilated(d, of_gradient=False)
+        self.scaled = op.stretched(d, of_gradient=False)
         self.volterra = Volterra(op.integral, np.asarray(self.speed * self.by_pressure))
-        self.by_dilation = None
+        self.by_cavity_stretch = None
         if d is not None:
             g = gradient_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
-            self.by_dilation = equations.fluid_by_dilation(g, d, self.by_pressure)
+            self.by_cavity_stretch = equations.fluid_by_cavity_stretch(g, d, self.by_pressure)
         self.reduced = LU.of(equations.jacobian(y, self.units, self.volterra), overwrite=True)
 
     @property
@@ -465,8 +466,8 @@ class Eliminated:
         by_flux = self.slopes.by_flux * self.units[at.flux_gap]
         gradients = self.speed * (by_gap * step[..., :n] + by_flux * step[..., n + 1 : n + 2])
         found[..., at.pressure] = self.volterra(gradients) - q
-        if self.by_dilation is not None:
-            found[..., at.pressure] += self.by_dilation * step[..., n + 3 :]
+        if self.by_cavity_stretch is not None:
+            found[..., at.pressure] += self.by_cavity_stretch * step[..., n + 3 :]
         return found
 
 

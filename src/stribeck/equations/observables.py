@@ -135,7 +135,7 @@ def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) ->
     """Return the observables of films other than the article's; ``known`` are those that do not depend on the film."""
     op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     contact, lowest, positions, flux, offset = known
-    h, d = y[:, at.gap], equations.dilation(y)
+    h, d = y[:, at.gap], equations.cavity_stretch(y)
     stretch = np.ones(len(y)) if d is None else d[:, 0]
     exit = y[:, at.exit.start] if op.has_exit else np.zeros(len(y))
     friction, fluid = np.zeros((3, len(y))), np.zeros(len(y))
@@ -148,7 +148,7 @@ def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) ->
     else:
         central = central_gap(mesh, h)
     ends = [exit if op.has_exit else np.full(len(y), math.nan)]
-    ends.append(np.full(len(y), math.nan) if d is None else exit + stretch * mesh.restart)
+    ends.append(np.full(len(y), math.nan) if d is None else exit + stretch * mesh.reformation)
     positions = exit + stretch * positions
     values = np.stack([stretch * contact, fluid, central, lowest, positions, flux, offset, *friction, *ends])
     return [Observables(*row) for row in values.T.tolist()]
@@ -240,7 +240,7 @@ def gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | No
 
 def _of_fluid_share(equations: Equations, y: Array, row: Array, slopes: Slopes | None) -> None:
     """Write the derivatives of the load on the fluid, over the load, into ``row``; ``slopes`` as for drag."""
-    op, at, d = equations.operators, equations.layout, equations.dilation(y)
+    op, at, d = equations.operators, equations.layout, equations.cavity_stretch(y)
     stretch = np.ones(1) if d is None else d
     if slopes is None:
         row[..., at.pressure] = stretch * op.weights / LOAD
@@ -251,24 +251,24 @@ def _of_fluid_share(equations: Equations, y: Array, row: Array, slopes: Slopes |
     if d is not None:
         fluid = equations.fluid_pressure(y)
         explicit = fluid if equations.film.uses_pressure else 2 * fluid - op.cavity_pressure
-        row[..., at.dilation] = (explicit @ op.weights)[..., None] / LOAD
+        row[..., at.cavity_stretch] = (explicit @ op.weights)[..., None] / LOAD
 
 
 def _of_frame(equations: Equations, y: Array, rows: dict[str, Array]) -> None:
-    """Write the effects of the exit and the dilation of the frame, and the derivatives of the central gap, into ``rows``."""
-    mesh, at, d = equations.operators.mesh, equations.layout, equations.dilation(y)
+    """Write the effects of the exit and stretch of the cavity, and the derivatives of the central gap, into ``rows``."""
+    mesh, at, d = equations.operators.mesh, equations.layout, equations.cavity_stretch(y)
     rows["exit_position"][..., at.exit] = 1.0
     if d is not None:
         contact = rows["contact_load_share"]
         contact *= d
-        contact[..., at.dilation] = (equations.law.pressure(y[..., at.gap]) @ mesh.weights)[..., None] / LOAD
+        contact[..., at.cavity_stretch] = (equations.law.pressure(y[..., at.gap]) @ mesh.weights)[..., None] / LOAD
         rows["reformation_position"][..., at.exit] = 1.0
-        rows["reformation_position"][..., at.dilation] = mesh.restart
+        rows["reformation_position"][..., at.cavity_stretch] = mesh.reformation
     central = rows["central_gap"].reshape(-1, at.size)
     for found, own in zip(central, y.reshape(-1, at.size), strict=True):
-        stretch = 1.0 if d is None else float(own[at.dilation.start])
+        stretch = 1.0 if d is None else float(own[at.cavity_stretch.start])
         place = -float(own[at.exit.start]) / stretch
         middle, slope, nodes, row = gap_beside(mesh, own[at.gap], place)
         found[nodes] = middle * row / own[nodes]
         found[at.exit] = -slope / stretch
-        found[at.dilation] = -slope * place / stretch
+        found[at.cavity_stretch] = -slope * place / stretch

@@ -1,8 +1,8 @@
 r"""The operators of the equations on a mesh: the undeformed gap, the integral of the pressure gradient, deflection and load.
 
 A film that ends is described from its exit: ``x = x_c + d xi``, with xi the coordinate of the mesh.  Without a second end
-the dilation d is one.  A film that begins anew does so at the edge :attr:`Mesh.restart` of the mesh, so that d is the length
-of the cavity in units of that edge.  All operators are those in xi; the deflection of the half-plane changes with d by
+the cavity stretch d is one.  A film re-forms at the edge :attr:`Mesh.reformation` of the mesh, so that d is the length of the
+cavity in units of that edge.  All operators are those in xi; the deflection of the half-plane changes with d by
 
 .. math:: w(x) = d \, (D p)(\xi) - \frac{d \ln d}{\pi} \int p \, d\xi
 
@@ -32,15 +32,15 @@ from stribeck.solids.solid import Solid, deflecting
 LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
 
-DILATION_CELL = 0.05  # Range of ln(dilation) on which the deflection of a solid with lengths of its own is interpolated
+STRETCH_CELL = 0.05  # Range of ln(cavity stretch) on which the deflection of a solid with lengths of its own is interpolated
 
-DILATIONS_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
+STRETCHES_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
 
 MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 
 
 class Dilated(NamedTuple):
-    """Operators in x of a frame dilated by d."""
+    """Operators in x at a cavity stretch d."""
 
     deflection: Array
     deflection_of_gradient: Array | None
@@ -63,7 +63,7 @@ class Operators:
 
     @property
     def has_reformation(self) -> bool:
-        """Whether it begins anew behind the cavity."""
+        """Whether it re-forms behind the cavity."""
         return self.model.cavitation is Cavitation.REFORM
 
     @cached_property
@@ -75,12 +75,12 @@ class Operators:
     @cached_property
     def integral(self) -> RunningIntegral:
         """A: nodal pressure gradients -> pressure."""
-        return RunningIntegral(self.mesh, self.restart)
+        return RunningIntegral(self.mesh, self.reformation)
 
     @property
-    def restart(self) -> float:
+    def reformation(self) -> float:
         """Where the integral from plus infinity ends."""
-        return self.mesh.restart if self.has_reformation else math.inf if self.has_exit else 0.0
+        return self.mesh.reformation if self.has_reformation else math.inf if self.has_exit else 0.0
 
     @cached_property
     def parts(self) -> tuple[Indices, Indices]:
@@ -183,8 +183,8 @@ class Operators:
             return self.integral.weights, self.at_exit
         return self.integral.weights, self.at_exit, self.integral.weights_beyond
 
-    def dilated(self, d: float | None, of_gradient: bool = True) -> Dilated:
-        """Return the operators in x; None stands for a frame without dilation."""
+    def stretched(self, d: float | None, of_gradient: bool = True) -> Dilated:
+        """Return the operators in x; None stands for a frame without cavity stretch."""
         if d is None:
             of = self.deflection_of_gradient if of_gradient else None
             return Dilated(self.deflection, of, self.weights, self.load_of_gradient, self.ends)
@@ -209,36 +209,36 @@ class Operators:
         return d * self.by_kernel(pressure, d) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]
 
     def by_kernel(self, pressure: Array, d: Numbers) -> Array:
-        """Return D p in a frame dilated by d, for rows of pressure and as many dilations; nan where there is no such frame."""
+        """Return D p for each row of pressure and its cavity stretch d; nan where d is not positive."""
         if isinstance(self.model.solid, HalfPlane):
             return np.asarray(pressure @ self.deflection.T)
-        dilations = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
+        stretches = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
         found = np.full((*pressure.shape[:-1], self.mesh.size), np.nan)
-        for row in np.argwhere((dilations > 0) & (dilations < np.inf)):
-            found[*row] = self.kernel(float(dilations[*row])) @ pressure[*row]
+        for row in np.argwhere((stretches > 0) & (stretches < np.inf)):
+            found[*row] = self.kernel(float(stretches[*row])) @ pressure[*row]
         return found
 
     def kernel(self, d: float, derivative: bool = False) -> Array:
-        """Return D in a frame dilated by d, or its derivative by the logarithm of d."""
+        """Return D at a cavity stretch d, or its derivative by the logarithm of d."""
         if isinstance(self.model.solid, HalfPlane):
             return np.zeros((1, self.mesh.size)) if derivative else self.deflection
-        place = np.log(d) / DILATION_CELL
+        place = np.log(d) / STRETCH_CELL
         if not np.isfinite(place):  # of a series beyond its radius, which shows in the gap
             return np.full((self.mesh.size, self.mesh.size), np.nan)
         cell = round(place)
         at = place - cell
         weights = (
-            _OF_CELL @ (np.arange(DILATIONS_PER_CELL) * at ** np.maximum(np.arange(DILATIONS_PER_CELL) - 1, 0) / DILATION_CELL)
+            _OF_CELL @ (np.arange(STRETCHES_PER_CELL) * at ** np.maximum(np.arange(STRETCHES_PER_CELL) - 1, 0) / STRETCH_CELL)
             if derivative
             else None
         )
-        weights = _OF_CELL @ at ** np.arange(DILATIONS_PER_CELL) if weights is None else weights
+        weights = _OF_CELL @ at ** np.arange(STRETCHES_PER_CELL) if weights is None else weights
         return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
 
 
 @dataclass(frozen=True, eq=False)
 class OperatorsOfRows(Operators):
-    """Operators of rows of states, each with a solid of its own, in a frame without dilation."""
+    """Operators of rows of states, each with a solid of its own, in a frame without cavity stretch."""
 
     solids: tuple[Solid, ...] = ()  # Of each row
 
@@ -254,17 +254,17 @@ class OperatorsOfRows(Operators):
 
 @lru_cache(maxsize=MAX_CELLS)
 def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
-    """Return D at the dilations of a cell, each the deflection in x over d but for the logarithm of d.
+    """Return D at the cavity stretches of a cell, each the deflection in x over d but for the logarithm of d.
 
     Kept for the last alone: they fill more memory than all else of a mesh.
     """
     found = []
-    for d in np.exp(DILATION_CELL * (cell + _IN_CELL)).tolist():
-        dilated = replace(mesh, edges=d * mesh.edges, restart=d * mesh.restart)
-        found.append(solid.deflection(dilated) / d + math.log(d) / math.pi * mesh.weights)
+    for d in np.exp(STRETCH_CELL * (cell + _IN_CELL)).tolist():
+        stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)
+        found.append(solid.deflection(stretched) / d + math.log(d) / math.pi * mesh.weights)
     return np.stack(found)
 
 
-_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(DILATIONS_PER_CELL) + 0.5) / DILATIONS_PER_CELL)
-# Coefficients of the polynomial that is one at one of these dilations and zero at the others, a row for each.
+_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(STRETCHES_PER_CELL) + 0.5) / STRETCHES_PER_CELL)
+# Coefficients of the polynomial that is one at one of these cavity stretches and zero at the others, a row for each.
 _OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T

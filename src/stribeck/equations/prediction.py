@@ -64,7 +64,7 @@ class Extrapolation:
         before, last = self.states[-2:]
         if not last.equations.operators.has_exit:
             return False
-        if self.restart == math.inf and max(exits) - min(exits) > MAX_EXIT_SHIFT:
+        if self.reformation == math.inf and max(exits) - min(exits) > MAX_EXIT_SHIFT:
             return True
         x = last.mesh.nodes
         in_frame, in_place = (
@@ -97,17 +97,17 @@ class Extrapolation:
         return middle, minimum_gap(last.mesh, last.gap)[0] - middle
 
     @property
-    def restart(self) -> float:
+    def reformation(self) -> float:
         """That of the last state."""
-        return self.states[-1].restart
+        return self.states[-1].reformation
 
     @property
-    def dilation(self) -> float:
+    def cavity_stretch(self) -> float:
         """Extrapolated in its logarithm."""
-        if self.restart == math.inf:
+        if self.reformation == math.inf:
             return 1.0
-        lengths = [math.log(s.dilation * s.restart) for s in self.states]
-        return math.exp(sum(w * length for w, length in zip(self.weights, lengths, strict=True))) / self.restart
+        lengths = [math.log(s.cavity_stretch * s.reformation) for s in self.states]
+        return math.exp(sum(w * length for w, length in zip(self.weights, lengths, strict=True))) / self.reformation
 
     @property
     def minimum_position(self) -> float:
@@ -116,7 +116,7 @@ class Extrapolation:
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
-        if self._moved is not None or self._in_place or any(s.restart != self.restart for s in self.states):
+        if self._moved is not None or self._in_place or any(s.reformation != self.reformation for s in self.states):
             return np.asarray(self.fields(mesh.nodes)[0])
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
@@ -149,12 +149,12 @@ class Extrapolation:
 
     def _in_frame(self, state: State, x: Array) -> Array:
         """Return coordinates in the frame of a state whose cavity may have another length on its mesh."""
-        return x if state.restart == self.restart else x * (state.restart / self.restart)
+        return x if state.reformation == self.reformation else x * (state.reformation / self.reformation)
 
 
 def _at_place(one: Guess, other: Guess, x: Array) -> Array:
     """Return the coordinates in the frame of another film of the places in the contact that ``x`` are in the frame of one."""
-    return (one.exit + one.dilation * x - other.exit) / other.dilation
+    return (one.exit + one.cavity_stretch * x - other.exit) / other.cavity_stretch
 
 
 def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
@@ -173,9 +173,9 @@ class SeenFrom:
 
     state: State  # The state, of a film with another end or none
     exit: float  # The guessed exit [a], the new origin
-    restart: float = math.inf  # The guessed length of the cavity [a]; infinite if the film does not begin anew
+    reformation: float = math.inf  # The guessed length of the cavity [a]; infinite if the film does not re-form
     cavity_pressure: float = 0.0  # The pressure there [p_Hz]
-    dilation: float = 1.0
+    cavity_stretch: float = 1.0
     flux: float | None = None  # The guessed flux gap [u_Hz]; that of the state if None
 
     @property
@@ -191,7 +191,7 @@ class SeenFrom:
     @property
     def minimum_position(self) -> float:
         """That of the state, from the new origin."""
-        return self.state.exit + self.state.dilation * self.state.minimum_position - self.exit
+        return self.state.exit + self.state.cavity_stretch * self.state.minimum_position - self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -200,7 +200,7 @@ class SeenFrom:
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``; in the cavity that is the guessed one."""
         found = self.state.fields(self._seen(x))
-        cavity = (x > 0) & (x < self.restart)
+        cavity = (x > 0) & (x < self.reformation)
         found[1] = np.where(cavity, self.cavity_pressure, found[1])
         return found
 
@@ -210,4 +210,4 @@ class SeenFrom:
 
     def _seen(self, x: Array) -> Array:
         """Return the coordinates of the state."""
-        return (x + self.exit - self.state.exit) / self.state.dilation
+        return (x + self.exit - self.state.exit) / self.state.cavity_stretch

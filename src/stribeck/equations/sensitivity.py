@@ -68,7 +68,7 @@ def _direct(state: State) -> Array:
 
 def _values(equations: Equations, y: Array, load: float) -> Array:
     """Return the load share of asperities and both viscous frictions of stacked states, shape (rows, 3)."""
-    op, d, gap = equations.operators, equations.dilation(y), y[:, equations.layout.gap]
+    op, d, gap = equations.operators, equations.cavity_stretch(y), y[:, equations.layout.gap]
     contact, fluid = equations.pressures(y)
     share = contact @ op.mesh.weights / LOAD * (1.0 if d is None else d[:, 0])
     friction = viscous_friction(equations, y, load, Nodal(op.integral, gap, fluid, op.weights))

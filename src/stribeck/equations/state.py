@@ -21,7 +21,7 @@ from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Fall, Film, Slopes
+from stribeck.fluids.fluid import Decay, Film, Slopes
 from stribeck.numerics.newton import ROUNDING_STEP, Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.lazy import cached_property
@@ -157,15 +157,15 @@ class State:
         return float(self.y[layout.exit.start]) if self.equations.operators.has_exit else 0.0
 
     @property
-    def dilation(self) -> float:
-        """Dilation of the frame; one if the film does not begin anew."""
+    def cavity_stretch(self) -> float:
+        """Stretch of the cavity; one if the film does not re-form."""
         layout = self.equations.layout
-        return float(self.y[layout.dilation.start]) if self.equations.operators.has_reformation else 1.0
+        return float(self.y[layout.cavity_stretch.start]) if self.equations.operators.has_reformation else 1.0
 
     @property
-    def restart(self) -> float:
-        """Coordinate of the mesh at which the film begins anew; infinite if it does not."""
-        return self.mesh.restart
+    def reformation(self) -> float:
+        """Coordinate of the mesh at which the film re-forms; infinite if it does not."""
+        return self.mesh.reformation
 
     @cached_property
     def minimum_position(self) -> float:
@@ -265,15 +265,15 @@ class State:
         return self.mesh.lengths_at(x)
 
 
-def fall_of(film: Film, speed: float) -> Fall:
+def decay_of(film: Film, speed: float) -> Decay:
     """Return how the pressure of a film falls off at a speed group: as an even power unless the film says otherwise."""
-    told = getattr(film, "fall", None)
-    return Fall() if told is None else told(speed)
+    told = getattr(film, "decay", None)
+    return Decay() if told is None else told(speed)
 
 
 def is_thinning(film: Film) -> bool:
     """Return whether the viscosity falls with the rate: the pressure gradient may then turn sharply where the flow does."""
-    return hasattr(film, "fall")
+    return hasattr(film, "decay")
 
 
 def is_rough(film: Film) -> bool:
@@ -333,17 +333,17 @@ def mesh_for(
     spread: float = 0.0,
     anew: bool = True,
 ) -> Mesh:
-    """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place."""
+    """Return the coarsest mesh that resolves a guess; where a film re-forms its panels halve towards that place."""
     cavitation = groups.model.cavitation
     film = groups.model.film
-    plateau, broken = fall_of(film, float(groups.speed))
+    plateau, fractional = decay_of(film, float(groups.speed))
     turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE_RTOL)
     jump, closed_at = jump_of(film), closed_gap(film)
-    ends, restart = cavitation is not Cavitation.NONE, math.inf
+    ends, reformation = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
-        restart = _cavity_on_mesh(guess)
-    to_guess = guess.restart / restart if restart < math.inf else 1.0
-    centre = -guess.exit / (guess.dilation * to_guess) if ends else 0.0
+        reformation = _cavity_on_mesh(guess)
+    to_guess = guess.reformation / reformation if reformation < math.inf else 1.0
+    centre = -guess.exit / (guess.cavity_stretch * to_guess) if ends else 0.0
     central_gap = np.exp(guess.fields(np.array([centre * to_guess]))[0])
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
@@ -351,9 +351,9 @@ def mesh_for(
     strict = gap_tolerance
     if spread > 0:
         strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
-    lift = 1.0
+    pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
-        lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
+        pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
@@ -368,7 +368,8 @@ def mesh_for(
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat * to_guess if ends else flat)
-        if ends and restart == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:  # seen from one side of infinity alone
+        # At infinity the guess is known from one side alone.
+        if ends and reformation == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:
             found[1] = guess.fields(-np.abs(flat))[1] * np.sign(flat)
         gap = np.exp(found[0])
         if len(found) == 2:
@@ -382,7 +383,7 @@ def mesh_for(
         pressures = (
             width
             / np.repeat(edge_scale, x.shape[1], axis=-1)
-            * np.stack([law.pressure(gap), fluid if stretch[0, 0] != 1.0 else lift * fluid])
+            * np.stack([law.pressure(gap), fluid if stretch[0, 0] != 1.0 else pressure_scale * fluid])
         )
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
@@ -396,9 +397,10 @@ def mesh_for(
         shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
-        if broken and stretch[0, 0] != 1.0:
+        if fractional and stretch[0, 0] != 1.0:
             fields[0] *= FRACTIONAL_DECAY_FACTOR
-        if broken and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
+        # The drag far away counts as that in the contact.
+        if fractional and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:
             fields.append(asked(np.minimum(half_widths / (MAX_FAR_PANEL * np.abs(centres)), half_widths / (2 * scale))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
@@ -407,9 +409,10 @@ def mesh_for(
             fields.append(asked(wrong / (tolerance / TAIL_RTOL_FRACTION) ** 2))
         # Beside the place where the last path closes no load feels the gradient, but drag does.
         if sheared and stretch[0, 0] == 1.0:
-            full = (flat < 0) | (flat > restart) if ends else np.ones_like(flat, dtype=bool)
-            pull = gap * film.at(groups.speed).gradient(gap, fluid if film.uses_pressure else None, np.array(guess.flux_gap))
-            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, pull, 0.0) / sheared).reshape(nodal)[None])
+            full = (flat < 0) | (flat > reformation) if ends else np.ones_like(flat, dtype=bool)
+            pressure = fluid if film.uses_pressure else None
+            stress = gap * film.at(groups.speed).gradient(gap, pressure, np.array(guess.flux_gap))
+            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, stress, 0.0) / sheared).reshape(nodal)[None])
         if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
             h = gap.reshape(x.shape)
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
@@ -430,22 +433,22 @@ def mesh_for(
         dragged = reach * (LAYER_DRAG_FRACTION * min(1.0, float(central_gap.max())) / allowed) ** 0.25
         reach = max(reach, min(reach + LAYER_DOMAIN_RADIUS * thickness, carried), min(LAYER_DECAY * thickness, dragged))
     if tolerance < COARSE_RTOL:
-        reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if broken else 0.0)
+        reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if fractional else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, MEMORY_DECAY * max(memories))
     places: list[float] = []
     start = guess.mesh if anew and isinstance(guess, State) else None
     if ends:
-        places = [0.0] if restart == math.inf else [0.0, restart]
+        places = [0.0] if reformation == math.inf else [0.0, reformation]
         reach = 2 * max(reach, places[-1])
     if ends and start is not None:
         lengths = {x * to_guess: math.inf if x else EXIT_PANEL_MAX * scale * to_guess for x in places}
         start = replace(start, edges=ungraded(start.edges, lengths) / to_guess)
     kinks = NO_PLACES
-    if (broken or closed_at is not None) and tolerance < COARSE_RTOL:
+    if (fractional or closed_at is not None) and tolerance < COARSE_RTOL:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
-        x = x[(x < 0) | (x > restart)] if ends else x
+        x = x[(x < 0) | (x > reformation)] if ends else x
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
     # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
     known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
@@ -454,14 +457,14 @@ def mesh_for(
     if not ends:
         return mesh
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL_RTOL / tolerance) / math.log(END_RESOLUTION_GAIN)))
-    return replace(graded(mesh, places, levels), restart=restart)
+    return replace(graded(mesh, places, levels), reformation=reformation)
 
 
 def _cavity_on_mesh(guess: Guess) -> float:
     """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
-    length = guess.dilation * guess.restart
-    near = 1 / MAX_FRAME_RATIO < guess.dilation < MAX_FRAME_RATIO and math.log2(guess.restart).is_integer()
-    return guess.restart if near else 2.0 ** round(math.log2(length))
+    length = guess.cavity_stretch * guess.reformation
+    near = 1 / MAX_FRAME_RATIO < guess.cavity_stretch < MAX_FRAME_RATIO and math.log2(guess.reformation).is_integer()
+    return guess.reformation if near else 2.0 ** round(math.log2(length))
 
 
 def unknowns_of(equations: Equations, guess: Guess) -> Array:
@@ -469,12 +472,12 @@ def unknowns_of(equations: Equations, guess: Guess) -> Array:
     if isinstance(guess, State) and guess.equations.operators is equations.operators:
         return guess.y.copy()
     mesh, at = equations.operators.mesh, equations.layout
-    same = guess.restart == mesh.restart
-    nodes = mesh.nodes if same else mesh.nodes * (guess.restart / mesh.restart)
+    same = guess.reformation == mesh.reformation
+    nodes = mesh.nodes if same else mesh.nodes * (guess.reformation / mesh.reformation)
     y = np.empty(at.size)
     y[at.gap] = np.exp(guess.log_gap(mesh) if same else guess.fields(nodes)[0])
     y[at.offset], y[at.flux_gap], y[at.exit] = guess.offset, guess.flux_gap, guess.exit
-    y[at.dilation] = guess.dilation if same else guess.dilation * guess.restart / mesh.restart
+    y[at.cavity_stretch] = guess.cavity_stretch if same else guess.cavity_stretch * guess.reformation / mesh.reformation
     if at.pressure.start < at.pressure.stop:
         fields = guess.fields(nodes)
         y[at.pressure] = fields[1] if len(fields) == 2 else 0.0

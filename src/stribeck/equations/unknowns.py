@@ -2,8 +2,8 @@
 
 Fields have a value at every node, numbers have one.  The residual has the same layout: the row of the gap is that of the
 elastic shape, the row of the pressure that of Reynolds' equation, the row of the offset the load balance, the row of the flux
-gap the pressure that the film must end with, the row of the exit the gradient there, and the row of the dilation the pressure
-with which the film begins anew.
+gap the pressure that the film must end with, the row of the exit the gradient there, and the row of the cavity stretch the
+pressure with which the film re-forms.
 """
 
 from __future__ import annotations
@@ -23,4 +23,4 @@ class Layout(NamedTuple):
     flux_gap: slice
     pressure: slice  # Fields: the gap, and the fluid pressure if it is an unknown of its own
     exit: slice
-    dilation: slice
+    cavity_stretch: slice

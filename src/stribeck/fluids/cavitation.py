@@ -17,4 +17,4 @@ class Cavitation(StrEnum):
     """The film ruptures at ambient pressure, at the exit, where pressure and pressure gradient are zero."""
 
     REFORM = "reform"
-    """The film ruptures at the pressure of the cavity and forms anew where it must."""
+    """The film ruptures at the pressure of the cavity and re-forms where it must."""

@@ -6,7 +6,7 @@ Steady flow keeps the mass flux m, the flux gap h*, the same at every x.  The la
 
 Gaps and m are in u_Hz, pressures in p_Hz, tractions in :math:`\eta_0 U/u_\mathrm{Hz}` with U the sum of the surface speeds.
 A new fluid is a new law of viscosity, density or rate (:mod:`stribeck.fluids.laws`), or one frozen class that has the members
-of :class:`Film`, and ``fall(speed)`` if its pressure does not fall off as an even power.
+of :class:`Film`, and ``decay(speed)`` if its pressure does not fall off as an even power.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ class Slopes(NamedTuple):
     by_speed: Array | None = None
 
 
-class Fall(NamedTuple):
+class Decay(NamedTuple):
     """How the pressure of a film falls off far away, for meshes."""
 
     plateau: float = 0.0  # Distance beyond which the viscosity is constant [a]
-    broken: bool = False  # Whether it falls as a broken power of the distance
+    fractional: bool = False  # Whether it falls with a non-integer power of the distance
 
 
 class Film(Protocol):

@@ -21,7 +21,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Fall, Key, Slopes, key_of
+from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Decay, Key, Slopes, key_of
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Newtonian
@@ -104,10 +104,10 @@ class ShearThinning:
             self, law=self.law.milder(part), viscosity=self.viscosity.milder(part), density=self.density.milder(part)
         )
 
-    def fall(self, speed: float) -> Fall:
+    def decay(self, speed: float) -> Decay:
         """Return how the pressure falls off far away: there the rate is about 1/h, and h about x**2/2."""
         rate = self.law.plateau
-        return Fall(math.sqrt(2 * self.law.time * speed / rate) if rate > 0 else 0.0, rate < 1)
+        return Decay(math.sqrt(2 * self.law.time * speed / rate) if rate > 0 else 0.0, rate < 1)
 
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G."""

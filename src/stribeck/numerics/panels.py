@@ -123,7 +123,7 @@ class Mesh:
     edges: Array  # Edges of the panels in `x`, ascending, from `-X` to `X` [half-width of the Hertz contact]
     order: int  # Nodes on each panel, even (so that no node lies at infinity)
     scale: float = 1.0  # Length on which the fields vary in the middle; gaps are interpolated over `scale**2 + x**2`
-    restart: float = math.inf  # Edge beyond zero where a field that ends at zero begins anew; infinite where it does not
+    reformation: float = math.inf  # Edge beyond zero where a field that ends at zero re-forms; infinite where it does not
 
     @property
     def panels(self) -> int:
@@ -207,7 +207,7 @@ class Mesh:
 
     def refined(self, order: int) -> Mesh:
         """Return the same panels with ``order`` nodes each."""
-        return Mesh(self.edges, order, self.scale, self.restart)
+        return Mesh(self.edges, order, self.scale, self.reformation)
 
     def to_order(self, values: Array, order: int) -> Array:
         """Return nodal values on :meth:`refined` from nodal ``values`` of this mesh."""

@@ -3,8 +3,8 @@ r"""The integral of a nodal function from infinity to each node, and what it mak
 .. math:: F' = v, \qquad F(\pm\infty) = 0
 
 Left of ``x = 0``, which is always an edge, it integrates from minus infinity, right of it from plus infinity; the two meet if
-the whole integral vanishes.  With a gap between 0 and an edge ``restart`` it integrates from plus infinity down to that edge
-and is zero within the gap; with a gap up to infinity it is zero beyond 0.
+the whole integral vanishes.  With a gap between 0 and an edge ``reformation`` it integrates from plus infinity down to that
+edge and is zero within the gap; with a gap up to infinity it is zero beyond 0.
 
 The matrix A of this integral is never formed: inside a panel it is a block of the order of the panel, from panel to panel a
 running sum.  The same holds for the Volterra equation ``q = A (v + f q)`` with a nodal factor f, whose solution is
@@ -27,12 +27,12 @@ class RunningIntegral:
     """The integral from infinity on a mesh."""
 
     mesh: Mesh  # The panels
-    restart: float = 0.0
+    reformation: float = 0.0
 
     @property
     def one_sided(self) -> bool:
         """Whether the integral ends at zero, from the left."""
-        return self.restart == np.inf
+        return self.reformation == np.inf
 
     @cached_property
     def middle(self) -> int:
@@ -42,7 +42,7 @@ class RunningIntegral:
     @cached_property
     def second(self) -> int:
         """First panel right of the gap; the number of panels in ``x`` where there is none."""
-        return int(np.searchsorted(self.mesh.edges, self.restart)) if self.restart < np.inf else self.mesh.panels - 1
+        return int(np.searchsorted(self.mesh.edges, self.reformation)) if self.reformation < np.inf else self.mesh.panels - 1
 
     @cached_property
     def integrated(self) -> Flags:
@@ -94,7 +94,7 @@ class RunningIntegral:
     @cached_property
     def weights(self) -> Array:
         """Weights of the whole integral: over the line, or up to zero where there is a gap; shape (size,)."""
-        if self.restart == 0.0:
+        if self.reformation == 0.0:
             return self.mesh.weights
         found = np.zeros(self.mesh.size)
         upstream = slice(0, self.middle * self.mesh.order)
@@ -104,7 +104,7 @@ class RunningIntegral:
 
     @cached_property
     def weights_beyond(self) -> Array:
-        """Weights of the integral from the edge ``restart`` to infinity, shape (size,)."""
+        """Weights of the integral from the edge ``reformation`` to infinity, shape (size,)."""
         found = np.zeros(self.mesh.size)
         beyond = slice(self.second * self.mesh.order, -self.mesh.order)
         found[beyond] = self.mesh.weights[beyond]

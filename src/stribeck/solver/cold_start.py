@@ -61,8 +61,8 @@ class RigidGuess:
     flux_gap: float  # Flux gap of the rigid parabola, 4/3 of its height [u_Hz]
     minimum_position: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
     exit: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
-    dilation: float = 1.0  # Those of a full film: a rigid film is the guess of no other [a]
-    restart: float = math.inf  # Those of a full film: a rigid film is the guess of no other [a]
+    cavity_stretch: float = 1.0  # Those of a full film: a rigid film is the guess of no other [a]
+    reformation: float = math.inf  # Those of a full film: a rigid film is the guess of no other [a]
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""

@@ -10,7 +10,7 @@ the half-plane if need be, in one step if Newton's iteration converges, else dow
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid} .
 
 In a fluid that thins the Newtonian part falls exponentially, as films that thin much do with it; not where roughness hinders
-the flow, whose films would lose it at once.  Films that begin anew behind a cavity come after these, see
+the flow, whose films would lose it at once.  Films that re-form behind a cavity come after these, see
 :mod:`stribeck.solver.cavities.cavity_length`.
 """
 
@@ -27,7 +27,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_of_exit
+from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_at_fixed_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
@@ -254,7 +254,7 @@ def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, t
         operators = _operators(groups, guess, order, tolerance)
         if operators is None:
             break
-        held, free = solve_of_exit(groups, operators, guess, NEWTON_TOLERANCE, HELD_STEPS)
+        held, free = solve_at_fixed_exit(groups, operators, guess, NEWTON_TOLERANCE, HELD_STEPS)
         spent += held.root.steps
         if held.root.outcome.ok:
             last, missed, step = held, 0, float(free[held.equations.layout.exit.start])

@@ -14,7 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_RESOLUTION_GAIN, State, fall_of, is_rough, mesh_for, solve_state
+from stribeck.equations.state import END_RESOLUTION_GAIN, State, decay_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -102,7 +102,7 @@ def converge(
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
         # share the cause of their error.
         film = state.equations.film
-        shared = state.equations.operators.has_exit or fall_of(film, 1.0).broken
+        shared = state.equations.operators.has_exit or decay_of(film, 1.0).fractional
         shared |= is_rough(film)
         if last is not None and mesh.size >= FINER_SIZE_RATIO * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))

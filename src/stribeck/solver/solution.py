@@ -149,9 +149,9 @@ class Solution(BaseSolution):
     @property
     def x(self) -> Array:
         """Positions of the nodes, ascending [a]; the outermost lie thousands of half-widths away."""
-        exit, dilation = self.origin
+        exit, cavity_stretch = self.origin
         nodes = self.mesh.nodes[self._ordered]
-        return np.asarray(nodes) if self.origin == (0.0, 1.0) else exit + dilation * nodes
+        return np.asarray(nodes) if self.origin == (0.0, 1.0) else exit + cavity_stretch * nodes
 
     @property
     def gap(self) -> Array:
@@ -213,19 +213,19 @@ class Solution(BaseSolution):
         points = np.atleast_1d(real_array("x", x))
         if points.ndim != 1 or not np.isfinite(points).all():
             raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
-        exit, dilation = self.origin
-        on_mesh = points if self.origin == (0.0, 1.0) else (points - exit) / dilation
+        exit, cavity_stretch = self.origin
+        on_mesh = points if self.origin == (0.0, 1.0) else (points - exit) / cavity_stretch
         contact, fluid = self.mesh.interpolate(np.stack(self._pressures), on_mesh)
         if not math.isnan(self.exit_position):
-            cavity = (on_mesh > 0) & (on_mesh < self.mesh.restart)
+            cavity = (on_mesh > 0) & (on_mesh < self.mesh.reformation)
             fluid = np.where(cavity, self.groups.model.cavity_pressure, fluid)
         gap = gap_at(self.mesh, self.nodal_gap, on_mesh, self._far_gap)
         return Profile(points, gap + self.gap_shift, contact, fluid)
 
     def _far_gap(self, xi: Array) -> Array:
         """Return the far part of the gap at a mesh coordinate; the rest is smooth in the inverse coordinate."""
-        exit, dilation = self.origin
-        return np.asarray(self.groups.model.solid.far_gap(dilation * xi) + exit * dilation * xi)
+        exit, cavity_stretch = self.origin
+        return np.asarray(self.groups.model.solid.far_gap(cavity_stretch * xi) + exit * cavity_stretch * xi)
 
     @property
     def hysteresis_friction(self) -> float:
@@ -234,17 +234,17 @@ class Solution(BaseSolution):
         It is what the drags of both walls lack of the moment of the pressure (theory.md, section 12), which wide panels hold
         better than the slope of the surface.  With friction factors the drags are others, and that slope is taken.
         """
-        solid, (exit, dilation) = self.groups.model.solid, self.origin
+        solid, (exit, cavity_stretch) = self.groups.model.solid, self.origin
         if not getattr(solid, "uses_speed", False):
             return 0.0
         if self.groups.model.film.parameters.get("friction_factors") != "true":
-            x = exit + dilation * self.mesh.nodes
-            moment = dilation * (x * (self._pressures[0] + self._pressures[1])) @ self.mesh.weights
+            x = exit + cavity_stretch * self.mesh.nodes
+            moment = cavity_stretch * (x * (self._pressures[0] + self._pressures[1])) @ self.mesh.weights
             drags = self.observables.viscous_balanced - self.observables.viscous_upper
             return float(-drags / (2 * math.sqrt(float(self.groups.load))) - 2 / math.pi * moment)
         from stribeck.solids.viscoelastic import hysteresis_friction
 
-        mesh = replace(self.mesh, edges=dilation * self.mesh.edges, scale=dilation * self.mesh.scale)
+        mesh = replace(self.mesh, edges=cavity_stretch * self.mesh.edges, scale=cavity_stretch * self.mesh.scale)
         return hysteresis_friction(mesh, solid, self._pressures[0] + self._pressures[1])
 
     def to_si(self, x: Array | None = None) -> Profile:

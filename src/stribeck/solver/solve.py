@@ -387,7 +387,7 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         nodal_gap=state.gap,
         gap_shift=with_positive_gap(point.groups)[1],
         nodal_pressures=partial(state.equations.pressures, state.y),
-        origin=(state.exit, state.dilation),
+        origin=(state.exit, state.cavity_stretch),
         newton_steps=state.root.steps,
     )
 

@@ -5,8 +5,8 @@ With :math:`R` the weak residual of Reynolds' equation at a node, d the diagonal
 
 .. math:: \min(p_f - p_\mathrm{cav}, R/d) = 0
 
-Nodes with :math:`R/d > p_f - p_\mathrm{cav}` are torn: there :math:`p_f = p_\mathrm{cav}` takes the place of Reynolds'
-equation.  Asperities go on to carry load in the cavity.  Where the film may form anew the gas at a node goes on downstream,
+Nodes with :math:`R/d > p_f - p_\mathrm{cav}` are cavitated: there :math:`p_f = p_\mathrm{cav}` takes the place of Reynolds'
+equation.  Asperities go on to carry load in the cavity.  Where the film may re-form the gas at a node goes on downstream,
 and the gas g that makes up for the residual, :math:`R = U g`, takes the place of R.
 
 Source: [Hintermueller, Ito and Kunisch 2002] SIAM J. Optim. 13, 865, for the active sets; numerics.md, the ball.
@@ -63,10 +63,10 @@ REFACTOR_AT = 2.0  # GMRES steps per digit above which the capacitance matrix of
 
 
 def advect_front(gas: Array, now: Flags, before: Flags) -> Flags:
-    """Return the nodes that are torn after a step, the film being spread over as many as fill with what it has to give.
+    """Return the nodes that are cavitated after a step, the film being spread over as many as fill with what it has to give.
 
     Behind a line of rupture that lies too far upstream one node a step would heal, with the flow that ends there: that is
-    passed on to torn neighbours, whose gas it fills.
+    passed on to cavitated neighbours, whose gas it fills.
     """
     stays, left, given = before & now, gas.copy(), np.where(before & ~now, gas, 0.0)
     for _ in range(MAX_FRONT_NODES):
@@ -90,25 +90,25 @@ def iterate_cavitated(
 ) -> Iterated:
     """Return the state of the discrete complementarity problem nearest to ``start``."""
     law, least = equations.law, equations.least
-    torn = start.fluid <= least
-    y = Unknowns(start.gap, np.where(torn, least, start.fluid), start.offset)
+    cavitated = start.fluid <= least
+    y = Unknowns(start.gap, np.where(cavitated, least, start.fluid), start.offset)
     krylov = factorisations = steps = 0
     left, size, same, near = math.inf, math.inf, False, False
     before = None if kept is None else kept.last
 
-    def now_torn(linear: CavitatedLinear, flow: Array) -> Flags:
+    def now_cavitated(linear: CavitatedLinear, flow: Array) -> Flags:
         gas = linear.passing.gas(flow) * linear.passing.weights
         found = np.asarray(gas / linear.stiffness > y.fluid - least)
-        return advect_front(gas, found, linear.torn) if size <= FRONT_STEP and equations.spread is None else found
+        return advect_front(gas, found, linear.cavitated) if size <= FRONT_STEP and equations.spread is None else found
 
     def ended(outcome: Outcome) -> Iterated:
-        return Iterated(complementary(y, torn, least), outcome, steps, krylov, factorisations, left, kept)
+        return Iterated(complementary(y, cavitated, least), outcome, steps, krylov, factorisations, left, kept)
 
     with np.errstate(all="ignore"):
-        residual, linear = equations.residual(y), CavitatedLinear(equations, y, torn)
-        if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
-            torn = now_torn(linear, residual[1])
-            linear.set_active(torn)
+        residual, linear = equations.residual(y), CavitatedLinear(equations, y, cavitated)
+        if kept is not None:  # a neighbour's start is good enough to ask which nodes are cavitated
+            cavitated = now_cavitated(linear, residual[1])
+            linear.set_active(cavitated)
         while steps < max_steps:
             right = linear.right(residual)
             if not np.isfinite(right).all():
@@ -133,7 +133,7 @@ def iterate_cavitated(
             size = step_size(law, y.gap, step.gap)
             y = y.moved(step, part)
             if part == 1.0:  # what GMRES leaves of a pressure in the cavity would break or heal nodes that hardly flow
-                y = replace(y, fluid=np.where(torn, least, y.fluid))
+                y = replace(y, fluid=np.where(cavitated, least, y.fluid))
             steps += 1
             if solved.steps > -REBUILD_PRECONDITIONER_AT * math.log10(wanted):
                 kept = None
@@ -141,9 +141,9 @@ def iterate_cavitated(
                 kept.last = None
             size = size if part == 1.0 else max(size, 1.0)
             residual = equations.residual(y)
-            now = now_torn(linear, residual[1])
-            same = bool((now == torn).all())
-            torn = now
+            now = now_cavitated(linear, residual[1])
+            same = bool((now == cavitated).all())
+            cavitated = now
             # Where a few nodes still break or heal the next step is smaller than this one.
             rest = solved.left if same else CONTRACTION_ACTIVE_SET
             left = 3.0 * size * size + rest * size
@@ -152,19 +152,19 @@ def iterate_cavitated(
             near = part == 1.0 and left <= tolerance and missed <= PRESSURE_RTOL_FACTOR * min(tolerance, STRICT_RTOL)
             if near:
                 least_load = LOAD_RTOL_FACTOR * tolerance * max(1.0, tolerance / STRICT_RTOL) * LOAD
-                y, residual, more = balanced(linear, precondition, complementary(y, torn, least), least_load)
+                y, residual, more = balanced(linear, precondition, complementary(y, cavitated, least), least_load)
                 krylov += more
                 if abs(residual[2]) <= least_load:
                     return ended(Outcome.CONVERGED)
                 if kept is not None:  # GMRES sees no load with what it was given
                     kept.last = None
-            linear = CavitatedLinear(equations, y, torn)
+            linear = CavitatedLinear(equations, y, cavitated)
         return ended(Outcome.CONVERGED if near else Outcome.STEP_LIMIT)
 
 
-def complementary(y: Unknowns, torn: Flags, least: float) -> Unknowns:
-    """Return unknowns whose film has the least pressure where it is torn, and only there."""
-    return Unknowns(y.gap, np.where(torn, least, np.maximum(y.fluid, just_above(least))), y.offset)
+def complementary(y: Unknowns, cavitated: Flags, least: float) -> Unknowns:
+    """Return unknowns whose film has the least pressure where it is cavitated, and only there."""
+    return Unknowns(y.gap, np.where(cavitated, least, np.maximum(y.fluid, just_above(least))), y.offset)
 
 
 def balanced(
@@ -172,9 +172,9 @@ def balanced(
 ) -> tuple[Unknowns, tuple[Array, Array, float], int]:
     """Return complementary unknowns near a solution that carry the load but for ``unbalanced``, their residual, and the steps.
 
-    Corrections are those of the last Jacobian, as torn nodes stay the same; a few at most.
+    Corrections are those of the last Jacobian, as cavitated nodes stay the same; a few at most.
     """
-    equations, torn, steps = linear.equations, y.fluid <= linear.least, 0
+    equations, cavitated, steps = linear.equations, y.fluid <= linear.least, 0
     residual = equations.residual(y)
     for _ in range(MAX_CORRECTIONS):
         if not abs(residual[2]) > unbalanced:
@@ -182,6 +182,6 @@ def balanced(
         wanted = max(GMRES_RTOL, min(MAX_CORRECTION_RESIDUAL, 0.3 * unbalanced / abs(residual[2])))
         solved = gmres(linear.product, precondition, linear.sources(residual, 0.0), wanted, MAX_KRYLOV_STEPS)
         steps += solved.steps
-        y = complementary(y.moved(linear.changes(solved.x, residual[0]), 1.0), torn, linear.least)
+        y = complementary(y.moved(linear.changes(solved.x, residual[0]), 1.0), cavitated, linear.least)
         residual = equations.residual(y)
     return y, residual, steps

@@ -1,7 +1,7 @@
-r"""The preconditioner of a film of a ball that is torn at some nodes.
+r"""The preconditioner of a film of a ball that is cavitated at some nodes.
 
-That of the full film is banded; to it comes a capacitance matrix of the torn nodes: with :math:`Z = P^{-1} E`, E the residuals
-of unit gas at each, and C the rows :math:`p_f` of these nodes, :math:`x = P^{-1} f + Z \mu` with
+That of the full film is banded; a capacitance matrix of the cavitated nodes is added: with :math:`Z = P^{-1} E`, E the
+residuals of unit gas at each, and C the rows :math:`p_f` of these nodes, :math:`x = P^{-1} f + Z \mu` with
 :math:`C Z \mu = f_E - C P^{-1} f`.
 """
 
@@ -53,8 +53,8 @@ class Capacitance:
     last: _Factors | None = None
 
     def include(self, linear: CavitatedLinear) -> None:
-        """Add the torn nodes that are new."""
-        new = np.setdiff1d(np.flatnonzero(linear.torn), self.nodes)
+        """Add the cavitated nodes that are new."""
+        new = np.setdiff1d(np.flatnonzero(linear.cavitated), self.nodes)
         if new.size == 0:
             return
         before, self.nodes = self.nodes.size, np.append(self.nodes, new)
@@ -87,7 +87,7 @@ class Capacitance:
         return found, total, gap
 
     def block(self, linear: CavitatedLinear, rows: Indices, columns: Indices) -> Array:
-        """Return C Z, the film pressures of torn nodes under unit residuals; both are places among the kept nodes."""
+        """Return C Z, the film pressures of cavitated nodes under unit residuals; both are places among the kept nodes."""
         at = self.nodes[rows]
         found, slope = self.totals[np.ix_(at, columns)], linear.contact_slope.ravel()[at]
         touching = np.flatnonzero(slope)
@@ -95,15 +95,16 @@ class Capacitance:
         return np.asarray(found)
 
     def of(self, linear: CavitatedLinear) -> Preconditioner:
-        """Return the preconditioner of a Jacobian, by the factors of the last one where few other nodes are torn."""
+        """Return the preconditioner of a Jacobian, by the factors of the last one where few other nodes are cavitated."""
         self.include(linear)
-        torn = linear.torn.ravel()[self.nodes]
+        cavitated = linear.cavitated.ravel()[self.nodes]
         if self.last is not None:
-            before = np.zeros(torn.size, dtype=bool)
+            before = np.zeros(cavitated.size, dtype=bool)
             before[self.last.columns] = True
-            if (before != torn).sum() <= REFACTOR_FRACTION * self.last.columns.size:
-                return Preconditioner(self, linear, self.last, np.flatnonzero(torn & ~before), np.flatnonzero(before & ~torn))
-        self.last = _Factors(np.flatnonzero(torn), None)
+            if (before != cavitated).sum() <= REFACTOR_FRACTION * self.last.columns.size:
+                joined, left = np.flatnonzero(cavitated & ~before), np.flatnonzero(before & ~cavitated)
+                return Preconditioner(self, linear, self.last, joined, left)
+        self.last = _Factors(np.flatnonzero(cavitated), None)
         if self.last.columns.size:
             square = self.block(linear, self.last.columns, self.last.columns)
             self.last = _Factors(self.last.columns, lu_factor(square, overwrite_a=True, check_finite=False))
@@ -148,11 +149,10 @@ class _Factors:
 
 
 class Preconditioner:
-    """An approximate inverse of a Jacobian with torn nodes.
+    """An approximate inverse of a Jacobian with cavitated nodes."""
 
-    Nodes that are torn, or torn no more, since the factors were made border these: the first have residuals beside those of
-    the factors, for the second these vanish.
-    """
+    # Nodes that joined or left the active set since the factors were made border the factors: a node that joined adds its
+    # residual, the residual of one that left vanishes.
 
     def __init__(self, kept: Capacitance, linear: CavitatedLinear, base: _Factors, added: Indices, removed: Indices) -> None:
         self.kept, self.linear, self.base = kept, linear, base
@@ -174,7 +174,7 @@ class Preconditioner:
     def __call__(self, right: Array) -> Array:
         """Return about what the inverse of the Jacobian makes of a right-hand side."""
         linear, mesh = self.linear, self.kept.mesh
-        rows = np.where(linear.torn, 0.0, right[:-1].reshape(linear.torn.shape) * linear.stiffness)
+        rows = np.where(linear.cavitated, 0.0, right[:-1].reshape(linear.cavitated.shape) * linear.stiffness)
         x = self.kept.banded(np.append((mesh.cosines.T @ rows).ravel(), right[-1]))
         if not self.at.size:
             return np.asarray(x)

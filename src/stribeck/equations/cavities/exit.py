@@ -1,6 +1,6 @@
 r"""The film of a ball that ends at ambient pressure.
 
-The film ruptures along one line and does not form anew, so that :math:`\min(p_f, R/d) = 0` conserves mass.
+The film ruptures along one line and does not re-form, so that :math:`\min(p_f, R/d) = 0` conserves mass.
 
 Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures along :math:`x = |y|/3`; load and deflection by
 the pressure beyond the rim follow from it.
@@ -37,7 +37,7 @@ class CavitatedEquations(CavitatedSystem):
 
     @cached_property
     def beyond(self) -> None:
-        """Nothing: a film that is torn and thins beyond the rim is taken for one that does not thin."""
+        """Nothing: a film that is cavitated and thins beyond the rim is taken for one that does not thin."""
         return
 
     def doubt_beyond(self, y: Unknowns) -> float:

@@ -19,20 +19,20 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.equations.state import State, unknowns_of
 from stribeck.numerics.newton import Inverse, StepControl, root_find
 
-__all__ = ["distance_to_flux_gap", "solve_of_exit"]
+__all__ = ["distance_to_flux_gap", "solve_at_fixed_exit"]
 
 
 @dataclass(frozen=True, eq=False)
-class OfExit(Equations):
+class FixedExitEquations(Equations):
     """The problem of a film whose exit stays: the gradient of the pressure there is left as it is."""
 
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian without the row and the column of the exit."""
-        return _Held(super().inverse(y), self.layout.exit.start, y.size)
+        return _FixedExitInverse(super().inverse(y), self.layout.exit.start, y.size)
 
 
 @dataclass(frozen=True, eq=False)
-class _Held:
+class _FixedExitInverse:
     """An inverse that leaves one unknown as it is, and the residual of its row."""
 
     free: Inverse
@@ -52,9 +52,11 @@ class _Held:
         return np.asarray(step - step[..., self.held, None] / by_row[self.held] * by_row)
 
 
-def solve_of_exit(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int) -> tuple[State, Array]:
+def solve_at_fixed_exit(
+    groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int
+) -> tuple[State, Array]:
     """Return the state whose film ends at the exit of the guess, and Newton's step from there with a free exit."""
-    equations = OfExit(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
+    equations = FixedExitEquations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     root = root_find(equations, unknowns_of(equations, guess), StepControl(tolerance, max_steps))
     free = Equations(operators, equations.speed, equations.law, equations.flux_scale)
     step = np.zeros_like(root.x)

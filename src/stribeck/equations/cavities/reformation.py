@@ -1,4 +1,4 @@
-r"""The film of a ball that ruptures at the pressure of a cavity and forms anew behind it.
+r"""The film of a ball that ruptures at the pressure of a cavity and re-forms behind it.
 
 In the cavity :math:`p_f = p_\mathrm{cav}` and a part :math:`\phi` of the width is gas, elsewhere :math:`\phi = 0`.  Mass is
 
@@ -6,7 +6,7 @@ In the cavity :math:`p_f = p_\mathrm{cav}` and a part :math:`\phi` of the width 
     \phi \, (p_f - p_\mathrm{cav}) = 0
 
 with the weak residual R of Reynolds' equation at a node, the amount C that a full gap carries, and the outflow U from the
-cells around nodes: upstream differences of first order, with which the film forms anew where it must.  Far from the contact
+cells around nodes: upstream differences of first order, with which the film re-forms where it must.  Far from the contact
 the film is full.
 
 Source: [Jakobsson and Floberg 1957], [Olsson 1965] for the conservation of mass; [Elrod 1981] J. Lubr. Technol. 103, 350, for
@@ -35,10 +35,10 @@ VOID_ERROR_FACTOR = 0.15  # Stated error of the gas over the outflow from its ce
 AREA_ERROR_FACTOR = 0.5  # Stated error of the area of a cavity over that of the cells along its edge
 
 
-def edge_of(torn: Flags) -> Flags:
-    """Return the torn nodes beside one with a film."""
-    film = ~np.pad(torn, 1, mode="edge")
-    return np.asarray(torn & (film[:-2, 1:-1] | film[2:, 1:-1] | film[1:-1, :-2] | film[1:-1, 2:]))
+def edge_of(cavitated: Flags) -> Flags:
+    """Return the cavitated nodes beside one with a film."""
+    film = ~np.pad(cavitated, 1, mode="edge")
+    return np.asarray(cavitated & (film[:-2, 1:-1] | film[2:, 1:-1] | film[1:-1, :-2] | film[1:-1, 2:]))
 
 
 def outflow(mesh: PolarMesh) -> csc_matrix:
@@ -66,7 +66,7 @@ def outflow(mesh: PolarMesh) -> csc_matrix:
 
 @dataclass(frozen=True, eq=False)
 class ReformingEquations(CavitatedSystem):
-    """The discretised problem of a film that forms anew behind a cavity at the pressure ``least``."""
+    """The discretised problem of a film that re-forms behind a cavity at the pressure ``least``."""
 
     finest: ClassVar[float] = 2e-3
     order: ClassVar[float] = 1.0
@@ -79,11 +79,11 @@ class ReformingEquations(CavitatedSystem):
 
     def gas(self, y: Unknowns) -> Array:
         """Return the part of the width that is gas, at the nodes: the mean of inflow and outflow of their cells."""
-        torn = y.fluid <= self.least
-        passing, flow = self.passing(torn), self.flow(y.gap, y.fluid, y.offset)
+        cavitated = y.fluid <= self.least
+        passing, flow = self.passing(cavitated), self.flow(y.gap, y.fluid, y.offset)
         found = passing.gas(flow) - 0.5 * flow / passing.weights
         full = self.speed * self.film.carried(y.gap, y.fluid)
-        return np.where(torn, np.clip(found / full, 0.0, 1.0), 0.0)
+        return np.where(cavitated, np.clip(found / full, 0.0, 1.0), 0.0)
 
     def shear_error(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h: that by the gas, and that by the edge of the cavity.
@@ -95,8 +95,8 @@ class ReformingEquations(CavitatedSystem):
 
     def gas_error(self, y: Unknowns) -> float:
         """Return an estimate of that by the gas: a part of the outflow, as cells do not resolve it."""
-        torn, mesh = y.fluid <= self.least, self.operators.mesh
-        released = np.where(torn, self.flow(y.gap, y.fluid, y.offset) / self.passing(torn).weights, 0.0)
+        cavitated, mesh = y.fluid <= self.least, self.operators.mesh
+        released = np.where(cavitated, self.flow(y.gap, y.fluid, y.offset) / self.passing(cavitated).weights, 0.0)
         lost = self.film.filled(y.gap) * released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
         return VOID_ERROR_FACTOR * abs(float((lost @ mesh.area_weights).sum()))
 

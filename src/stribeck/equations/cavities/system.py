@@ -15,20 +15,20 @@ from stribeck.numerics.fourier_panels import lobatto, radau
 
 
 class VoidTransport:
-    """The path of gas from torn nodes: downstream from node to node, until one with a film takes it."""
+    """The path of gas from cavitated nodes: downstream from node to node, until one with a film takes it."""
 
-    def __init__(self, spread: csc_matrix | None, torn: Flags) -> None:
-        self.torn, self.spread = torn, None
+    def __init__(self, spread: csc_matrix | None, cavitated: Flags) -> None:
+        self.cavitated, self.spread = cavitated, None
         self.weights: Array | float = 1.0
-        """Residual of a torn node over its own gas."""
+        """Residual of a cavitated node over its own gas."""
         if spread is not None:
-            self.weights = spread.diagonal().reshape(torn.shape)
-            self.at = np.flatnonzero(torn)
+            self.weights = spread.diagonal().reshape(cavitated.shape)
+            self.at = np.flatnonzero(cavitated)
             self.spread = spread[:, self.at]
             self.factors = splu(self.spread[self.at]) if self.at.size else None
 
     def gas(self, flow: Array) -> Array:
-        """Return the gas at the nodes that makes up for the residual at the torn ones."""
+        """Return the gas at the nodes that makes up for the residual at the cavitated ones."""
         if self.spread is None:
             return flow
         found = np.zeros(flow.size)
@@ -37,7 +37,7 @@ class VoidTransport:
         return found.reshape(flow.shape)
 
     def rows(self, flow: Array) -> Array:
-        """Return the residual with the gas of the torn nodes, which has to vanish at the others."""
+        """Return the residual with the gas of the cavitated nodes, which has to vanish at the others."""
         if self.spread is None or self.factors is None:
             return flow
         passed = self.spread @ self.factors.solve(flow.ravel()[self.at])
@@ -79,9 +79,9 @@ class CavitatedSystem(Equations):
         fluid = np.where(like.fluid <= least, self.least, np.maximum(y.fluid, just_above(self.least)))
         return Unknowns(y.gap, fluid, y.offset)
 
-    def passing(self, torn: Flags) -> VoidTransport:
-        """Return where gas of torn nodes goes."""
-        return VoidTransport(self.spread, torn)
+    def passing(self, cavitated: Flags) -> VoidTransport:
+        """Return where gas of cavitated nodes goes."""
+        return VoidTransport(self.spread, cavitated)
 
 
 def stiffness(linear: Linear) -> Array:
@@ -94,21 +94,21 @@ def stiffness(linear: Linear) -> Array:
 
 
 class CavitatedLinear(Linear):
-    """The Jacobian at a state with torn nodes; rows of R_2 at the nodes, over the stiffness."""
+    """The Jacobian at a state with cavitated nodes; rows of R_2 at the nodes, over the stiffness."""
 
-    def __init__(self, equations: CavitatedSystem, y: Unknowns, torn: Flags) -> None:
+    def __init__(self, equations: CavitatedSystem, y: Unknowns, cavitated: Flags) -> None:
         super().__init__(equations, y)
         self.stiffness, self.least, self.spread = stiffness(self), equations.least, equations.spread
-        self.set_active(torn)
+        self.set_active(cavitated)
 
-    def set_active(self, torn: Flags) -> None:
-        """Take other nodes for torn."""
-        self.torn, self.passing = torn, VoidTransport(self.spread, torn)
+    def set_active(self, cavitated: Flags) -> None:
+        """Take other nodes for cavitated."""
+        self.cavitated, self.passing = cavitated, VoidTransport(self.spread, cavitated)
 
     def product(self, x: Array) -> Array:
         """Return the change of the rows at the nodes and of the load."""
         change = self.changes(x)
-        rows = np.where(self.torn, change.fluid, self.passing.rows(self.flow(change.fluid, change.gap)) / self.stiffness)
+        rows = np.where(self.cavitated, change.fluid, self.passing.rows(self.flow(change.fluid, change.gap)) / self.stiffness)
         return np.append(rows.ravel(), self.equations.load_row @ x[: self.equations.operators.mesh.rings])
 
     def right(self, residual: tuple[Array, Array, float]) -> Array:
@@ -119,11 +119,11 @@ class CavitatedLinear(Linear):
         """Return the right-hand side for the change of the unknowns with that of the residual and of the least pressure."""
         shape, flow, load = change
         moved = self.flow(self.contact_slope * shape, -shape)
-        torn = least - self.contact_slope * shape
-        rows = np.where(self.torn, torn, -self.passing.rows(flow + moved) / self.stiffness)
+        cavitated = least - self.contact_slope * shape
+        rows = np.where(self.cavitated, cavitated, -self.passing.rows(flow + moved) / self.stiffness)
         return np.append(rows.ravel(), -load)
 
 
 def just_above(least: float) -> float:
-    """Return the lowest pressure of a film that is not torn."""
+    """Return the lowest pressure of a film that is not cavitated."""
     return least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))

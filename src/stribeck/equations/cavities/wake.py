@@ -1,6 +1,6 @@
 r"""The wake of a ball: streaks of liquid from wall to wall in the cavity, with the flow at the line of rupture.
 
-Where the film is torn the pressure is the same everywhere and the liquid goes with the walls, so that along x
+Where the film is cavitated the pressure is the same everywhere and the liquid goes with the walls, so that along x
 
 .. math:: \phi \, h = h_\mathrm{e}(y) + s S(h_\mathrm{e}), \qquad \phi \le 1
 
@@ -27,7 +27,7 @@ class Rupture:
     """The line at which a film ruptures."""
 
     rings: Indices  # Rings that it crosses
-    angles: Array  # Where it crosses them; nearer to the middle line the film is torn
+    angles: Array  # Where it crosses them; nearer to the middle line the film is cavitated
     distances: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
     gaps: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
 
@@ -38,11 +38,11 @@ class Rupture:
 
 def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
     """Return the line at which a film ruptures; None if it does not."""
-    torn = fluid <= 0.0
-    rings = np.flatnonzero(torn[0] & ~torn[-1] & ~torn[-2])
+    cavitated = fluid <= 0.0
+    rings = np.flatnonzero(cavitated[0] & ~cavitated[-1] & ~cavitated[-2])
     if not rings.size:
         return None
-    last = np.minimum(mesh.modes - 1 - np.argmax(torn[::-1, rings], axis=0), mesh.modes - 4)
+    last = np.minimum(mesh.modes - 1 - np.argmax(cavitated[::-1, rings], axis=0), mesh.modes - 4)
     first, second, third = (np.sqrt(np.maximum(fluid[last + k, rings], 0.0)) for k in (1, 2, 3))
     with np.errstate(all="ignore"):  # inverse interpolation, in spacings
         bend = (1.0 / (third - second) - 1.0 / (second - first)) / (third - first)

@@ -203,13 +203,13 @@ class NewtonianPlane(LinearPlane):
             return Flow(wide, width, wider, 1 + s * extra_slope)
         log, log_slope = film.viscosity.log(pressure)
         rho, rho_slope = film.density.ratio(pressure)
-        ease = rho * np.exp(-log)
+        fluidity = rho * np.exp(-log)
         return Flow(
-            ease * wide,
+            fluidity * wide,
             rho * width,
-            ease * wider,
+            fluidity * wider,
             rho * (1 + s * extra_slope),
-            ease * wide * (rho_slope / rho - log_slope),
+            fluidity * wide * (rho_slope / rho - log_slope),
             rho_slope * width,
         )
 

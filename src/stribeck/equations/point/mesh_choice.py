@@ -189,7 +189,7 @@ def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[fl
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
     speed = film_speed(speed, model)
     decay = float(np.max(law.decay_length))
-    height = film_scale(speed) + lift(speed, model)
+    height = film_scale(speed) + cavitation_thickening(speed, model)
     if decay > 0.0:
         at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
         decay = min(decay, float(np.max(law.local_decay_length(at_edge))))
@@ -211,7 +211,7 @@ def fewest_modes(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> fl
     return COARSE_MODES_RATIO * MODES_PER_EDGE_WIDTH * width**-0.675 if is_smooth else 0.0
 
 
-def lift(speed: float, model: Model) -> float:
+def cavitation_thickening(speed: float, model: Model) -> float:
     """Return an estimate of the factor by which a fast film is thicker because the pressure behind the ball is bounded."""
     if model.cavitation is Cavitation.NONE:
         return 0.0

@@ -61,8 +61,8 @@ def log_derivatives(
         ahead, behind = (each.residual(y) for each in near)
         shape, flow = ((a - b) / (2 * LOG_STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
         change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * LOG_STEP))
-        lift = (near[0].least - near[1].least) / (2 * LOG_STEP) if math.isfinite(equations.least) else 0.0
-        right = linear.sources(change, lift)
+        suction_change = (near[0].least - near[1].least) / (2 * LOG_STEP) if math.isfinite(equations.least) else 0.0
+        right = linear.sources(change, suction_change)
         x = solved(linear, precondition, right, tolerance)
         if x is None and kept is not None:
             precondition, kept = preconditioner(linear, None), None

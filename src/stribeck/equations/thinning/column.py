@@ -130,7 +130,7 @@ class Column(NamedTuple):
     carried: Array  # The moment r_1 of the rate
     by_slope: Array  # The derivative of r_1 by Q
     by_slip: Array  # The derivative of r_1 by r_0
-    ease: Array  # The inverse of K_0: the derivative of T by r_0
+    compliance: Array  # The inverse of K_0: the derivative of T by r_0
 
 
 def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) -> Column:
@@ -138,11 +138,11 @@ def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) 
     return _solved(law, flow_curve(cast("Hashable", law)), slope, slip, start)
 
 
-def pull(flow: Column, along: Array, slide: float) -> Array:
+def mean_wall_stress(flow: Column, along: Array, slide: float) -> Array:
     """Return the mean stress along the motion over the slide, shape (n,); over the slip where the walls roll."""
     if slide:
         return np.asarray(-(flow.mean * along).sum(axis=0) / slide)
-    return np.asarray((_times(flow.ease, along) * along).sum(axis=0))
+    return np.asarray((_times(flow.compliance, along) * along).sum(axis=0))
 
 
 def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Array | None = None) -> Column:
@@ -203,10 +203,10 @@ class _Integrals(NamedTuple):
         square = (least * least).sum(axis=0)[:, None] + away * (
             2 * (least * slope).sum(axis=0)[:, None] + away * steepness[:, None]
         )
-        ease, bend = curve(square)
+        compliance, bend = curve(square)
         powers = np.abs(lengths[..., None]) * lengths[..., None] ** np.arange(5)
-        a = ((ease @ moments[:, :3]) * powers[..., :3]).sum(axis=0).T
-        b = (((ease * bend / np.maximum(square, TINY)) @ moments) * powers).sum(axis=0).T
+        a = ((compliance @ moments[:, :3]) * powers[..., :3]).sum(axis=0).T
+        b = (((compliance * bend / np.maximum(square, TINY)) @ moments) * powers).sum(axis=0).T
         products = (_product(least, least), _product(least, slope) + _product(slope, least), _product(slope, slope))
         matrices = []
         for k in range(3):

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.thinning.column import column, pull
-from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
+from stribeck.equations.thinning.column import column, mean_wall_stress
+from stribeck.equations.thinning.outside_rim import OutsideRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 from stribeck.quantities.lazy import cached_property
@@ -69,7 +69,7 @@ class _Film(NamedTuple):
     drag: Array  # Of the shear, around the ring
 
 
-class FarThinned(BeyondRim):
+class FarThinned(OutsideRim):
     """The film of a ball beyond a rim, less that of a fluid that does not thin."""
 
     @cached_property
@@ -149,7 +149,7 @@ class FarThinned(BeyondRim):
             found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
             if np.abs(found - before).max() <= CONVERGED * speed:
                 break
-        shear = pull(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
+        shear = mean_wall_stress(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
         shear *= 0.5 * scale / (law.time * speed) if self.slide else 1.0
         drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLE_COUNT)
         return _Film(found, radial, (along_r @ found)[-1], drag)

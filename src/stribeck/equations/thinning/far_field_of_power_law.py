@@ -26,8 +26,8 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contacts.cut_off import FULL_FAR_FILM
-from stribeck.equations.thinning.column import Column, column, pull
-from stribeck.equations.thinning.outside_rim import BeyondRim, Waves
+from stribeck.equations.thinning.column import Column, column, mean_wall_stress
+from stribeck.equations.thinning.outside_rim import OutsideRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.quantities.lazy import cached_property
 
@@ -111,7 +111,7 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
         if np.abs(left).max() <= CONVERGED:
             break
     _, radial, flow = equations(found[None])
-    shear = pull(flow, np.stack([np.cos(theta), -np.sin(theta)]), slide) / (1.0 if slide else 1.0 + part)
+    shear = mean_wall_stress(flow, np.stack([np.cos(theta), -np.sin(theta)]), slide) / (1.0 if slide else 1.0 + part)
     return _Similar(found, radial[0], float(shear.mean()) * 2.0 * math.pi)
 
 
@@ -132,7 +132,7 @@ def similar(law: Any, slide: float, angles: int = ANGLE_COUNT) -> tuple[_Similar
     return found, _Similar(pressure, flux, (above.shear - below.shear) / double)
 
 
-class FarPower(BeyondRim):
+class FarPower(OutsideRim):
     """The film of a ball beyond a rim, of a power law."""
 
     is_all: ClassVar[bool] = True

@@ -10,7 +10,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.fluids.laws import RateLaw
 
-__all__ = ["BeyondRim", "Waves"]
+__all__ = ["OutsideRim", "Waves"]
 
 
 class Waves(NamedTuple):
@@ -27,7 +27,7 @@ class Waves(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class BeyondRim:
+class OutsideRim:
     """The film of a ball beyond a rim, of a fluid that thins."""
 
     law: RateLaw  # The law, its time in Hertz units at this speed

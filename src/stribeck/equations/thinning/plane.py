@@ -21,7 +21,13 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
-from stribeck.equations.thinning.column import FIRST_ORDER_STRESS_CHANGE, Column, column, has_viscosity_at_rest, pull
+from stribeck.equations.thinning.column import (
+    FIRST_ORDER_STRESS_CHANGE,
+    Column,
+    column,
+    has_viscosity_at_rest,
+    mean_wall_stress,
+)
 from stribeck.equations.thinning.far_field import MIN_LOST_FRACTION, FarThinned
 from stribeck.equations.thinning.far_field_of_power_law import FarPower
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -106,7 +112,7 @@ class ThinningPlane:
         """Return the mean of the stresses at both walls over that of a fluid that does not thin."""
         at = self._local(mesh, speed, gap, pressure)
         unit = at.gap / (self.film.law.time * speed) if self.film.slide else at.eta
-        found = unit * pull(at.flow, at.along, self.film.slide)
+        found = unit * mean_wall_stress(at.flow, at.along, self.film.slide)
         weights = mesh.local_weights
         return mesh.gathered(weights * found.reshape(-1, *weights.shape)) / mesh.ring_weights
 
@@ -171,7 +177,7 @@ def _symmetric(matrix: Array, vector: Array) -> Array:
 def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
     """Return mean stresses to start from: those of the last film, to first order; None if one is far from it."""
     change = slope - last.slope
-    step = _symmetric(last.flow.ease, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
+    step = _symmetric(last.flow.compliance, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
     largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
     far = ~(np.hypot(*step) + np.hypot(*change) < FIRST_ORDER_STRESS_CHANGE * largest)
     return None if far.any() else last.flow.mean + step

@@ -129,10 +129,11 @@ def _find_length(groups: Groups, guess: SeenFrom, slope: float, deepest: float =
     for _ in range(MAX_LENGTHS):
         state = _solve_at_length(groups, guess)
         if state is not None and state.root.steps > REMESH_AFTER_STEPS:
-            state = _solve_at_length(groups, SeenFrom(state, state.exit, guess.restart, state.groups.model.cavity_pressure))
+            pressure = state.groups.model.cavity_pressure
+            state = _solve_at_length(groups, SeenFrom(state, state.exit, guess.reformation, pressure))
         if state is not None and deepest < state.groups.model.cavity_pressure < 0:
             last = state
-            lengths.append(math.log(guess.restart))
+            lengths.append(math.log(guess.reformation))
             pressures.append(place(state.groups.model.cavity_pressure))
             exits.append(state.exit)
             missing = wanted - pressures[-1]

@@ -1,4 +1,4 @@
-"""States of a ball whose film forms anew behind a cavity, and of its full film where its suction stays above the cavity's."""
+"""States of a ball whose film re-forms behind a cavity, and of its full film where its suction stays above the cavity's."""
 
 from __future__ import annotations
 

@@ -161,10 +161,10 @@ class ReformingLine(LineProblem):
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return the minimum position by a parabola, or all observables where a cavity opens or closes."""
-        torn = [has_cavity(end.point.state) for end in (left, right)]
-        if not any(torn):
+        cavitated = [has_cavity(end.point.state) for end in (left, right)]
+        if not any(cavitated):
             return super().read(left, right, parts)
-        if torn[0] is not torn[1]:
+        if cavitated[0] is not cavitated[1]:
             return self._opening(left, right, parts)
         ends = [end.series[0, POSITION] for end in (left, right)]
         middle = self._middle(left, right)
@@ -243,7 +243,7 @@ class _ShiftedGuess(SeenFrom):
         found = super().fields(x)
         if self.change is not None:
             found[0] += self.state.mesh.interpolate(
-                self.change[None], (x + self.exit - self.state.exit) / self.state.dilation
+                self.change[None], (x + self.exit - self.state.exit) / self.state.cavity_stretch
             )[0]
         return found
 
@@ -255,15 +255,15 @@ def _predict_at_same_places(last: Expansion, s: float) -> _ShiftedGuess | None:
         return None
     at, mesh, distance = state.equations.layout, state.mesh, s - last.coordinate
     slope = last.point.unknowns[1]
-    exit_slope, dilation_slope = slope[at.exit][0], slope[at.dilation][0]
-    length = distance * dilation_slope / state.dilation
+    exit_slope, stretch_slope = slope[at.exit][0], slope[at.cavity_stretch][0]
+    length = distance * stretch_slope / state.cavity_stretch
     if abs(length) > MAX_LOG_LENGTH_CHANGE:
         return None
     ahead, behind = (state.fields(mesh.nodes + step)[0] for step in (SLOPE_STEP, -SLOPE_STEP))
     along = (ahead - behind) / (2 * SLOPE_STEP)
-    moved = along * (exit_slope + dilation_slope * mesh.nodes) / state.dilation
+    moved = along * (exit_slope + stretch_slope * mesh.nodes) / state.cavity_stretch
     change = distance * (slope[at.gap] - moved)
     flux = state.flux_gap * float(np.exp(distance * slope[at.flux_gap][0] / state.flux_gap))
     pressure = state.groups.model.cavity_pressure
-    restart = state.restart * state.dilation * float(np.exp(length))
-    return _ShiftedGuess(state, state.exit + distance * exit_slope, restart, pressure, flux=flux, change=change)
+    reformation = state.reformation * state.cavity_stretch * float(np.exp(length))
+    return _ShiftedGuess(state, state.exit + distance * exit_slope, reformation, pressure, flux=flux, change=change)

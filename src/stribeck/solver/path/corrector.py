@@ -73,9 +73,9 @@ class Corrector:
         """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
         if not _cavity_may_vanish(groups):
             return self._solve(guess, groups, spread)
-        forms_anew = guess.restart < math.inf
-        if isinstance(guess, State) or forms_anew:  # one with as many unknowns as the state before
-            model = guess.groups.model if isinstance(guess, State) and not forms_anew else groups.model
+        re_forms = guess.reformation < math.inf
+        if isinstance(guess, State) or re_forms:  # one with as many unknowns as the state before
+            model = guess.groups.model if isinstance(guess, State) and not re_forms else groups.model
             point = self._solve(guess, replace(groups, model=model), spread)
             if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
@@ -116,7 +116,7 @@ class Corrector:
         return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
 
     def _is_resolved(self, state: State, spread: float) -> bool:
-        centre = -state.exit / state.dilation
+        centre = -state.exit / state.cavity_stretch
         part = RTOL_FRACTION_ON_PATH if spread > 0 else 1.0
         return gap_is_resolved(state.mesh, state.gap, part * self.rtol, centre=centre, spread=spread)
 

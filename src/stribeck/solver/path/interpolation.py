@@ -49,8 +49,8 @@ def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Arr
     if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
         own, others = (numbers_on(end.point, each, of) for end, each in zip(ends, scaled, strict=True))
         numbers = weights[0] @ own + weights[1] @ others
-        if at.dilation.stop > at.dilation.start:
-            position = position * numbers[:, at.dilation.start - at.numbers.start]
+        if at.cavity_stretch.stop > at.cavity_stretch.start:
+            position = position * numbers[:, at.cavity_stretch.start - at.numbers.start]
         position = position + numbers[:, at.exit.start - at.numbers.start]
     return np.stack([lowest, position]), error
 
@@ -85,7 +85,7 @@ def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
 
 def _stretch(point: LinePoint, of: LinePoint) -> float:
     """Return the ratio of the mesh coordinates of two points at the same place."""
-    own, other = point.state.mesh.restart, of.state.mesh.restart
+    own, other = point.state.mesh.reformation, of.state.mesh.reformation
     return 1.0 if own == other else own / other
 
 
@@ -118,8 +118,8 @@ def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range)
 
 
 def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return the coefficients of the scalar unknowns, the dilation scaled to another point's mesh."""
+    """Return the coefficients of the scalar unknowns, the cavity stretch scaled to another point's mesh."""
     at = point.state.equations.layout
     found = coefficients[:, at.numbers].copy()
-    found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)
+    found[:, at.cavity_stretch.start - at.numbers.start : at.cavity_stretch.stop - at.numbers.start] *= _stretch(point, of)
     return found

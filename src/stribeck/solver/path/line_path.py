@@ -15,7 +15,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_FLOOR, GAP_ROWS, FineOperators
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
-from stribeck.equations.state import State, fall_of, is_thinning, solve_state
+from stribeck.equations.state import State, decay_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh
@@ -92,9 +92,13 @@ class LineProblem:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
         film = start.model.film
-        broken = fall_of(film, 1.0).broken
+        fractional = decay_of(film, 1.0).fractional
         part = (
-            STATE_RTOL_FRACTION_CUSP if broken else STATE_RTOL_FRACTION_THINNING if is_thinning(film) else STATE_RTOL_FRACTION
+            STATE_RTOL_FRACTION_CUSP
+            if fractional
+            else STATE_RTOL_FRACTION_THINNING
+            if is_thinning(film)
+            else STATE_RTOL_FRACTION
         )
         self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
@@ -102,9 +106,9 @@ class LineProblem:
         exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDERS if exact else POLYNOMIAL_ORDERS
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= MAX_LAW_MISFIT * rtol)
-        self.order_if_sampled = CUSP_ORDER if broken else SAMPLED_ORDER
-        self.interval = CUSP_SAMPLE_RATIO if broken else 1.0
-        self.degree = CUSP_ORDER + 1 if broken else None
+        self.order_if_sampled = CUSP_ORDER if fractional else SAMPLED_ORDER
+        self.interval = CUSP_SAMPLE_RATIO if fractional else 1.0
+        self.degree = CUSP_ORDER + 1 if fractional else None
         self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
         self.corrector = Corrector(groups_at, self.rtol, GAP_TAIL_RATIO, own_inverse=True)
         self.failure: RefinedState | None = None
@@ -151,7 +155,7 @@ class LineProblem:
             if not doubt <= MAX_PREDICTION_DOUBT:
                 return Outcome.PATH_LOST
             gap = guess.y[guess.equations.layout.gap]
-            if not (np.isfinite(gap).all() and gap.min() > 0 and guess.dilation > 0):
+            if not (np.isfinite(gap).all() and gap.min() > 0 and guess.cavity_stretch > 0):
                 return Outcome.NOT_FINITE
             if any(
                 abs(np.log(of(gap) / of(one.point.state.gap))) > MAX_LOG_GAP_CHANGE for of in (np.min, np.max) for one in near

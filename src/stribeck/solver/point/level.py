@@ -99,11 +99,11 @@ def transfer(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.i
     fields = np.stack([np.log(y.gap / (1.0 + old.radii**2)), y.fluid])
     shape, fluid = old.transfer(new, fields)
     fluid = fluid / beyond**3
-    torn = y.fluid <= least
-    if torn.any():  # the series of the pressure oscillates about zero there
+    cavitated = y.fluid <= least
+    if cavitated.any():  # the series of the pressure oscillates about zero there
         ring = np.abs(np.log(new.radii[:, None] / old.radii)).argmin(axis=1)
         angle = np.abs(new.angles[:, None] - old.angles).argmin(axis=1)
-        fluid = np.where(torn[angle][:, ring], least, np.maximum(fluid, just_above(least)))
+        fluid = np.where(cavitated[angle][:, ring], least, np.maximum(fluid, just_above(least)))
     return Unknowns(np.exp(shape) * (1.0 + new.radii**2), fluid, y.offset)
 
 

@@ -51,7 +51,7 @@ def derivatives_along(
     def preconditioner(linear: Linear, kept: Any) -> Apply:
         if not isinstance(linear, CavitatedLinear):
             return BandedModes(linear, band) if kept is None else kept
-        found = Capacitance(BandedModes(linear, band), level.mesh, linear.torn.shape) if kept is None else kept
+        found = Capacitance(BandedModes(linear, band), level.mesh, linear.cavitated.shape) if kept is None else kept
         return found.of(linear)
 
     kept = level.iterated.preconditioner

@@ -50,7 +50,7 @@ WAKE_NOTE = (
     "ends; without wetted_radius that is the X of a ball whose film does not break."
 )
 CAVITY_NOTE = (
-    "The film ruptures at the pressure of the cavity and forms anew behind it; there friction counts the liquid, as streaks "
+    "The film ruptures at the pressure of the cavity and re-forms behind it; there friction counts the liquid, as streaks "
     "that touch both walls, and no drag of the gas."
 )
 

@@ -111,12 +111,11 @@ class WithCushion:
     roughness_derivative = load_derivative
 
 
-def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 1.0) -> tuple[Resolution, Unknowns] | None:
-    """Return the first guess, with a film ``lift`` times as thick as expected, and the panels that it needs besides.
-
-    None if the dry contact fails.
-    """
-    cushioned = WithCushion(law, lift * film_scale(film_speed(speed, found.model)))
+def first_guess(
+    found: Resolution, speed: float, law: ContactLaw, thickness_ratio: float = 1.0
+) -> tuple[Resolution, Unknowns] | None:
+    """Return the first guess and a mesh for it; None if the dry contact fails."""
+    cushioned = WithCushion(law, thickness_ratio * film_scale(film_speed(speed, found.model)))
     for _ in range(MOST_ROUNDS):
         solved, operators = found, operators_of(found)
         dry = dry_contact(operators, cushioned, 1e-6)
@@ -150,8 +149,8 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     modes = first_modes(speed, law, model)
     few = [(FEW_MODES, 1.0)] if modes > FEW_MODES else []
-    for count, lift in (*few, (modes, 1.0), (modes, 1.5), (modes, 0.7)):
-        guess = first_guess(resolution(speed, law, DEGREE, count, model), speed, law, lift)
+    for count, thickness_ratio in (*few, (modes, 1.0), (modes, 1.5), (modes, 0.7)):
+        guess = first_guess(resolution(speed, law, DEGREE, count, model), speed, law, thickness_ratio)
         if guess is not None:
             found, y = guess
             yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
