@@ -11,10 +11,8 @@ MAX_HALVINGS = 20
 
 
 def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) -> float:
-    """Return the longest fraction of a step, at most ``part``, that keeps gap and contact pressure within bounds.
-
-    The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
-    """
+    """Return the longest fraction of a step, at most ``part``, that keeps gap and contact pressure within bounds."""
+    # The gap may lose 70 % at most; if contact matters, its pressure may change by a factor of e**3 at most.
     part = min(part, 0.7 / max(0.7, -float((change / gap).min())))
     if not np.all(law.decay_length > 0):
         return part

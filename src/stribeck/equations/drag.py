@@ -38,17 +38,15 @@ __all__ = ["drag_gradients", "friction_scale", "viscous_friction"]
 
 
 class Nodal(NamedTuple):
-    """A film on the nodes of a mesh, which may be finer than that of its equations: rows of states.
-
-    ``weights`` is the row that integrates nodal pressures to the load; ``settled`` takes nodal values of the film, and those
-    at the nodes of its equations, to what the former are taken for.
-    """
+    """A film on the nodes of a mesh, which may be finer than that of its equations: rows of states."""
 
     integral: RunningIntegral
     gap: Array
     pressure: Array
-    weights: Array
-    settled: Callable[[Array, Array], Array] | None = None
+    weights: Array  # Integrates nodal pressures to the load
+    clip: Callable[[Array, Array], Array] | None = (
+        None  # (values here, values at the nodes of the equations) -> values to take
+    )
 
 
 def friction_scale(load: Numbers, speed: Numbers) -> Array:
@@ -71,9 +69,9 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     weights[last] = 0.0
     one_sided, upstream = nodal.integral.one_sided, slice(0, len(xi) // 2)
     walls = _walls(film, nodal.gap, known, h_star, _parts(nodal.integral))
-    if nodal.settled is not None:
+    if nodal.clip is not None:
         own = y[..., at.pressure] if film.uses_pressure else None
-        walls = nodal.settled(walls, _walls(film, y[..., at.gap], own, h_star, _parts(op.integral)))
+        walls = nodal.clip(walls, _walls(film, y[..., at.gap], own, h_star, _parts(op.integral)))
     far_parts = (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)
     lower, upper, wall_stress_integral = walls @ weights + _walls(film, h, p, h_star, far_parts) @ beyond
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
@@ -125,10 +123,7 @@ def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | No
 
 
 def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | None) -> Array:
-    """Return the derivatives of :func:`viscous_friction` with respect to the unknowns, shape (3, ..., y.shape[-1]).
-
-    ``slopes`` are those of G at the nodes, see :func:`stribeck.equations.film.slopes_in_film`, if they are known.
-    """
+    """Return the derivatives of :func:`viscous_friction` with respect to the unknowns, shape (3, ..., y.shape[-1])."""
     op, at, film, d = equations.operators, equations.layout, equations.film, equations.cavity_stretch(y)
     h, h_star = y[..., at.gap], y[..., at.flux_gap]
     p = y[..., at.pressure] if film.uses_pressure else None

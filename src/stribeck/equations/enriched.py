@@ -45,11 +45,10 @@ def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array
 
 @dataclass(frozen=True, eq=False)
 class FineOperators:
-    """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh.
+    """The panels of a mesh with more nodes, and the deflection by pressures there at the nodes of the mesh."""
 
-    The deflection by degrees that the mesh holds is that on the mesh.  That by higher degrees falls so fast with the distance
-    from their panel that only its neighbourhood counts.
-    """
+    # The deflection by degrees that the mesh holds is that on the mesh; the deflection by higher degrees falls so fast with
+    # the distance from their panel that only its neighbourhood counts.
 
     coarse: Mesh
 
@@ -105,10 +104,7 @@ class FineOperators:
         return found
 
     def deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None = None) -> Array:
-        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh.
-
-        With a cavity stretch d the result is that over d, without ln(d).
-        """
+        """Return the deflection at coarse nodes under rows of fine ``pressure``, over the cavity stretch and without its log."""
         if operators.deflection_by_tail is not None and operators.tail is not None:
             own = slice(-self.mesh.order, None)
             density = (pressure[:, own] * self.mesh.stretch[own]) @ operators.tail.interpolation(self.mesh.order).T

@@ -87,18 +87,15 @@ class ErrorEstimate:
     minimum_position: float = math.nan  # Absolute error of the position of the minimum gap [a]
 
     def at_most(self, difference: Array) -> ErrorEstimate:
-        """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.
-
-        In thin films the pressure between the nodes, not the state, makes the defect large.
-        """
+        """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh."""
+        # In thin films the pressure between the nodes, not the state, makes the defect large.
         return replace(self, discretisation=np.fmin(self.discretisation, SAFETY * difference))
 
     @property
     def relative(self) -> Array:
-        """Relative errors of the observables in the order of :data:`observables.NAMES`.
-
-        If rounding makes the nodal gaps uneven, the polynomials between them measure just that: the larger of both counts.
-        """
+        """Relative errors of the observables in the order of :data:`observables.NAMES`."""
+        # Rounding makes nodal gaps uneven, and the polynomials between them measure just that: the larger of both counts, not
+        # the sum.
         return np.asarray((self.discretisation + np.maximum(self.interpolation, self.rounding)) / self.scales)
 
     @cached_property
@@ -131,15 +128,10 @@ class ErrorEstimate:
 
 @dataclass(frozen=True)
 class Perturbations:
-    """Possible errors of states.
+    """Changes of unknowns and friction by defect and rounding: the possible errors of states."""
 
-    ``unknowns``, shape (1 + SIGN_PATTERNS, rows, unknowns), are changes by defect and rounding, the defect first;
-    ``friction``, shape (2 or 3, rows), is by how much the friction integrals change on the finer nodes: both definitions of
-    the film of the article, all three of others.
-    """
-
-    unknowns: Array = field(repr=False)
-    friction: Array = field(repr=False)
+    unknowns: Array = field(repr=False)  # The defect first, then the patterns of rounding: (1 + SIGN_PATTERNS, rows, unknowns)
+    friction: Array = field(repr=False)  # Of the friction integrals on the finer nodes: (2 for the base model, else 3, rows)
 
 
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
@@ -156,13 +148,13 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     known = equations.fluid_pressure(y) if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
     flat = np.asarray((np.abs(h - h_star) < CANCELLATION_BELOW * h).reshape(len(y), coarse.panels, -1).all(axis=2))
-    settled = _settled(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
+    clip = _clip_to_coarse_error(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
 
     slopes = gradient_in_film(film, integral, gap, fluid, h_star)
     if flat.any():
         smooth = gradient_in_film(film, op.integral, h, known, h_star)
-        if settled is not None:
-            smooth = settled(slopes, smooth)
+        if clip is not None:
+            smooth = clip(slopes, smooth)
         elif not is_rough(film):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
@@ -217,33 +209,29 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         integrals = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
         friction = np.ravel(friction_scale(states.load, equations.speed)) * integrals
     else:
-        friction = viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, settled))
+        friction = viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, clip))
     return Perturbations(unknowns, np.abs(friction - known_friction))
 
 
-def _settled(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
-    """Return what holds values at finer nodes, on panels where the gap is ``flat``, within the error of the coarse ones.
+def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
+    """Return a function that clips values at finer nodes of ``flat`` panels to those of the coarse nodes and their error."""
+    # Where the shear rate vanishes the gradient turns sharply with the gap, or the gap with the gradient: that with the smaller
+    # error between its nodes gives the values.
 
-    Where the rate of a fluid that thins is zero, its gradient turns sharply with the gap, or the gap with the gradient: that
-    with the smaller error between its nodes tells the values there.
-    """
-
-    def settled(finer: Array, nodal: Array) -> Array:
+    def clip(finer: Array, nodal: Array) -> Array:
         held = coarse.to_order(nodal, order)
         error = interpolation_error(nodal.reshape(*nodal.shape[:-1], coarse.panels, -1))
         bound = np.repeat(np.where(flat, error, np.inf), order, axis=-1)
         return np.asarray(held + np.clip(finer - held, -bound, bound))
 
-    return settled
+    return clip
 
 
 def _of_ends(
     states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, at_end: Array, size: float
 ) -> None:
-    """Write the rows of the ends of the film: the defect on finer nodes, the interpolation error at the exit, and rounding.
-
-    ``slopes`` is G at the finer nodes, ``at_end`` the gradient that vanishes at the exit, see :attr:`Equations.ending`.
-    """
+    """Write the rows of the ends of the film: defect on finer nodes, interpolation error at the exit, rounding."""
+    # ``slopes`` is G at the finer nodes, ``at_end`` the gradient that vanishes at the exit.
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
@@ -276,10 +264,8 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
 
 
 def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0, spread: float = 0.0) -> bool:
-    """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum.
-
-    On a reused mesh they are the first to lose resolution.
-    """
+    """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum."""
+    # These gaps are the first to lose resolution on a reused mesh.
     central = int(mesh.locate(np.array([centre]))[0][0])
     lowest = mesh.nodes[int(np.argmin(gap))]
     near = np.abs(mesh.centres[:-1] - lowest) <= mesh.half_widths[:-1] + spread
@@ -301,10 +287,8 @@ def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
 
 
 def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
-    """Return the estimated errors of the observables ``observed``.
-
-    At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
-    """
+    """Return the estimated errors of the observables ``observed``."""
+    # At speed zero the values may be those of the same state under another load, see stribeck.solver.at_rest.
     values = np.array([one.array(states.equations.operators.is_base_model) for one in observed])
     changed = perturbations(states, values, fine)
     needed = not (states.equations.operators.is_base_model or states.equations.film.uses_pressure)

@@ -22,11 +22,9 @@ def far_gap(x: Array) -> Array:
 
 
 def gap_at(mesh: Mesh, h: Array, x: Array, far_gap: Callable[[Array], Array] = far_gap) -> Array:
-    """Return the gap at the coordinates ``x`` of the mesh from the panels' polynomials.
-
-    Those are of the logarithm of the gap over its growth, or of the gap over its growth where it touches zero; on the panel
-    through infinity they are of the gap less ``far_gap``.
-    """
+    """Return the gap at the coordinates ``x`` of the mesh from the polynomials of the panels."""
+    # Polynomials are of the logarithm of the gap over its growth, of the gap over its growth where it touches zero, and of the
+    # gap less ``far_gap`` on the panel through infinity.
     far = mesh.scale**2 + x * x
     if h.min() > 0:
         gap = np.exp(mesh.interpolate(np.log(h / mesh.far), x)) * far

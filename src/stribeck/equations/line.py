@@ -176,13 +176,9 @@ class Equations:
         return r
 
     def units(self, y: Array) -> Array:
-        """Return the scales of the unknowns: the gaps and the flux gap themselves, and one for all others.
-
-        Where roughness carries fluid along, the flux gap may be zero: its unit is the smallest gap at least.
-
-        From one speed to the next films grow as a whole: the derivatives with respect to relative changes of the gap hardly
-        change, and an inverse in these units serves many states.
-        """
+        """Return the scales of the unknowns: the gaps and the flux gap themselves, and one for all others."""
+        # Films grow as a whole from one speed to the next: derivatives by relative changes of the gap hardly change, and an
+        # inverse in these units serves many states.
         at = self.layout
         units = np.ones_like(y)
         units[..., at.gap] = y[..., at.gap]
@@ -192,6 +188,7 @@ class Equations:
     def _flux_unit(self, y: Array) -> Array:
         """Return the scale of the flux gap, a column of stacked states."""
         at = self.layout
+        # Where roughness carries fluid along, the flux gap may be zero.
         return np.asarray(np.maximum(np.abs(y[..., at.flux_gap]), y[..., at.gap].min(axis=-1, keepdims=True)))
 
     def inverse(self, y: Array) -> Inverse:
@@ -201,10 +198,8 @@ class Equations:
         return LU.of(self.jacobian(y, self.units(y)), overwrite=True)
 
     def is_stiff(self, y: Array) -> bool:
-        """Return whether a pressure that is integrated from one end grows too much: where a thin film is compressed.
-
-        There the flux and the density fix the gap, and the gap the pressure.
-        """
+        """Return whether a pressure that is integrated from one end grows too much, as in a thin compressible film."""
+        # There the flux and the density fix the gap, and the gap the pressure.
         at, integral = self.layout, self.operators.integral
         if not self.film.uses_pressure:
             return False
@@ -212,18 +207,13 @@ class Equations:
         return bool(np.max(np.abs(self.speed * integral(by_pressure_of(slopes)))) > MAX_LOG_GROWTH)
 
     def jacobian(self, y: Array, units: Array | None = None, volterra: Volterra | None = None) -> Array:
-        """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``.
-
-        ::
-
-            [ I - D diag(p_c') - lambda D A diag(dG/dh)    -1    -lambda D A dG/dh*   -(x + x_c) ]
-            [   w diag(p_c') + lambda w A diag(dG/dh)       0     lambda w A dG/dh*       0      ]
-            [   s**2 w diag(dG/dh)                          0     s**2 w dG/dh*           0      ]
-            [   s**2 e diag(dG/dh)                          0     s**2 e dG/dh*           0      ]
-
-        The last row and column are those of a free exit, with e the value there; a film that re-forms has one more of each.
-        A fluid pressure among the unknowns is eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
-        """
+        """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``."""
+        # [ I - D diag(p_c') - lambda D A diag(dG/dh)    -1    -lambda D A dG/dh*   -(x + x_c) ]
+        # [   w diag(p_c') + lambda w A diag(dG/dh)       0     lambda w A dG/dh*       0      ]
+        # [   s**2 w diag(dG/dh)                          0     s**2 w dG/dh*           0      ]
+        # [   s**2 e diag(dG/dh)                          0     s**2 e dG/dh*           0      ]
+        # The last row and column are those of a free exit, with e the value there; a film that re-forms has one more of each.
+        # A fluid pressure among the unknowns is eliminated: A is then (I - lambda A diag(dG/dp))**-1 A.
         op, at, film = self.operators, self.layout, self.film
         n, cavity_stretch = op.mesh.size, self.cavity_stretch(y)
         h = y[at.gap]
@@ -344,11 +334,8 @@ class Equations:
         return found
 
     def admissible(self, y: Array, dy: Array) -> float:
-        """Return the longest fraction of a Newton step that keeps the gap positive and the contact pressure within bounds.
-
-        The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.  The exit may move by
-        about a third of the width of contact or film.
-        """
+        """Return the longest fraction of a Newton step that keeps the gap positive and the contact pressure within bounds."""
+        # The exit may move by about a third of the width of contact or film.
         at = self.layout
         flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_base_model else self._flux_unit(y)[0])
         part = 0.7 / max(0.7, abs(flux))
@@ -360,10 +347,7 @@ class Equations:
         return longest_step(self.law, y[at.gap], dy[at.gap], float(part))
 
     def size(self, y: Array, dy: Array) -> float:
-        """Return the relative size of a step: the largest relative change of gap and flux gap, in any row.
-
-        Pressure, exit and cavity stretch change in their own units, p_Hz, a and one.
-        """
+        """Return the largest change by a step: relative of gaps and flux gap, absolute of the other unknowns."""
         at = self.layout
         gaps = dy[..., at.gap] / y[..., at.gap]
         unit = y[..., at.flux_gap] if self.operators.is_base_model else self._flux_unit(y)
@@ -419,11 +403,10 @@ class Coupled:
 
 
 class Eliminated:
-    """The inverse of the Jacobian with the fluid pressure among the unknowns, whose step it eliminates.
+    """The inverse of the Jacobian with the fluid pressure among the unknowns, whose step it eliminates."""
 
-    The rows of the pressure give ``dp = V (G_h dh + G_m dm) lambda - q`` with the Volterra operator V and ``q = (I - lambda A
-    G_p)**-1 r_p``; what is left is the system of :meth:`Equations.jacobian`.
-    """
+    # The rows of the pressure give dp = V (G_h dh + G_m dm) lambda - q with the Volterra operator V and q = (I - lambda A
+    # G_p)**-1 r_p; what is left is the system of Equations.jacobian.
 
     def __init__(self, equations: Equations, y: Array) -> None:
         self.equations = equations
@@ -472,10 +455,8 @@ class Eliminated:
 
 
 def _combined(out: Array, first: Array, by_first: Array, second: Array, by_second: Array) -> None:
-    """Write two matrices in Fortran order, times a number for each column, the second taken from the first, into ``out``.
-
-    A few columns at a time are computed side by side in memory; in ``out``, whose columns have more rows, steps take longer.
-    """
+    """Write ``first * by_first - second * by_second``, column by column, into ``out`` in Fortran order."""
+    # A few columns at a time are computed side by side in memory; in ``out``, whose columns are longer, steps cost more.
     scratch = np.empty((2, BLOCK_COLUMNS, len(out)))
     for start in range(0, len(out), BLOCK_COLUMNS):
         part = slice(start, start + BLOCK_COLUMNS)

@@ -66,10 +66,8 @@ class Observables:
 
 
 def drag_scales(values: Array) -> Array:
-    """Return the scale of the tolerance of each drag, in the order of :data:`DRAG_ROWS`; ``values`` has shape (..., rows).
-
-    Rolling friction has another sign on the other wall, and passes through zero: both count by the larger of them.
-    """
+    """Return the scale of the tolerance of each drag, in the order of :data:`DRAG_ROWS`, of values of shape (..., rows)."""
+    # Rolling friction has opposite signs on the two walls and passes through zero: both count by the larger of them.
     found = np.abs(values[..., DRAG_ROWS])
     published, balanced, upper = found[..., 0], found[..., 1], found[..., 2]
     np.fmax(balanced, upper, out=balanced)
@@ -86,10 +84,8 @@ def drag_parts(values: Array) -> Array:
 
 
 def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
-    """Return the integrands of the two definitions of friction, shape (2, ..., len(x)).
-
-    ``slopes`` is the pressure gradient over lambda, ``(h - h*)/h**3``, if it is known better than from the gap.
-    """
+    """Return the integrands of the two definitions of friction, shape (2, ..., len(x))."""
+    # ``slopes`` is the pressure gradient over lambda, (h - h*)/h**3, where it is known better than from the gap.
     u = 1 / h
     projected = 3 * x * x * (u * u * (1 - h_star * u) if slopes is None else slopes)
     return np.stack([u * (3 * h_star * u - 2) + projected, u * (4 - 3 * h_star * u)])
@@ -114,10 +110,7 @@ def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> lis
 
 
 def smooth_observables(equations: Equations, y: Array, load: Numbers) -> Array:
-    """Return the observables of films of the article by :data:`ROW`, shape (n, rows), zero for the minimum of the gap.
-
-    The unknowns may be complex.
-    """
+    """Return the observables by :data:`ROW` of base-model films, shape (n, rows), zero for the minimum gap."""
     op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     h, h_star = y[:, at.gap], y[:, at.flux_gap]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
@@ -161,11 +154,9 @@ def friction_integrals(
     slopes: Array | None = None,
     far: Callable[[Array], Array] = far_gap,
 ) -> Array:
-    """Return the integrals of :func:`friction_integrands` over the whole line, shape (2, ...).
-
-    Beyond the panels in ``x`` the gap is ``far`` plus a smooth function of ``1/x``: that is interpolated, and the integrand
-    summed on panels that halve towards infinity.
-    """
+    """Return the integrals of :func:`friction_integrands` over the whole line, shape (2, ...)."""
+    # Beyond the panels in x the gap is ``far`` plus a smooth function of 1/x: that is interpolated, and the integrand summed
+    # on panels that halve towards infinity.
     order = mesh.order
     inner_slopes = None if slopes is None else slopes[..., :-order]
     inner = friction_integrands(mesh.nodes[:-order], h[..., :-order], h_star, inner_slopes) @ mesh.weights[:-order]
@@ -191,13 +182,10 @@ def beyond_panels(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[
 
 
 def gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | None = None) -> Array:
-    """Return the derivatives of the observables with respect to the unknowns, shape (len(ALL_NAMES), ..., y.shape[-1]).
-
-    Those of the film of the article are the first alone.  The position of the minimum gap is held, to first order without
-    effect.  The projected pressure enters as its moment, ``3 int x**2 g dx = -6 int x A g dx`` without the panel through
-    infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to the quadrature error
-    of g.  ``slopes`` are those of G, see :func:`stribeck.equations.film.slopes_in_film`, if they are known.
-    """
+    """Return the derivatives of the observables with respect to the unknowns, shape (len(ALL_NAMES), ..., y.shape[-1])."""
+    # The minimum gap is taken at a fixed position, right to first order.  The projected pressure enters as its moment, 3 int
+    # x**2 g dx = -6 int x A g dx without the panel through infinity: the two forms respond alike to changes of the gap, but
+    # this one is insensitive to the quadrature error of g.
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
     h, h_star = y[..., of_gap], y[..., at.flux_gap]

@@ -254,10 +254,8 @@ class OperatorsOfRows(Operators):
 
 @lru_cache(maxsize=MAX_CELLS)
 def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
-    """Return D at the cavity stretches of a cell, each the deflection in x over d but for the logarithm of d.
-
-    Kept for the last alone: they fill more memory than all else of a mesh.
-    """
+    """Return D at the cavity stretches of a cell: each the deflection in x over d, without its logarithm."""
+    # Only the last cells are cached: they fill more memory than the rest of a mesh.
     found = []
     for d in np.exp(STRETCH_CELL * (cell + _IN_CELL)).tolist():
         stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)

@@ -75,11 +75,9 @@ class Extrapolation:
 
     @cached_property
     def _moved(self) -> Array | None:
-        """How far the minimum of each gap lies behind the predicted one; None where it is no edge that moves.
-
-        The film leaves a body that remembers where that has not yet come back, and the place moves with the film by many of
-        the film's own lengths.
-        """
+        """Shift of the minimum of each gap behind the predicted one; None where the minimum is no moving edge."""
+        # On a viscoelastic body the film ends where the body has not yet come back, and the place moves by many lengths of the
+        # film.
         model = self.states[-1].equations.operators.model
         if model.cavitation is not Cavitation.NONE or not lengths_of(model.solid).memories:
             return None

@@ -78,9 +78,6 @@ def _values(equations: Equations, y: Array, load: float) -> Array:
 def friction_slopes(
     state: State, boundary_friction: float, beta: float, definition: str, changes: Sequence[Change] = ()
 ) -> Array:
-    """Return the derivatives of the friction coefficient with respect to ln(speed), ln(load), ln(roughness).
-
-    Those along changes of the model, as :func:`log_derivatives` takes them, follow.
-    """
+    """Return the derivatives of friction by ln(speed), ln(load), ln(roughness), and along the changes of the model."""
     derivatives = log_derivatives(state, changes)
     return np.asarray(boundary_friction * derivatives["contact_load_share"] + beta * derivatives[f"viscous_{definition}"])

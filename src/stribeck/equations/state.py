@@ -174,10 +174,8 @@ class State:
 
     @property
     def outcome(self) -> Outcome:
-        """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated.
-
-        A film that ends at ambient pressure and sucks before has been taken past its end: it is none.
-        """
+        """Outcome of the Newton iteration, where one stopped by rounding counts as converged."""
+        # A film that ends at ambient pressure and has suction before its exit has been taken past its end: it is none.
         found = Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
         return Outcome.STALLED if found.ok and self._sucks else found
 
@@ -292,11 +290,9 @@ def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
 
 
 def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Array:
-    """Return where the gradient has a kink, between the places ``x`` of a guess.
-
-    With flow factors that is where the last path of the flow closes, at the gap ``closed_at``; a fluid without a plateau has
-    kinks where a wall is not sheared.
-    """
+    """Return where the gradient has a kink, between the places ``x`` of a guess."""
+    # With flow factors that is where the last path of the flow closes, at the gap ``closed_at``; a fluid without a plateau has
+    # kinks where a wall is not sheared.
 
     def crossing(x: Array) -> Array:
         found = guess.fields(x)
@@ -492,10 +488,8 @@ def solve_state(
     max_steps: int = 40,
     kept: Inverse | None = None,
 ) -> State:
-    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``.
-
-    ``kept`` is the inverse of a neighbour on the same mesh, used while the steps contract with it.
-    """
+    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
+    # ``kept`` is a neighbour's inverse on the same mesh, used while the steps contract with it.
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)
     thinnest = float(start[equations.layout.gap].min())

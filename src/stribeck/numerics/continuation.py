@@ -136,10 +136,7 @@ def march(
 
 
 def extrapolation_weights(coordinates: npt.ArrayLike, s: float) -> Array:
-    r"""Give the weights of the polynomial through given points, evaluated at s.
-
-    .. math:: w_i = \prod_{j \ne i} \frac{s - s_j}{s_i - s_j}, \qquad x(s) \approx \sum_i w_i \, x(s_i)
-    """
+    r"""Return the weights of the polynomial through given points at s: :math:`\prod_{j \ne i} (s - s_j)/(s_i - s_j)`."""
     c = np.asarray(coordinates, dtype=np.float64)
     others = ~np.eye(c.size, dtype=bool)
     top = np.where(others, s - c[None, :], 1.0)

@@ -56,10 +56,8 @@ def hermite_form(order: int) -> Array:
 
 @lru_cache(maxsize=64)
 def _highest_order(order: int) -> Array:
-    r"""Return the rows that give what the highest order changes, at both ends over :math:`(\tau (1 - \tau))^K`.
-
-    The change over that is linear: it is followed from inside to the ends.
-    """
+    r"""Return the rows that give the change by the highest order at both ends over :math:`(\tau (1 - \tau))^K`."""
+    # That change is linear in tau: it is evaluated inside and extrapolated to the ends, where the quotient is 0/0.
     at = np.array([0.25, 0.75])
     left, right = hermite_weights(order, at)
     without = [np.pad(part, ((0, 0), (0, 1))) for part in hermite_weights(order - 1, at)]

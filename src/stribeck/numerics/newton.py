@@ -66,10 +66,7 @@ class Problem(Protocol):
         """Return the inverse of the Jacobian at ``x``, its unknowns measured in :meth:`units`."""
 
     def units(self, x: Array) -> Array:
-        """Return the lengths in which unknowns are measured, shape (n,).
-
-        Steps with a kept inverse take the derivative with respect to unknowns in these units as constant.
-        """
+        """Return the units of the unknowns, shape (n,), in which a kept inverse takes the derivative as constant."""
 
     def admissible(self, x: Array, dx: Array) -> float:
         """Return the longest admissible fraction of the step, in (0, 1]."""

@@ -176,10 +176,7 @@ class Mesh:
 
     @cached_property
     def beyond(self) -> tuple[Array, Array, Array]:
-        """Nodes beyond the panels in ``x``, weights of integrals there, and what interpolates to them on the last panel.
-
-        They are those of :func:`towards_infinity`, first all at negative ``x``.
-        """
+        """Nodes beyond the panels in ``x``, negative ones first, weights of integrals, and interpolation there."""
         t, weights, to_tail = towards_infinity(self.order)
         x = 1 / (t * self.half_widths[-1])
         return x, weights * self.half_widths[-1] * x**2, to_tail
@@ -218,10 +215,9 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class HalfTail:
-    """The half of the panel through infinity that lies at ``x < -X``, as a panel of its own: ``-1/X < t < 0``.
+    """The half ``-1/X < t < 0`` of the panel through infinity, as a panel of its own."""
 
-    What ends at zero has a kink at infinity, which the nodes of the whole panel do not resolve.
-    """
+    # A film that ends at zero has a kink at infinity, which the nodes of the whole panel do not resolve.
 
     mesh: Mesh
 
@@ -258,21 +254,16 @@ def _to_half(half: int, order: int) -> Array:
 
 
 def legendre_tail(values: Array, order: int) -> Array:
-    """Return the largest of the last three Legendre coefficients on each panel: what a panel leaves unresolved.
-
-    ``values`` has shape (..., panels * order); the result has shape (..., panels).
-    """
+    """Return the largest of the last three Legendre coefficients on each panel, shape (..., panels), of nodal values."""
     nodal = values.reshape(*values.shape[:-1], -1, order)
     last = nodal @ reference(order).to_legendre[-3:].T
     return np.asarray(np.abs(last).max(axis=-1))
 
 
 def interpolation_error(values: Array) -> Array:
-    """Return by how much the polynomial through the nodal ``values`` (..., order) of one panel misses them between the nodes.
-
-    Twice the last Legendre coefficients, for truncation and aliasing, summed as if those beyond fell no faster than the last
-    four do, by pairs.
-    """
+    """Return the estimated error between the nodes of the polynomial through nodal ``values`` (..., order) of one panel."""
+    # Twice the last Legendre coefficients, for truncation and aliasing, as if further ones fell as slowly as the last four, in
+    # pairs.
     c = np.abs(values @ reference(values.shape[-1]).to_legendre[-4:].T)
     before, last = c[..., :2].max(axis=-1), c[..., 2:].max(axis=-1)
     rate = np.minimum(0.7, np.sqrt(last / np.maximum(before, 1e-300)))
@@ -297,11 +288,7 @@ def adapt(
     places: Array = NO_PLACES,
     shortest: Callable[[Array], Array] | None = None,
 ) -> Mesh:
-    """Return a mesh of few panels that resolves the given fields.
-
-    Panels are halved until each resolves them; then they may be laid anew, as long as the tails that halving left allow.  The
-    fields are not looked at again: they are often known by polynomials on other panels, with kinks where these end.
-    """
+    """Return a mesh of few panels that resolves the given fields."""
     nodes = reference(order).nodes
 
     def tails(edges: Array) -> Array:
@@ -345,14 +332,13 @@ def adapt(
     panels, size = np.concatenate(done), np.concatenate(sizes)
     ascending = np.argsort(panels[:, 0])
     edges = np.append(panels[ascending, 0], panels[:, 1].max())
+    # The fields are not evaluated on the evened panels: they are often polynomials on other panels, with kinks between these.
     return Mesh(_evened(edges, size[ascending], order, places) if anew else edges, order, scale)
 
 
 def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
-    """Return edges of as few panels as have tails of about one; a tail goes with the power ``order - 1`` of the length.
-
-    Zero and ``places`` stay edges.
-    """
+    """Return edges of as few panels as have tails of about one, with zero and ``places`` among them."""
+    # A tail goes with the power ``order - 1`` of the length.
     counts = np.fmin(1.0, np.fmax(MIN_SPLIT_FRACTION, SPLIT_MARGIN * tails ** (1 / (order - 1))))
     fixed = [0, *(np.flatnonzero(np.isin(edges[1:-1], np.append(places, 0.0))) + 1), len(edges) - 1]
     found = []
@@ -363,10 +349,8 @@ def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
 
 
 def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
-    """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides; these become edges.
-
-    They take the place of edges that rounding alone keeps apart from them: nodes between the two would be the same.
-    """
+    """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides."""
+    # Edges that only rounding keeps apart from a place go: nodes between the two would be the same.
     apart = [np.abs(mesh.edges - place) > MIN_DISTANCE_RATIO * abs(place) for place in places]
     edges = np.unique(np.concatenate([mesh.edges[np.all(apart, axis=0)], places]))
     halvings = 0.5 ** np.arange(1, levels + 1)
@@ -380,11 +364,9 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
 
 
 def ungraded(edges: Array, places: Mapping[float, float]) -> Array:
-    """Return edges without those by which panels halve towards each of ``places``, up to the length that it is given with.
-
-    The coarsest panels of :func:`base_edges` halve towards zero too: without them one panel would reach from there to the end
-    of a long cavity, with no node where the bodies touch.
-    """
+    """Return edges without those by which panels halve towards each of ``places``, up to the length given with the place."""
+    # The coarsest panels of base_edges halve towards zero too: without them one panel would reach from there to the end of a
+    # long cavity, with no node where the bodies touch.
     for place, longest in places.items():
         for side in (-1.0, 1.0):
             distance = side * (edges - place)

@@ -67,11 +67,9 @@ class RunningIntegral:
 
     @cached_property
     def blocks(self) -> Array:
-        """Per panel, nodal values -> what the panel itself adds to the integral from infinity at its nodes.
-
-        Panels left of zero integrate from their left edge, panels right of it from their right edge, the last one from
-        infinity in its middle, where ``dx = -dt/t**2``; shape (panels, order, order).
-        """
+        """Per panel, nodal values -> its part of the integral from infinity at its nodes, shape (panels, order, order)."""
+        # Panels left of zero integrate from their left edge, panels right of it from their right edge, the last one from
+        # infinity in its middle, where dx = -dt/t**2.
         mesh = self.mesh
         rule = reference(mesh.order)
         half = mesh.half_widths[:-1, None, None]
@@ -168,10 +166,7 @@ class Volterra:
 
     @cached_property
     def _chains(self) -> list[tuple[Indices, Array, float, Array]]:
-        """The panels of each side from infinity to zero, the weights of that side of the last panel, its sign, and a matrix.
-
-        The matrix takes what comes from infinity, and what each panel but the last adds, to what arrives at each.
-        """
+        """Each side of infinity: its panels towards zero, weights and sign of the last panel, and the matrix of sums."""
         integral = self.integral
         left, right = integral._tail_weights
         chains = [(np.arange(integral.middle), left, 1.0)]

@@ -132,10 +132,8 @@ class Samples:
 
 
 def interval(reach: float, count: int = INTERVAL_ORDER, degree: int | None = None) -> Samples:
-    """Return the samples of a real function up to a distance ``reach``, for the polynomial of a degree nearest to its values.
-
-    It goes through all of them by default.  A degree hardly above the orders asked for leaves out more of what is not smooth.
-    """
+    """Return samples of a real function up to a distance ``reach``, for the polynomial of a degree nearest to its values."""
+    # A degree hardly above the orders asked for leaves out more of what is not smooth; by default the polynomial interpolates.
     matrix = _to_taylor(count)[-1 if degree is None else degree]
     orders = np.arange(len(matrix))
     return Samples(reach * chebyshev.chebpts1(count), matrix * reach ** -orders[:, None].astype(float))
@@ -181,10 +179,8 @@ def radius(coefficients: Array, reach: float = 1.0, rounding: float = COEFFICIEN
 
 
 def beyond(series: Array, t: float) -> tuple[Array, float]:
-    """Return series at a place outside, and by how much two of their rational forms differ at most.
-
-    Their denominators, the one of higher degree than the other, make the highest coefficients vanish.
-    """
+    """Return series at a place outside, and the largest difference between two of their rational forms."""
+    # The denominators, of two degrees, make the highest coefficients vanish.
     order = len(series) - 1
     scaled = series * (t ** np.arange(order + 1.0))[:, None]
     degree = min(PADE_DENOMINATOR_DEGREE, (order - 1) // 2)

@@ -32,10 +32,9 @@ def _set_threads(library: Any, number: int) -> None:
 
 
 class _Limit:
-    """A limit to one thread that lasts from the first to the last of the calls that want it.
+    """A limit to one thread that lasts from the first to the last of the calls that want it."""
 
-    If each call restored what it found, one that came second and left last would leave one thread for good.
-    """
+    # If each call restored what it found, one that came second and left last would leave one thread for good.
 
     def __init__(self) -> None:
         self.calls = 0

@@ -63,11 +63,9 @@ REFACTOR_AT = 2.0  # GMRES steps per digit above which the capacitance matrix of
 
 
 def advect_front(gas: Array, now: Flags, before: Flags) -> Flags:
-    """Return the nodes that are cavitated after a step, the film being spread over as many as fill with what it has to give.
-
-    Behind a line of rupture that lies too far upstream one node a step would heal, with the flow that ends there: that is
-    passed on to cavitated neighbours, whose gas it fills.
-    """
+    """Return the active set after a step, with the film advanced over the nodes that its flow fills."""
+    # Behind a rupture line that lies too far upstream one node a step would heal: the flow that ends there is passed on to
+    # cavitated neighbours, whose void it fills.
     stays, left, given = before & now, gas.copy(), np.where(before & ~now, gas, 0.0)
     for _ in range(MAX_FRONT_NODES):
         if not given.any():
@@ -170,10 +168,8 @@ def complementary(y: Unknowns, cavitated: Flags, least: float) -> Unknowns:
 def balanced(
     linear: CavitatedLinear, precondition: Preconditioner, y: Unknowns, unbalanced: float
 ) -> tuple[Unknowns, tuple[Array, Array, float], int]:
-    """Return complementary unknowns near a solution that carry the load but for ``unbalanced``, their residual, and the steps.
-
-    Corrections are those of the last Jacobian, as cavitated nodes stay the same; a few at most.
-    """
+    """Return complementary unknowns whose load error is at most ``unbalanced``, their residual, and the steps taken."""
+    # The corrections are those of the last Jacobian, as the active set stays the same.
     equations, cavitated, steps = linear.equations, y.fluid <= linear.least, 0
     residual = equations.residual(y)
     for _ in range(MAX_CORRECTIONS):

@@ -36,10 +36,8 @@ class FixedLengthEquations(Equations):
         return np.asarray(y[..., self.layout.cavity_stretch])
 
     def admissible(self, y: Array, dy: Array) -> float:
-        """Return the longest fraction of a Newton step: no gap may double, as where the exit moves with the thin inlet.
-
-        The pressure of the cavity may change as it likes.
-        """
+        """Return the longest fraction of a Newton step that doubles no gap."""
+        # Gaps grow fast where the exit moves with the thin inlet; the pressure of the cavity is free.
         at, step = self.layout, dy.copy()
         step[at.cavity_stretch] = 0.0
         return min(super().admissible(y, step), 1.0 / max(1.0, float((dy[at.gap] / y[at.gap]).max())))

@@ -66,11 +66,9 @@ def solve_at_fixed_exit(
 
 
 def distance_to_flux_gap(state: State) -> float:
-    """Return how far it is from the exit of a state to where its gap grows through that at which the flux needs no pressure.
-
-    There the film would end; infinite if there is no such place.  The gradient of the pressure vanishes at infinity too, and
-    Newton's step points there from beyond its maximum.
-    """
+    """Return the distance from the exit to where the gap grows through the flux gap; infinite if it does not."""
+    # There the flux needs no pressure, and the film ends.  The pressure gradient vanishes at infinity too: from beyond its
+    # maximum Newton's step points there.
     equations, at = state.equations, state.equations.layout
     x, pressure = state.mesh.nodes, state.y[at.pressure] if equations.film.uses_pressure else None
     rising = equations.ending.gradient(state.gap, pressure, state.y[at.flux_gap]) > 0

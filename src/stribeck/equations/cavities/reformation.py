@@ -86,10 +86,8 @@ class ReformingEquations(CavitatedSystem):
         return np.where(cavitated, np.clip(found / full, 0.0, 1.0), 0.0)
 
     def shear_error(self, y: Unknowns) -> float:
-        """Return an estimate of the error of the total shear over h: that by the gas, and that by the edge of the cavity.
-
-        With shear flow streaks may fill less than the whole width from the line of rupture on, which lies between nodes.
-        """
+        """Return an estimate of the error of the total shear over h, by the void fraction and by the edge of the cavity."""
+        # With shear flow streaks may fill less than the whole width from the rupture line on, which lies between nodes.
         at_edge = np.maximum(0.0, 1.0 - self.film.filled(y.gap)) / y.gap * edge_of(y.fluid <= self.least)
         return self.gas_error(y) + AREA_ERROR_FACTOR * float((at_edge @ self.operators.mesh.area_weights).sum())
 
@@ -101,11 +99,9 @@ class ReformingEquations(CavitatedSystem):
         return VOID_ERROR_FACTOR * abs(float((lost @ mesh.area_weights).sum()))
 
     def shear_missing(self, y: Unknowns) -> Array:
-        """Return the shear over h that is missing on each ring in the dry streaks of the cavity, shape (rings,).
-
-        Streaks fill the part of the width that the volume takes which flows, over the mean speed of the walls: with shear
-        flow this is more or less than what is no gas.
-        """
+        """Return the shear over h missing on each ring in the dry streaks of the cavity, shape (rings,)."""
+        # Streaks fill the width that the flowing volume takes at the mean speed of the walls: with shear flow not the liquid
+        # fraction.
         mesh, filled = self.operators.mesh, self.film.filled(y.gap)
         dry = np.where(y.fluid <= self.least, np.maximum(0.0, 1.0 - filled + filled * self.gas(y)), 0.0)
         lost = dry * self.film.shear(mesh, self.speed, y.gap, y.fluid) / y.gap

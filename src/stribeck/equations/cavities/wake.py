@@ -64,11 +64,9 @@ def shear_missing(
     filled: Callable[[Array], Array] = np.ones_like,
     sheared: Callable[[Array], Array] = np.ones_like,
 ) -> Array:
-    r"""Return the shear that is missing on each ring in the dry streaks of the wake, :math:`r \oint (1 - \phi) \, \tau/h`.
-
-    By the gap, ``filled`` gives the volume that the walls carry in a full one over the gap, and ``sheared`` the drag of
-    sliding over that of a fluid that does not thin.
-    """
+    r"""Return the shear missing on each ring in the dry streaks of the wake, :math:`r \oint (1 - \phi) \, \tau/h`."""
+    # By the gap, ``filled`` gives the volume that the walls carry in a full gap over the gap, ``sheared`` the sliding drag
+    # over a Newtonian fluid's.
     found = np.zeros(mesh.rings)
     line = rupture_line(mesh, gap, fluid)
     if line is None:

@@ -65,10 +65,8 @@ def tails(
     far: FarFilm = FULL_FAR_FILM,
     bulge: float = DEFLECTION_COEFFICIENT,
 ) -> tuple[float, float, float]:
-    """Return the parts of shear, pressure flow and moment beyond the rim, without the logarithms at infinity.
-
-    ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
-    """
+    """Return the parts of shear, pressure flow and moment outside the rim, without the logarithms at infinity."""
+    # ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
     u, w = _rule()
     r = rim / u
     ring = rim / u**2 * w * r

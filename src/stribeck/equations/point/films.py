@@ -75,10 +75,7 @@ class Beyond(Protocol):
         """Return the same beyond another radius."""
 
     def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
-        """Return pressure, its radial derivative, and the flux that is lost along the radius, at angles of the rim.
-
-        Of shape (3, angles), without an offset; and their derivatives by the offset.
-        """
+        """Return pressure, its radial derivative and lost radial flux at angles of the rim, and their offset derivatives."""
 
 
 class PlaneFilm(Protocol):

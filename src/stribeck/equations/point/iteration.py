@@ -162,11 +162,9 @@ class _Step:
 
 
 def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Array, wanted: float, most: int) -> _Step:
-    """Return the Newton step with an error in the gap of at most ``wanted`` times its size, if ``most`` GMRES steps suffice.
-
-    A small preconditioned residual in the pressure may still be a large one in the gap, where that is stiff against it: the
-    residual of this solution shows it, and gives a further correction.
-    """
+    """Return the Newton step whose gap errs by at most ``wanted`` times its size, if ``most`` GMRES steps suffice."""
+    # A small preconditioned residual in the pressure may still be a large one in the gap, where that is stiff against it: the
+    # residual of this solution shows it, and gives a further correction.
     law, h = linear.equations.law, linear.y.gap
     x, rest, steps, tolerance = np.zeros_like(right), right, 0, wanted
     while True:

@@ -230,10 +230,8 @@ def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Mo
 
 
 def farther_panels(speed: float, model: Model) -> int:
-    """Return the number of panels beyond the usual rim until the film is plain.
-
-    There the shear rate, 2/r**2, hardly thins the fluid, and the suction, 0.8 speed/r**3, is far from that of a cavity.
-    """
+    """Return the number of panels outside RIM_RADIUS until the film is Newtonian and its suction far from that of a cavity."""
+    # Far out the shear rate is 2/r**2 and the suction 0.8 speed/r**3.
     film, needed = model.film, 0.0
     if not speed > 0.0:
         return 0
@@ -269,10 +267,8 @@ def fits(found: Resolution, speed: float, law: ContactLaw, least: float = -0.4) 
 
 
 def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:
-    """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved.
-
-    A law that saturates, or nearly full contact in the middle, has an edge of its own within the contact.
-    """
+    """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved."""
+    # A law that saturates, or nearly full contact in the middle, has an edge of its own within the contact.
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
     near = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9)
@@ -287,11 +283,8 @@ def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: 
 
 
 def with_closing(found: Resolution, mesh: PolarMesh, gap: Array) -> Resolution:
-    """Return a resolution with edges around the line at which roughness closes the last path of the flow, for a nodal gap.
-
-    There the mobility has a kink, and polynomials across it err as much on one degree as on the next.  Edges that enclose the
-    line closely stay.
-    """
+    """Return a resolution with edges around the line at which roughness closes the last path of the flow, for a nodal gap."""
+    # The mobility has a kink on that line, and polynomials across it err as much on one degree as on the next.
     closed_at = closed_gap(found.model.film)
     crossed = [] if closed_at is None else rings_crossed(mesh, gap, closed_at)
     step = EDGE_GRID * 2.0**found.doublings

@@ -61,10 +61,9 @@ def centre(mesh: PolarMesh, h: Array) -> Minimum:
 
 
 def reach_of(mesh: PolarMesh, h: Array, radius: float, angle: float, depth: float) -> tuple[float, float]:
-    """Return how far in radius and angle from a minimum the gap rises by a depth, one radius and half a turn at most.
-
-    By its curvature :math:`H` there: :math:`[2 d (H^{-1})_{ii}]^{1/2}`, the extent of the ellipse in which the gap is lower.
-    """
+    """Return the distances in radius and angle at which the gap has risen by a depth above a minimum."""
+    # By the curvature H there (2 d inv(H)_ii)**0.5, the extent of the ellipse in which the gap is lower; one radius and half a
+    # turn at most.
     panel = min(max(int(mesh.edges.searchsorted(radius, side="right")) - 1, 0), mesh.panels - 1)
     orders, fields = np.arange(mesh.modes, dtype=np.float64), _derivatives(mesh, mesh.to_modes @ h, panel)
     eigenvalues, vectors = np.linalg.eigh(_jet(mesh, fields, orders, panel, radius, angle)[2])

@@ -34,13 +34,8 @@ class BandedModes:
         self.pivot = float(self.row @ self.column[0])
 
     def __call__(self, right: Any) -> Any:
-        """Return approximate changes of total pressure, by mode, and offset that remove residuals, in the precision of these.
-
-        ::
-
-            [ B  g ] [dp]   [r]
-            [ w  0 ] [dz] = [s]
-        """
+        """Return changes of total pressure, by mode, and offset that approximately remove residuals."""
+        # The system is [[B, g], [w, 0]] (dp, dz) = (r, s).
         many = right.shape[1:]
         x = self.factors.solve(right[:-1].reshape(*self.shape, *many))
         offset = (self.row @ x[0] - right[-1]) / self.pivot
@@ -49,10 +44,8 @@ class BandedModes:
 
 
 def _sums(waves: Array, values: Array, sign: float) -> Array:
-    """Return sums over the angles of values, shape (angles, ...), times waves of c theta, c < 2 modes - 1.
-
-    ``cos((2N - c) theta) = -cos(c theta)`` at the angles, and the same for sines with the other sign.
-    """
+    """Return sums over the angles of values, shape (angles, ...), times waves of c theta, c < 2 modes - 1."""
+    # cos((2N - c) theta) = -cos(c theta) at the angles, and the same for sines with the other sign.
     n = values.shape[0]
     flat = values.reshape(n, -1)
     found = np.zeros((2 * n - 1, flat.shape[1]))
@@ -192,10 +185,7 @@ class BlockLU:
         self.below.append(below)
 
     def solve(self, right: Any) -> Any:
-        """Return the solution for a right-hand side of the shape (count, size), or for many, (count, size, many).
-
-        It has the precision of the right-hand side, and is good to single precision.
-        """
+        """Return the solution, to single precision, for right-hand sides of the shape (count, size) or (count, size, many)."""
         scale = self.scale.reshape(*self.scale.shape, *(1 for _ in right.shape[2:])).astype(right.dtype)
         x = (right * scale).astype(np.float32, copy=False)
         one = x.shape[1:]

@@ -54,10 +54,8 @@ class Operators:
 
     @cached_property
     def deflection(self) -> Array:
-        """K: pressures by mode -> deflections by mode, shape (modes, rings, rings).
-
-        Beyond the rim the film pressure falls as r**-3, in the first mode: that tilts the surface within.
-        """
+        """K: pressures by mode -> deflections by mode, shape (modes, rings, rings)."""
+        # Outside the rim the film pressure falls as r**-3, in the first mode: that tilts the surface within.
         body = BODIES[type(self.solid)]
         found = body.deflection(self.mesh, self.solid)
         if self.mesh.modes > 1:

@@ -67,11 +67,8 @@ def _grid(angles: int) -> tuple[Array, Indices, Array, Array]:
 
 
 def _flux(law: RateLaw, slide: float, found: Array, change: Array, part: float) -> tuple[Array, Array, Column]:
-    """Return the coefficients of both components of the flux at the reference radius, and the columns.
-
-    ``found`` has the coefficients of the pressure, shape (number, modes), ``change`` the part of them that grows with that
-    of the gap.
-    """
+    """Return the coefficients of both components of the flux at the reference radius, and the columns."""
+    # ``found`` has the coefficients of the pressure, shape (number, modes), ``change`` their part that grows with the gap.
     theta, modes, cosines, sines = _grid(2 * found.shape[1])
     n = cast("Any", law).exponent
     along = np.stack([np.cos(theta), -np.sin(theta)])[:, None] * np.ones((len(found), 1))
@@ -156,10 +153,8 @@ class FarPower(OutsideRim):
 
     @cached_property
     def _known(self) -> float:
-        """An estimate of the error of friction over the drag up to the rim, by half the angles.
-
-        Where a wall rests a stress has a kink along the angle, and the modes fall off slowly, the slower the smaller n.
-        """
+        """An estimate of the error of friction over the drag up to the rim, by half the angles."""
+        # Where a wall rests a stress has a kink along the angle, and the modes fall off slowly, the slower the smaller n.
         half = self._film_by(ANGLE_COUNT // 2)[0]
         film, q = self._film[0], 2.0 - 2.0 * self.exponent
         pressure = abs(film.pressure[0] - half.pressure[0]) * (0.25 + 0.5 / q)
