@@ -44,7 +44,7 @@ class Nodal(NamedTuple):
     gap: Array
     pressure: Array
     weights: Array  # Integrates nodal pressures to the load
-    clip: Callable[[Array, Array], Array] | None = (
+    clip: Callable[[Array, Array], Array] | None = None  # (values here, values at the coarse nodes) -> values to take
         None  # (values here, values at the nodes of the equations) -> values to take
     )
 

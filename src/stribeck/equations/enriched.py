@@ -104,7 +104,7 @@ class FineOperators:
         return found
 
     def deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None = None) -> Array:
-        """Return the deflection at coarse nodes under rows of fine ``pressure``, over the cavity stretch and without its log."""
+        """Return the deflection at coarse nodes under rows of fine ``pressure``, over the cavity stretch, without its log."""
         if operators.deflection_by_tail is not None and operators.tail is not None:
             own = slice(-self.mesh.order, None)
             density = (pressure[:, own] * self.mesh.stretch[own]) @ operators.tail.interpolation(self.mesh.order).T

@@ -215,8 +215,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
 
 def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
     """Return a function that clips values at finer nodes of ``flat`` panels to those of the coarse nodes and their error."""
-    # Where the shear rate vanishes the gradient turns sharply with the gap, or the gap with the gradient: that with the smaller
-    # error between its nodes gives the values.
+    # Where the shear rate vanishes the gradient turns sharply with the gap, or the gap with the gradient: that with the
+    # smaller error between its nodes gives the values.
 
     def clip(finer: Array, nodal: Array) -> Array:
         held = coarse.to_order(nodal, order)
