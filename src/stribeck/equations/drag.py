@@ -45,8 +45,6 @@ class Nodal(NamedTuple):
     pressure: Array
     weights: Array  # Integrates nodal pressures to the load
     clip: Callable[[Array, Array], Array] | None = None  # (values here, values at the coarse nodes) -> values to take
-        None  # (values here, values at the nodes of the equations) -> values to take
-    )
 
 
 def friction_scale(load: Numbers, speed: Numbers) -> Array:
