@@ -24,13 +24,10 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.path.corrector import Corrector
-from stribeck.solver.refinement import RefinedState
+from stribeck.solver.neighbours import Neighbours
 
 GROUPS = sb.Groups(1e-3, 0.1, 1e-4)
 POINTS = 41
-KEPT = 5
-"""States from which the next one is predicted."""
 
 MODELS: dict[str, tuple[dict[str, Any], float]] = {
     "free exit": ({"cavitation": "exit"}, 1.6),
@@ -47,17 +44,14 @@ class Chain:
     """States one after another, each solved from those before it."""
 
     def __init__(self, parts: dict[str, Any]) -> None:
-        groups = with_parts(GROUPS, **parts)
-        self.corrector = Corrector(lambda s: replace(groups, speed=math.exp(s)), 1e-6)
-        self.history: list[tuple[float, RefinedState]] = []
+        self.groups, self.neighbours = with_parts(GROUPS, **parts), Neighbours(1e-6)
 
     def seconds(self, s: float) -> float:
         """Return the time of the state at ``s``."""
         start = time.process_time()
-        point = self.corrector(s, self.history[-KEPT:])
+        point = self.neighbours.at(replace(self.groups, speed=math.exp(s)))
         taken = time.process_time() - start
-        assert point is not None and point.outcome.ok
-        self.history.append((s, point))
+        assert point.outcome.ok
         return taken
 
 

@@ -12,7 +12,6 @@ either does not.
 from __future__ import annotations
 
 import argparse
-import math
 import time
 from dataclasses import replace
 
@@ -21,27 +20,27 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point.path import NeighbourSolver
+from stribeck.solver.neighbours import Neighbours
 
 FACTOR = 1.19
 
 
-def chain(groups: sb.Groups, rtol: float) -> NeighbourSolver:
-    """Return a solver of states by the logarithm of the speed."""
-    return NeighbourSolver(lambda s: replace(groups, speed=math.exp(s)), rtol)
-
-
 def ratio(groups: sb.Groups, fastest: float, points: int, rtol: float) -> tuple[float, float, int, int]:
     """Return the cost of a curve over that of the full film, the median cost of a state so, meshes, and states that failed."""
-    chains, taken, meshes, failed = (chain(with_parts(groups, cavitation="exit"), rtol), chain(groups, rtol)), [], 0, 0
+    chains, taken, meshes, failed = (
+        [(each, Neighbours(rtol)) for each in (with_parts(groups, cavitation="exit"), groups)],
+        [],
+        0,
+        0,
+    )
     last = None
     for k in range(points):
         seconds = []
-        for one in chains:
+        for which, (one, neighbours) in enumerate(chains):
             start = time.process_time()
-            state = one(math.log(fastest) - k * math.log(FACTOR))
+            state = neighbours.at(replace(one, speed=fastest * FACTOR**-k))
             seconds.append(time.process_time() - start)
-            if one is chains[0]:
+            if which == 0:
                 failed += not state.outcome.ok
                 meshes += state.mesh is not last
                 last = state.mesh

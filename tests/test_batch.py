@@ -7,9 +7,9 @@ import pytest
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.batches import chain
 from stribeck.quantities.outputs import NAMES
-from stribeck.solver import cold_start
+from stribeck.solver import cold_start, neighbours
+from stribeck.solver.neighbours import Neighbours
 
 SHARES = ("contact_load_share", "fluid_load_share")
 GROUPS = ("speed", "load", "roughness")
@@ -69,16 +69,16 @@ def test_each_state_has_the_error_it_states(found):
             assert found.friction(0.5, 0.03, definition)[i] == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_neighbour_is_cheaper_than_a_cold_start(monkeypatch):
-    starts, follow = [], chain.Corrector.__call__
-
-    def counted(self, s, history):
-        starts.append(not history)
-        return follow(self, s, history)
-
-    monkeypatch.setattr(chain.Corrector, "__call__", counted)
-    assert sb.solve_batch(crowd()).ok.all()
-    assert sum(starts) == 1
+@pytest.mark.parametrize("geometry", ["line", "point"])
+def test_one_state_of_many_near_ones_is_solved_from_cold(monkeypatch, geometry):
+    groups = crowd() if geometry == "line" else sb.Groups([1e-3, 1.2e-3, 1.4e-3], 1e-2, 2e-4, geometry=geometry)
+    starts = []
+    for name in ("_CylinderSteps", "_BallSteps"):
+        steps = getattr(neighbours, name)
+        start = steps.start
+        monkeypatch.setattr(steps, "start", lambda self, here, start=start: starts.append(here) or start(self, here))
+    assert sb.solve_batch(groups, rtol=1e-4).ok.all()
+    assert len(starts) == 1
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -142,12 +142,13 @@ def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
 
 def test_a_state_that_is_lost_costs_no_other(monkeypatch):
     groups = crowd()
-    wanted, follow = float(groups.speed[5]), chain.Corrector.__call__
+    wanted, solved = float(groups.speed[5]), Neighbours.at
 
-    def failing(self, s, history):
-        return None if self.groups_at(s).speed == wanted else follow(self, s, history)
+    def failing(self, groups):
+        state = solved(self, groups)
+        return replace(state, state=None, outcome=Outcome.PATH_LOST) if groups.speed == wanted else state
 
-    monkeypatch.setattr(chain.Corrector, "__call__", failing)
+    monkeypatch.setattr(Neighbours, "at", failing)
     found = sb.solve_batch(groups)
     assert np.flatnonzero(~found.ok).tolist() == [5]
     assert found.outcome[5] is Outcome.PATH_LOST
@@ -155,10 +156,10 @@ def test_a_state_that_is_lost_costs_no_other(monkeypatch):
 
 
 def test_an_error_of_the_program_is_no_outcome_of_a_state(monkeypatch):
-    def broken(self, s, history):
+    def broken(self, groups):
         raise ZeroDivisionError("a fault")
 
-    monkeypatch.setattr(chain.Corrector, "__call__", broken)
+    monkeypatch.setattr(Neighbours, "at", broken)
     with pytest.raises(ZeroDivisionError, match="a fault"):
         sb.solve_batch(crowd())
 

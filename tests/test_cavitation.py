@@ -5,7 +5,7 @@ import pytest
 from command_line import EXAMPLES, PDMS, call
 
 import stribeck as sb
-from stribeck.solver.nearby import WarmStartSolver
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.notes import ATMOSPHERE
 
 pytestmark = pytest.mark.quick
@@ -31,7 +31,7 @@ def test_suction_above_an_atmosphere_is_noted_with_its_value(atmospheres, notes)
     names = ("modulus", "load", "viscosity")
     scaled = contact.replace(**{name: factor * getattr(contact, name) for name in names})
     assert scaled.groups.speed == pytest.approx(contact.groups.speed)
-    for solution in (sb.solve(scaled), WarmStartSolver()(scaled)):
+    for solution in (sb.solve(scaled), Neighbours(1e-6).solution(scaled.groups, scaled)):
         found = noted(solution)
         assert len(found) == notes
         assert all(f"falls {atmospheres * ATMOSPHERE / 1e6:.3g} MPa below the ambient" in note for note in found)

@@ -24,6 +24,7 @@ from stribeck.quantities.outputs import ALL_NAMES as NAMES
 from stribeck.solver.cavities.cavity_length import _cavity_in_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.homotopy import _coarse, _seen_from_exit
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import solved_point
@@ -193,14 +194,8 @@ def test_a_cavity_closes_as_the_root_of_the_suction_that_is_too_large():
 def marched(speeds: np.ndarray) -> list[RefinedState]:
     """Return states with a free exit, each solved from those before it."""
     groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), cavitation="exit")
-    corrector = Corrector(lambda s: replace(groups, speed=math.exp(s)), 1e-6)
-    history: list[tuple[float, RefinedState]] = []
-    for s in np.log(speeds).tolist():
-        point = corrector(s, history[-5:])
-        assert point is not None
-        assert point.outcome.ok
-        history.append((s, point))
-    return [point for _, point in history]
+    neighbours = Neighbours(1e-6)
+    return [neighbours.solved(replace(groups, speed=speed)) for speed in speeds.tolist()]
 
 
 def test_an_exit_that_moves_through_the_contact_is_predicted_with_the_contact_where_it_is():
@@ -414,7 +409,7 @@ def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
 def test_a_mesh_that_is_left_gives_up_its_operators_beyond_the_memory_for_them(monkeypatch, entries, kept):
     monkeypatch.setattr("stribeck.solver.path.corrector.CACHED_ENTRIES", entries)
     first, second = (solved_point(sb.Groups(speed, 0.1, 1e-3), 1e-5) for speed in (1e-4, 1e-2))
-    follower, operators = Corrector(lambda s: first.groups, 1e-5), first.state.equations.operators
+    follower, operators = Corrector(1e-5), first.state.equations.operators
     before = operators.deflection
     follower._change_to(operators, first.fine)
     follower._change_to(second.state.equations.operators, second.fine)

@@ -13,6 +13,7 @@ import pytest
 from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 from rich.console import Console
+from stribeck.fits.states.cylinders import solved_parts
 
 import stribeck as sb
 from stribeck import FitSettings
@@ -28,7 +29,6 @@ from stribeck.fits.least_squares import minimise
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.objective import objective
 from stribeck.fits.posterior import draw_posterior
-from stribeck.fits.states.cylinders import solved_parts
 from stribeck.fits.states.sources import atlas_parts
 from stribeck.surfaces import SelfAffine, persson_law
 

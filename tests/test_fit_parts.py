@@ -9,7 +9,7 @@ from stribeck import FitSettings
 from stribeck.fits.case_file import write_fitted_case
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.states.cylinders import kept_parts, solved_parts
+from stribeck.fits.states.solved import solved_parts
 from stribeck.fits.states.sources import in_atlas
 
 SPEEDS = np.geomspace(1e-3, 0.3, 6)
@@ -40,7 +40,7 @@ def test_the_derivatives_along_numbers_of_the_model_are_its_differences(parts, f
     speeds = SPEEDS[2:4]
     data = measured(speeds, np.ones(2))
     model = FrictionModel(contact, data, free_inputs(contact, data, free, FitSettings()))
-    theta, solved, step = np.full(len(free), -0.1), kept_parts("balanced", 1e-7), 1e-3
+    theta, solved, step = np.full(len(free), -0.1), solved_parts(model, "balanced", 1e-7), 1e-3
     found = model.predict(theta, solved)
     for k in range(len(free)):
         ends = [model.predict(theta + sign * step * np.eye(len(free))[k], solved).friction for sign in (1, -1)]
@@ -48,14 +48,15 @@ def test_the_derivatives_along_numbers_of_the_model_are_its_differences(parts, f
         assert found.jacobian[:, k] == pytest.approx(difference, abs=1e-4 * float(found.friction.max()))
 
 
-def test_states_from_those_before_are_those_of_the_curve():
+def test_states_from_those_before_are_those_that_are_solved_alone():
     contact = TRUE.replace(**EXIT_AND_BARUS)
-    data, kept = measured(SPEEDS, np.ones(6)), kept_parts("balanced", 1e-6)
-    model = FrictionModel(contact, data, free_inputs(contact, data, ("pressure_coefficient", "roughness"), FitSettings()))
+    data, free = measured(SPEEDS, np.ones(6)), ("pressure_coefficient", "roughness")
+    model = FrictionModel(contact, data, free_inputs(contact, data, free, FitSettings()))
+    kept = solved_parts(model, "balanced", 1e-6)
     model.predict(np.array([0.3, -0.2]), kept)
-    found, curve = (model.predict(np.zeros(2), parts) for parts in (kept, solved_parts("balanced", 1e-6)))
-    assert found.friction == pytest.approx(curve.friction, rel=2e-6)
-    assert found.jacobian == pytest.approx(curve.jacobian, abs=1e-5)
+    found, alone = (model.predict(np.zeros(2), parts) for parts in (kept, solved_parts(model, "balanced", 1e-6)))
+    assert found.friction == pytest.approx(alone.friction, rel=2e-6)
+    assert found.jacobian == pytest.approx(alone.jacobian, abs=1e-5)
 
 
 def test_a_fit_of_films_that_end_reads_their_table_and_finds_what_made_the_data():
@@ -109,7 +110,7 @@ def test_each_curve_keeps_its_own_fluid_where_no_number_of_it_is_free():
     speeds = SPEEDS[2:4]
     data = measured(np.tile(speeds, 2), np.ones(4), curve=np.repeat([0, 1], 2), curves=("a", "b"), inputs=({}, barus))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("roughness",), FitSettings()))
-    found = model.predict(np.zeros(1), kept_parts("balanced", 1e-6)).friction
+    found = model.predict(np.zeros(1), solved_parts(model, "balanced", 1e-6)).friction
     assert found[:2] != pytest.approx(found[2:], rel=1e-3)
     alone = [
         sb.solve(each.replace(speed=speed)).friction().total for each in (TRUE, TRUE.replace(**barus)) for speed in speeds
@@ -133,7 +134,7 @@ def test_the_deborah_number_of_a_row_is_that_of_its_speed():
     free, speeds = ("modulus", "boundary_friction"), SPEEDS[2:4]
     data = measured(speeds, np.ones(2))
     model = FrictionModel(REMEMBERS, data, free_inputs(REMEMBERS, data, free, FitSettings()))
-    kept, theta = kept_parts("balanced", 1e-6), np.array([0.1, 0.0])
+    kept, theta = solved_parts(model, "balanced", 1e-6), np.array([0.1, 0.0])
     found = model.predict(theta, kept)
     moved = REMEMBERS.replace(modulus=REMEMBERS.modulus * np.exp(0.1))
     solved = [sb.solve(moved.replace(speed=float(speed))).friction for speed in speeds]

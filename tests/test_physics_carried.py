@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.batches.chain import _Polyline
 from stribeck.curves.coordinate import Coordinate
 from stribeck.regimes.phase_grid import Diagram
 from stribeck.sweeps.chain import Chain
@@ -16,17 +15,13 @@ def groups_of_a_curve():
     return Coordinate("load", BALL).groups_along(np.array([1e-3, 1e-2]))
 
 
-def groups_between_states():
-    return _Polyline(np.array([[1e-3, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4]]), [BALL.physics] * 2).groups_at(1.0)
-
-
 def groups_of_a_diagram():
     axes = {"load": np.array([1e-3]), "roughness": np.array([1e-4]), "speed": np.array([1.0])}
     return Diagram(None, axes, 1.0, 1.0, "balanced", 1e-6, BALL.physics).problem(0, 0)[1]
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("made", [groups_of_a_curve, groups_between_states, groups_of_a_diagram])
+@pytest.mark.parametrize("made", [groups_of_a_curve, groups_of_a_diagram])
 def test_groups_made_of_others_share_their_physics(made):
     assert made().physics == BALL.physics
 

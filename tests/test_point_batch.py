@@ -7,8 +7,7 @@ import pytest
 from ball_data import BALL
 
 import stribeck as sb
-from stribeck.batches import chain
-from stribeck.solver.point import path
+from stribeck.solver import neighbours
 
 RTOL = 1e-3
 ROUGHNESS = [BALL.roughness, 1.3 * BALL.roughness]
@@ -76,19 +75,11 @@ def test_groups_of_balls_may_be_arrays_and_rest_is_one_of_them():
     assert found.friction(1.0, 0.1)[1] == pytest.approx(alone.friction(1.0, 0.1).total, rel=2 * RTOL)
 
 
-def test_a_ball_follows_its_neighbour(monkeypatch):
-    starts, solve = [], path.next_state
-    monkeypatch.setattr(path, "next_state", lambda start, *rest: starts.append(start is None) or solve(start, *rest))
-    assert sb.solve_batch(sb.Groups([1e-3, 1.2e-3, 1.4e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL).ok.all()
-    assert sum(starts) == 1
-    assert set(chain.CHAINS) == {"line", "point"}
-
-
 def test_a_ball_that_cannot_be_solved_has_its_outcome_and_no_numbers(monkeypatch):
     from stribeck import Outcome
     from stribeck.solver.point.solve import _failed
 
-    monkeypatch.setattr(path, "next_state", lambda start, groups, rtol: _failed(groups, rtol, Outcome.STALLED))
+    monkeypatch.setattr(neighbours, "solve_cold", lambda groups, rtol: _failed(groups, rtol, Outcome.STALLED))
     found = sb.solve_batch(sb.Groups([1e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL)
     assert found.outcome[0] is Outcome.STALLED
     assert np.isnan(found.central_gap[0]) and np.isnan(np.asarray(found.friction)[0])

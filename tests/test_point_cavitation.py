@@ -14,7 +14,7 @@ from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflections_from_beyond
-from stribeck.solver.point.path import NeighbourSolver
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.point.solve import solve_cold, solve_from
 
 EXIT = Model(cavitation=Cavitation.EXIT)
@@ -193,8 +193,8 @@ def test_a_film_fills_as_many_torn_nodes_at_once_as_its_flow_fills():
 
 def followed(speeds, kappa, load):
     """Return the states at some speeds, each from those before it."""
-    solver = NeighbourSolver(lambda s: ball(math.exp(s), kappa, load), 1e-4)
-    return [solver(math.log(speed)) for speed in speeds]
+    neighbours = Neighbours(1e-4)
+    return [neighbours.at(ball(speed, kappa, load)) for speed in speeds]
 
 
 def test_a_slow_film_is_told_by_a_mesh_for_comparison_whose_pressure_has_settled():

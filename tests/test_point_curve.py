@@ -12,7 +12,6 @@ from stribeck import Outcome
 from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import continued
 from stribeck.equations.point.observables import SMOOTH
-from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold
 
 LOAD, ROUGHNESS, RTOL = 1e-3, 1e-5, 1e-4
@@ -146,17 +145,6 @@ def test_a_curve_over_the_load_of_a_ball_at_rest_is_a_function():
     there, solved = found.at(2.2e-3), sb.solve(sb.Groups(0.0, 2.2e-3, groups(0.0).roughness, geometry="point"))
     assert there.central_gap == pytest.approx(solved.central_gap, rel=2e-3)
     assert there.minimum_gap == pytest.approx(solved.minimum_gap, rel=2e-3)
-
-
-def test_a_neighbour_solver_keeps_its_states_without_their_factors():
-    solver = NeighbourSolver(lambda s: groups(float(np.exp(s))), 1e-3)
-    first = solver(np.log(1e-3))
-    assert solver(np.log(1e-3)) is solver.states[np.log(1e-3)]
-    assert first.work.fine.iterated.preconditioner is not None
-    assert solver.states[np.log(1e-3)].work.fine.iterated.preconditioner is None
-    assert solver(np.log(1.5e-3)).values["central_gap"] == pytest.approx(
-        solve_cold(groups(1.5e-3), 1e-3).values["central_gap"], rel=2e-3
-    )
 
 
 @pytest.mark.slow

@@ -1,7 +1,5 @@
 """Fits of balls: exact on exact data, joint over loads and fluids, with intervals that cover, in files and commands."""
 
-import math
-
 import numpy as np
 import pytest
 from ball_data import BALL as TRUE
@@ -9,13 +7,11 @@ from command_line import call
 
 import stribeck as sb
 from stribeck import FitSettings
-from stribeck.batches.lattice import Lattice
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.states import sources
-from stribeck.fits.states.balls import curve_parts, lattice_parts
 from stribeck.fits.states.parts import FrictionParts
-from stribeck.fits.states.sources import Ways
+from stribeck.fits.states.solved import solved_parts
+from stribeck.fits.states.sources import Ways, between
 
 SPEEDS = TRUE.speed * np.geomspace(0.3, 6.0, 5)
 FREE = ("boundary_friction", "roughness", "modulus", "load", "beta", "radius", "viscosity", "alpha")
@@ -83,12 +79,25 @@ def test_free_inputs_of_a_ball_act_as_those_of_its_contact(abscissa):
 def test_a_prediction_from_solved_curves_is_the_friction_of_the_contacts():
     data = measured(np.ones(2), SPEEDS[1:2], inputs=({}, {"load": 1.5 * TRUE.load, "slide_to_roll": 1.0}))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("boundary_friction",), FitSettings(geometry="point")))
-    found = model.predict(np.array([0.1]), curve_parts("published", 1e-3))
+    found = model.predict(np.array([0.1]), solved_parts(model, "published", 1e-3))
     for i in range(2):
         contact = model.contact_of(i, np.array([0.1])).replace(speed=SPEEDS[1])
         alone = sb.solve(contact, rtol=1e-3).friction(definition="published").total
         assert found.friction[i] == pytest.approx(alone, rel=2e-3)
     assert data.inputs[1]["slide_to_roll"] == model.contacts[1].slide_to_roll
+
+
+def test_many_speeds_of_one_load_are_read_between_fewer_that_are_solved():
+    contact = TRUE.replace(fluid=sb.fluids.Carreau("2 ms", 0.5))
+    speeds = TRUE.speed * np.geomspace(0.5, 4.0, 40)
+    data, solved = measured(np.ones(40), speeds), []
+    model = FrictionModel(contact, data, free_inputs(contact, data, ("viscosity", "relaxation_time"), FitSettings()))
+    found = model.predict(np.zeros(2), solved_parts(model, "balanced", 1e-3, solved.append))
+    assert len(solved) < 10
+    fine = model.predict(np.zeros(2), solved_parts(model, "balanced", 1e-5))
+    assert (np.abs(found.friction - fine.friction) < found.error).all()
+    assert found.friction == pytest.approx(fine.friction, rel=1e-3)
+    assert found.jacobian == pytest.approx(fine.jacobian, abs=0.01 * np.abs(fine.jacobian).max())
 
 
 def test_exact_friction_of_a_ball_gives_its_inputs():
@@ -126,9 +135,9 @@ def test_intervals_of_a_ball_cover_in_40_experiments(monkeypatch):
 
     data = measured(np.ones(5))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("boundary_friction", "roughness"), FitSettings()))
-    parts = lattice_parts(*model.start(), "balanced")  # kept for all experiments
-    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(parts, parts))
-    exact = model.predict(np.zeros(2), parts).friction
+    ways = between(solved_parts(model, "balanced", 1e-4))  # kept for all experiments
+    monkeypatch.setattr("stribeck.fits.fit.ways_of", lambda *_: ways)
+    exact = model.predict(np.zeros(2), ways.solved).friction
     held, experiments = np.zeros((2, 2), dtype=int), 40
     for seed in range(experiments):
         noise = np.exp(0.03 * np.random.default_rng(seed).standard_normal((4, 5)))
@@ -183,7 +192,7 @@ def test_units_of_a_fit_are_those_of_the_geometry(tmp_path):
 
 def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys, monkeypatch):
     parts = made_up("balanced")
-    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(parts, parts))
+    monkeypatch.setattr("stribeck.fits.fit.ways_of", lambda *_: Ways(parts, parts))
     case = tmp_path / "ball.toml"
     case.write_text(CASE.format(load="10 mN", roughness="0.1 um", fit=""))
     contact = sb.load_case(case).contact.replace(boundary_friction=0.7, roughness=0.12e-6)
@@ -200,14 +209,3 @@ def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys, monkeypat
     # These formulas tell the product alone, as the note says.
     assert back.boundary_friction * back.roughness**0.3 == pytest.approx(0.7 * 0.12e-6**0.3, rel=1e-2)
     assert "determine boundary_friction x roughness^0.29 best" in " ".join(out.split())
-
-
-def test_a_lattice_of_a_smooth_ball_has_no_direction_of_roughness():
-    smooth = TRUE.replace(roughness=0.0)
-    data = measured(np.ones(5))
-    model = FrictionModel(smooth, data, free_inputs(smooth, data, ("viscosity",), FitSettings(geometry="point")))
-    logs, varies = model.start()
-    assert logs[0, 2] == 0 and not varies[2]
-    made = Lattice(tuple(logs[0]), smooth.groups.physics, 1e-2, is_smooth=True)
-    values, _ = made.at(np.array([[math.log(0.1), logs[0, 1], 0.0]]))
-    assert values[0, 0] < 1e-200 and values[1, 0] != 0

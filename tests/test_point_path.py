@@ -7,8 +7,7 @@ import pytest
 from stribeck import Groups, Outcome
 from stribeck.contacts.groups import contact_law
 from stribeck.solver.point import refinement, start
-from stribeck.solver.point.path import NeighbourSolver
-from stribeck.solver.point.refinement import MINIMUM_RTOL_FACTOR_ON_PATH, choose_next_meshes, follow, mesh_for_neighbour
+from stribeck.solver.point.refinement import MINIMUM_RTOL_FACTOR_ON_PATH, choose_next_meshes, mesh_for_neighbour
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -68,18 +67,6 @@ def test_a_state_that_misses_its_tolerance_is_compared_with_the_next_finer_mesh_
     pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 0.3 * state.work.total, state.work)
     assert pair.outcome.ok
     assert solved == [wanted]
-
-
-def test_a_prediction_is_taken_where_it_is_nearer_than_the_neighbour():
-    solver = NeighbourSolver(lambda s: ball(math.exp(s)), 1e-5)
-    for speed in (1.0e-2, 1.1e-2, 1.2e-2):
-        solver(math.log(speed))
-    s, near, law = math.log(1.3e-2), solver._last[1].work, contact_law(ball(1.3e-2))
-    line = solver._line(s)
-    assert sum(weight for weight, _ in line) == pytest.approx(1)
-    alone, predicted = follow(1.3e-2, law, near, 1e-5), solver(s)
-    assert predicted.work.coarse.iterated.steps < alone.coarse.iterated.steps
-    agree(predicted, solve_cold(ball(1.3e-2), 1e-5))
 
 
 def test_refinement_ends_where_no_mesh_is_finer(state, monkeypatch):

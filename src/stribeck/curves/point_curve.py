@@ -27,11 +27,11 @@ from stribeck.numerics.newton import root_between
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, interpolate_to
 from stribeck.solver.path.path import SolvedPath, follow
 from stribeck.solver.point.curve_path import PointProblem
 from stribeck.solver.point.knots import BallKnots
-from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
 from stribeck.solver.point.state import PointState
@@ -286,7 +286,7 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return SLOWEST, 10.0
-    solver = NeighbourSolver(lambda s: replace(groups, speed=math.exp(s)), COARSE)
+    neighbours = Neighbours(COARSE)
     fastest, low, share = FASTEST, min(FASTEST, max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
     high = low
 
@@ -294,7 +294,7 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
         return solution_of(state, None).friction(boundary_friction, beta, definition).contact_share
 
     while low > SLOWEST:
-        state = solver(math.log(low))
+        state = neighbours.at(replace(groups, speed=low))
         if not state.outcome.ok:
             if share is not None:  # slower ones are not solved
                 low *= 10

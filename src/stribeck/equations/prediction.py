@@ -13,7 +13,7 @@ from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.continuation import extrapolation_weights
+from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.solid import lengths_of
@@ -157,12 +157,9 @@ def _at_place(one: Guess, other: Guess, x: Array) -> Array:
 
 def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
     """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
-    for first in range(len(history) - 1):
-        points = history[first:]
-        weights = extrapolation_weights([c for c, _ in points], s)
-        if np.abs(weights).sum() <= MAX_AMPLIFICATION:
-            return Extrapolation(weights, [state for _, state in points])
-    return history[-1][1]
+    weights = steady_weights([c for c, _ in history], s, MAX_AMPLIFICATION)
+    states = [state for _, state in history[len(history) - len(weights) :]]
+    return Extrapolation(weights, states) if len(states) > 1 else states[0]
 
 
 @dataclass(frozen=True, eq=False)

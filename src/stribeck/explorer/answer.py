@@ -46,10 +46,8 @@ from stribeck.explorer.inputs.carried import errors_of, facts_of
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
-from stribeck.solver.nearby import WarmStartSolver
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.point.solution import Field, PointSolution
-from stribeck.solver.point.solution import solution_of as point_solution_of
-from stribeck.solver.point.solve import solve_from
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
@@ -61,6 +59,7 @@ __all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down
 
 STATE_RTOL = 1e-6  # Relative tolerance of the state that the page shows.
 PIN_RTOL = 1e-4  # Relative tolerance of the curve of a pinned contact.
+KEPT_STATES = 8  # States from which the next one may start; those of balls hold megabytes
 MAX_CACHED_ANSWERS = 64  # Answers that are kept for inputs that come back.
 NEGLIGIBLE_SHARE = 0.01  # Load share below which asperities, or the fluid, count as absent when formulas are chosen.
 
@@ -114,7 +113,7 @@ class Answerer:
     """Answers to the inputs of one tab, one after another; ``known`` is one that need not be found again."""
 
     def __init__(self, known: Answer | None = None) -> None:
-        self._solve = WarmStartSolver(STATE_RTOL)
+        self._neighbours = Neighbours(STATE_RTOL, KEPT_STATES)
         self._last: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
         self._last_curves: dict[str, Curve] = {}
@@ -257,21 +256,9 @@ class Answerer:
         contact = inputs.contact
         if self._last is not None and self._last[0] == contact and self._last[1].rtol == inputs.rtol:
             return self._last[1]
-        found: Any
-        if contact.INPUTS.geometry == "point":
-            last = self._last[1] if self._last is not None else None
-            if isinstance(last, PointSolution) and last.groups == contact.groups and last.rtol == inputs.rtol:
-                found = point_solution_of(last.state, contact)  # dry friction does not change the film
-            elif isinstance(last, PointSolution) and last.groups.law == contact.groups.law and contact.speed > 0:
-                near = solve_from(last.state, contact.groups, inputs.rtol)
-                found = point_solution_of(near, contact) if near.outcome.ok else solve(contact, rtol=inputs.rtol)
-            else:
-                found = solve(contact, rtol=inputs.rtol)
-        else:
-            if self._solve.rtol != inputs.rtol:
-                self._solve = WarmStartSolver(inputs.rtol)
-            found = self._solve(contact)
-        state: Solution | PointSolution = found
+        if self._neighbours.rtol != inputs.rtol:
+            self._neighbours = Neighbours(inputs.rtol, KEPT_STATES)
+        state: Solution | PointSolution = self._neighbours.solution(contact.groups, contact)
         self._last = contact, state
         return state
 

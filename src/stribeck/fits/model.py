@@ -168,16 +168,6 @@ class FrictionModel:
     def _rubbing(self, contact: Contact) -> float:
         return float(self.rule.sliding_factor(contact.groups, self.rule.of_contact(contact)))
 
-    def start(self) -> tuple[Array, Array]:
-        """Return where the curves of a ball begin, and what the fit changes."""
-        exponent = self.contact.groups.scaling.roughness_exponent
-        firsts = [int(np.argmax(self.data.curve == curve)) for curve in range(len(self.contacts))]
-        logs = self.logs[firsts, :3].copy()
-        logs[:, 2] = np.where(np.isfinite(logs[:, 2]), logs[:, 2] - exponent * logs[:, 1], 0.0)
-        by = self.exponents[:, :, :3].copy()
-        by[:, :, 2] -= exponent * by[:, :, 1]
-        return logs, np.abs(by).max(axis=(0, 1), initial=0.0) > 1e-12
-
     def contact_of(self, curve: int, theta: Array, speed: float | None = None) -> Contact:
         """Return the contact of a curve at a set of free inputs, at a speed, by default that of the case."""
         factors: dict[str, float] = {}

@@ -143,3 +143,13 @@ def extrapolation_weights(coordinates: npt.ArrayLike, s: float) -> Array:
     bottom = np.where(others, c[:, None] - c[None, :], 1.0)
     weights: Array = np.prod(top / bottom, axis=1)
     return weights
+
+
+def steady_weights(coordinates: npt.ArrayLike, s: float, limit: float) -> Array:
+    """Return the weights of the last points whose polynomial amplifies their errors at s by at most a limit, one at least."""
+    c = np.asarray(coordinates, dtype=np.float64)
+    for first in range(c.size - 1):
+        weights = extrapolation_weights(c[first:], s)
+        if np.abs(weights).sum() <= limit:
+            return weights
+    return np.ones(1)

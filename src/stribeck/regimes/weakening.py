@@ -22,12 +22,10 @@ from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.path.corrector import Corrector
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import as_groups, check_rtol
-from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["Weakening", "roughness_without_minimum", "weakening"]
 
@@ -86,7 +84,7 @@ class _Slopes:
     def __init__(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition, rtol: float) -> None:
         self.groups, self.beta, self.definition = groups, beta, definition
         self.rubbing = boundary_friction * sliding_part(2 * groups.model.film.slide)
-        self.corrector = Corrector(self.at, rtol)
+        self.neighbours = Neighbours(rtol)
         self.points: dict[float, RefinedState] = {}
         self.found: dict[float, float] = {}
 
@@ -95,11 +93,8 @@ class _Slopes:
 
     def __call__(self, s: float) -> float:
         if s not in self.found:
-            nearest = sorted(self.points.items(), key=lambda pair: -abs(pair[0] - s))
-            point = self.corrector(s, nearest[-4:])
-            if point is None or point.state is None or point.values is None:
-                raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
-            self.points[s] = point
+            self.points[s] = point = self.neighbours.solved(self.at(s))
+            assert point.state is not None and point.values is not None
             slope = float(friction_slopes(point.state, self.rubbing, self.beta, self.definition)[0])
             # Friction of the substrate that is the slower one is negative; its size counts.
             slope *= math.copysign(1.0, self.friction(s))

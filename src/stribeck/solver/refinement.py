@@ -52,6 +52,7 @@ class RefinedState:
     outcome: Outcome
     tolerances: tuple[float, float] | None = None
     fine: FineOperators | None = None
+    message: str = ""  # Why no path leads to the state
 
     @property
     def effort(self) -> float:

@@ -350,7 +350,7 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     raise SolveError(
         point.outcome,
         solution,
-        f"{describe(groups)}: {point.outcome.value}{reached}{spike_note(groups)}{untested_note(groups)}",
+        point.message or f"{describe(groups)}: {point.outcome.value}{reached}{spike_note(groups)}{untested_note(groups)}",
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,11 +12,9 @@ from stribeck import atlas
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL
-from stribeck.fits.states.balls import OnState, curve_parts, kept_balls, lattice_parts
-from stribeck.fits.states.cylinders import kept_parts, solved_parts
 from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import FrictionParts, Made, ModelChange, PartsOf
+from stribeck.fits.states.solved import OnState, solved_parts
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +26,7 @@ __all__ = ["Ways", "atlas_or", "atlas_parts", "between", "in_atlas", "ways_of"]
 FAR_DOUBT = 1e-2  # Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`
 
 
-BALL_RTOL = 1e-4  # Smallest tolerance of solved balls in the values that a fit returns: far below what rigs resolve
+MIN_RTOL = {"line": 0.0, "point": 1e-4}  # Smallest tolerance of solved states, by geometry: far below what rigs resolve
 
 
 class Ways(NamedTuple):
@@ -39,8 +37,10 @@ class Ways(NamedTuple):
 
 
 def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
-    """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states."""
-    return WAYS[model.contact.groups.geometry](model, definition, rtol, on_state)
+    """Return how the states of a fit are obtained: off the atlas where one holds, else read between solved ones."""
+    rtol = max(rtol, MIN_RTOL[model.contact.groups.geometry])
+    solved = Made(solved_parts, model, definition, rtol, on_state=on_state)
+    return Ways(Made(atlas_or, solved, definition), solved) if in_atlas(model) else between(solved)
 
 
 def in_atlas(model: FrictionModel) -> bool:
@@ -77,26 +77,3 @@ def between(solve: PartsOf) -> Ways:
     """Return how to search on curves that are read between solved ones, and end on solved ones."""
     quick = Between(solve, FAR_DOUBT)
     return Ways(quick, replace(quick, doubt=0.0))
-
-
-def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
-    if in_atlas(model):
-        solved = Made(solved_parts, definition, rtol)
-        return Ways(Made(atlas_or, solved, definition), solved)
-    return between(Made(kept_parts, definition, rtol))
-
-
-def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
-    if any(each.groups.model != BASE_MODEL for each in model.contacts):  # lattices know one model
-        kept = Made(kept_balls, model, definition, max(rtol, BALL_RTOL), on_state=on_state)
-        if in_atlas(model):
-            return Ways(Made(atlas_or, kept, definition), kept)
-        return between(kept)
-    logs, varies = model.start()
-    lattice = Made(lattice_parts, logs, varies, definition)
-    solved = Made(curve_parts, definition, max(rtol, BALL_RTOL))
-    return Ways(Made(atlas_or, lattice, definition) if in_atlas(model) else lattice, solved)
-
-
-# The ways by geometry.
-WAYS: dict[str, Callable[[FrictionModel, Definition, float, OnState], Ways]] = {"line": _of_cylinder, "point": _of_ball}

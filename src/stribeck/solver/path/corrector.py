@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
-from stribeck.equations.prediction import extrapolate
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
@@ -31,15 +29,12 @@ MOVING_TAIL_RATIO = 0.5  # Mesh tolerances over the usual ones where the mesh mo
 
 
 class Corrector:
-    """Solves the states of ``groups_at(s)`` one from another, on one mesh while that resolves them."""
+    """Solves states one from another, on one mesh while that resolves them."""
 
     # The operators of the mesh cost as much as several states.  The inverse of a neighbour's Jacobian, with which the
     # iteration ends, may misjudge a defect by half: with ``own_inverse`` states are verified with their own.
 
-    def __init__(
-        self, groups_at: Callable[[float], Groups], rtol: float, gap_part: float = 1.0, own_inverse: bool = False
-    ) -> None:
-        self.groups_at = groups_at
+    def __init__(self, rtol: float, gap_part: float = 1.0, own_inverse: bool = False) -> None:
         self.rtol = rtol
         self.gap_part = gap_part
         self.own_inverse = own_inverse
@@ -48,13 +43,6 @@ class Corrector:
         self.inverse: Inverse | None = None
         self.left: deque[tuple[Operators, FineOperators | None]] = deque()
         self.tolerances = self._widest
-
-    def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
-        """Return the state at ``s`` predicted from ``history``; from cold if that is empty."""
-        groups = self.groups_at(s)
-        if not history:
-            return self.cold(groups)
-        return self.solve(extrapolate([(c, p.state) for c, p in history if p.state is not None], s), groups)
 
     def cold(self, groups: Groups) -> RefinedState | None:
         """Return the state of ``groups`` from cold; None if no path leads there."""
@@ -80,6 +68,15 @@ class Corrector:
             if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
         return self._kept(solve_cold_line(groups, self.rtol))
+
+    def move_to(self, point: RefinedState) -> None:
+        """Take the mesh of a state that was solved before."""
+        if point.state is None or point.state.mesh is (None if self.operators is None else self.operators.mesh):
+            return
+        operators = point.state.equations.operators
+        self.left = deque(each for each in self.left if each[0] is not operators)
+        self._change_to(operators, point.fine)
+        self.inverse = None
 
     def _solve(self, guess: Guess, groups: Groups, spread: float) -> RefinedState:
         base = with_positive_gap(groups)[0]
@@ -180,4 +177,4 @@ def solve_cold_line(groups: Groups, rtol: float) -> RefinedState:
     try:
         return solved_point(groups, rtol)
     except SolveError as failure:
-        return RefinedState(groups, None, None, None, failure.outcome)
+        return RefinedState(groups, None, None, None, failure.outcome, message=str(failure))

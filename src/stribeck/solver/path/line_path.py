@@ -110,7 +110,7 @@ class LineProblem:
         self.interval = CUSP_SAMPLE_RATIO if fractional else 1.0
         self.degree = CUSP_ORDER + 1 if fractional else None
         self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
-        self.corrector = Corrector(groups_at, self.rtol, GAP_TAIL_RATIO, own_inverse=True)
+        self.corrector = Corrector(self.rtol, GAP_TAIL_RATIO, own_inverse=True)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
 

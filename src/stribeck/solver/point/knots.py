@@ -14,9 +14,10 @@ from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.curve_path import error_scales, speeds_at
-from stribeck.solver.point.path import NeighbourSolver, next_state, without_factors
+from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.sensitivity import derivatives_along
 from stribeck.solver.point.state import LOOSE_OBSERVABLES, PointState, ReadState
 
@@ -46,7 +47,7 @@ class BallKnots:
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None) -> None:
         self.groups_at, self.rtol, self.cut_offs = groups_at, rtol, cut_offs
-        self.solver = NeighbourSolver(groups_at, STATE_RTOL_FRACTION * rtol)
+        self.neighbours = Neighbours(STATE_RTOL_FRACTION * rtol)
         self.failure: PointState | None = None
 
     @cached_property
@@ -82,7 +83,7 @@ class BallKnots:
 
     def solve(self, s: float) -> Knot | Outcome:
         """Return the state at a coordinate with its slopes."""
-        state = self.solver(s)
+        state: PointState = self.neighbours.at(self.groups_at(s))
         if not state.outcome.ok:
             self.failure = state
             return state.outcome
@@ -122,7 +123,7 @@ class BallKnots:
 
     def release(self) -> None:
         """Forget the factors of the last state, which fill the memory."""
-        self.solver.release()
+        self.neighbours.release()
 
     def solved_at(self, path: HermitePath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved to the tolerance of its states."""

@@ -1,7 +1,4 @@
-"""Fits of balls with other fluids: kept states with derivatives by the numbers of the fluid, and fits that find these."""
-
-import math
-from dataclasses import replace
+"""Fits of balls with other fluids: derivatives by the numbers of the fluid, and fits that find these."""
 
 import numpy as np
 import pytest
@@ -10,16 +7,12 @@ from test_point_fit import made_up, measured
 
 import stribeck as sb
 from stribeck import FitSettings
-from stribeck.batches.kept import KeptStates, between
-from stribeck.contacts.model import Model
 from stribeck.fits.free_inputs import free_inputs
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.states import sources
-from stribeck.fits.states.balls import kept_balls
 from stribeck.fits.states.interpolation import Between
+from stribeck.fits.states.solved import solved_parts
 from stribeck.fits.states.sources import Ways
-from stribeck.fluids import Carreau
-from stribeck.fluids.shear_thinning import ShearThinning
 
 SPEEDS = BALL.speed * np.geomspace(0.5, 4.0, 4)
 FLUIDS = {
@@ -28,21 +21,12 @@ FLUIDS = {
 }
 
 
-@pytest.mark.quick
-def test_between_two_models_lie_their_numbers():
-    one, other = (Model(ShearThinning(Carreau(t, n), slide=0.5)) for t, n in ((1.0, 0.5), (3.0, 0.7)))
-    found = between(one, other, 0.25)
-    assert found.film.law == Carreau(1.5, 0.55)
-    assert found.film.slide == 0.5
-    assert between(one, one, 0.3) == one
-
-
 @pytest.mark.parametrize("name", ["barus", pytest.param("carreau", marks=pytest.mark.slow)])
 def test_predictions_are_the_friction_of_solved_balls_and_their_slopes_its_differences(name):
     parts, free = FLUIDS[name]
     contact, data = BALL.replace(**parts), measured(np.ones(1), SPEEDS[1:2])
     model = FrictionModel(contact, data, free_inputs(contact, data, free, FitSettings(geometry="point")))
-    of, theta, step = kept_balls(model, "balanced", 1e-5), 0.1 * np.ones(len(free)), 1e-2
+    of, theta, step = solved_parts(model, "balanced", 1e-5), 0.1 * np.ones(len(free)), 1e-2
     found = model.predict(theta, of)
     moved = model.contact_of(0, theta)
     for i, speed in enumerate(SPEEDS[1:2]):
@@ -52,15 +36,6 @@ def test_predictions_are_the_friction_of_solved_balls_and_their_slopes_its_diffe
         move = step * np.eye(len(free))[i]
         slope = (model.predict(theta + move, of).friction - model.predict(theta - move, of).friction) / (2 * step)
         np.testing.assert_allclose(found.jacobian[:, i], slope, atol=1e-3 * np.abs(found.friction).max(), err_msg=free[i])
-
-
-@pytest.mark.quick
-def test_a_state_that_was_solved_is_not_solved_again(monkeypatch):
-    groups = sb.Groups(0.1, 1e-3, 1e-3, geometry="point", model=Model(ShearThinning(Carreau(0.3, 0.5))))
-    states = KeptStates(1e-3)
-    first = states.at(groups, {}, 0.1, math.inf)
-    monkeypatch.setattr("stribeck.batches.kept.next_state", None)
-    np.testing.assert_allclose(states.at(replace(groups), {}, 0.1, math.inf)[0], first[0], rtol=1e-14)
 
 
 @pytest.mark.quick
@@ -83,13 +58,13 @@ def test_curves_are_read_between_the_inputs_at_which_they_were_solved_and_fits_s
     assert (found.error > exact.error).all()
 
     solved.clear()
-    monkeypatch.setitem(sources.WAYS, "point", lambda *_: sources.between(counted))
+    monkeypatch.setattr("stribeck.fits.fit.ways_of", lambda *_: sources.between(counted))
     noise = np.exp(0.02 * np.random.default_rng(1).standard_normal(8))
     rows = measured(exact.friction * noise, SPEEDS, inputs=inputs)
     fit = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     drawn = fit.band(1, np.geomspace(SPEEDS[0], SPEEDS[-1], 30))  # between the measured speeds, without a state more
     assert len(solved) <= 2 * 12
-    monkeypatch.setitem(sources.WAYS, "point", lambda *_: Ways(solve, solve))
+    monkeypatch.setattr("stribeck.fits.fit.ways_of", lambda *_: Ways(solve, solve))
     alone = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     assert fit.converged
     for one, other in zip(fit.inputs, alone.inputs, strict=True):

@@ -1,0 +1,223 @@
+"""States by their groups: each new one is solved from the nearest that is known, from cold where none is near."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
+from stribeck.equations.prediction import extrapolate
+from stribeck.numerics.continuation import steady_weights
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.path.corrector import Corrector, solve_cold_line
+from stribeck.solver.point.path import without_factors
+from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.solution import finish_point
+from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.solver.point.state import PointState
+from stribeck.solver.refinement import RefinedState
+from stribeck.solver.solve import finish, hertz_solution
+from stribeck.solver.solve_error import SolveError
+
+__all__ = ["Neighbours"]
+
+MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
+MAX_STATES = 120  # States that are kept
+EQUALLY_NEAR = 1.01  # Ratio of distances up to which the state that has its factors is preferred
+STRAIGHT_RTOL = 1e-6  # Distance from a line over its length up to which states lie on it, so that a polynomial predicts
+MAX_WEIGHT_SUM = 8.0  # Sum of the absolute weights of a prediction of a ball above which it uses fewer states
+
+Line = Sequence[tuple[float, Any]]
+"""States along a line through the one that is wanted, which lies at zero; the nearest last."""
+
+
+class Neighbours:
+    """Solves states in any order, keeps the last ones, and starts each from the nearest of these."""
+
+    def __init__(self, rtol: float, most: int = MAX_STATES) -> None:
+        self.rtol = rtol
+        self._steps: dict[str, _Steps] = {"line": _CylinderSteps(rtol), "point": _BallSteps(rtol)}
+        self._known: deque[_Known] = deque(maxlen=most)
+        self._last: tuple[_Known, Any] | None = None
+
+    def at(self, groups: Groups) -> Any:
+        """Return the state of groups; a failure is in its outcome."""
+        steps, here = self._steps[groups.geometry], _Known(groups)
+        near, away = self._near(here)
+        if near and near[0].groups == groups:
+            return near[0].state
+        state = steps.follow(self._line(near, away, steps.order), groups) if near else None
+        if state is None or not state.outcome.ok:
+            cold = steps.start(groups)
+            state = cold if state is None or cold.outcome.ok else state
+        if state.outcome.ok:
+            here.state = steps.kept(state)
+            self._known.appendleft(here)
+            self._last = here, state
+        return state
+
+    def solved(self, groups: Groups) -> Any:
+        """Return the state of groups, or raise SolveError."""
+        state = self.at(groups)
+        if not state.outcome.ok:
+            self._steps[groups.geometry].finish(state, groups, None)
+        return state
+
+    @one_blas_thread
+    def solution(self, groups: Groups, contact: Contact | None = None) -> Any:
+        """Return the state of groups, and of their contact, as a solution; raise SolveError where there is none."""
+        if groups.geometry == "line" and groups.is_hertzian:
+            return hertz_solution(groups, contact, self.rtol)
+        return self._steps[groups.geometry].finish(self.at(groups), groups, contact)
+
+    def release(self) -> None:
+        """Forget the factors of the last state, which fill the memory."""
+        self._last = None
+
+    def _near(self, here: _Known) -> tuple[list[_Known], Array]:
+        """Return the states of the same kind around a place, the nearest first, and how far away their places are."""
+        alike = [each for each in self._known if each.kind == here.kind]
+        away = np.array([each.place for each in alike]).reshape(len(alike), len(here.place)) - here.place
+        distances = np.abs(away).max(axis=1)
+        order = np.argsort(distances, kind="stable")
+        order = order[distances[order] <= MAX_LOG_DISTANCE]
+        return [alike[i] for i in order.tolist()], away[order]
+
+    def _line(self, near: Sequence[_Known], away: Array, order: int) -> Line:
+        """Return the nearest state, and others that lie on a line with it and the place that is wanted."""
+        lengths = np.abs(away).max(axis=1)
+        first = 0
+        if self._last is not None and self._last[0] in near:  # of two that are as near, the one that has its factors
+            last = near.index(self._last[0])
+            first = last if lengths[last] <= EQUALLY_NEAR * lengths[0] else 0
+        states = [each.state for each in near]
+        if self._last is not None and near[first] is self._last[0]:
+            states[first] = self._last[1]
+        length = float(lengths[first])
+        if length == 0:
+            return [(0.0, states[first])]
+        direction = away[first] / length
+        along = away @ direction / float(direction @ direction)
+        straight = np.abs(away - along[:, None] * direction).max(axis=1) <= STRAIGHT_RTOL * length
+        line = [(length, states[first])]
+        for i in np.flatnonzero(straight).tolist():
+            s = float(along[i])
+            if len(line) <= order and min(abs(s - other) for other, _ in line) > STRAIGHT_RTOL * length:
+                line.append((s, states[i]))
+        return line[::-1]
+
+
+class _Known:
+    """A state, its place among others and its kind: all that neighbours share."""
+
+    state: Any = None
+
+    def __init__(self, groups: Groups) -> None:
+        self.groups = groups
+        logs: list[float] = []
+        kind: list[Any] = []
+        _take_apart([float(groups.speed), float(groups.load), float(groups.roughness), *groups.physics.values()], logs, kind)
+        self.place, self.kind = np.array(logs), tuple(kind)
+
+
+def _take_apart(value: Any, logs: list[float], kind: list[Any]) -> None:
+    """Add the logarithms of all numbers of a value to ``logs``, and all else that it consists of to ``kind``."""
+    if isinstance(value, float):
+        is_log = 0.0 < abs(value) < math.inf
+        logs.append(math.log(abs(value)) if is_log else 0.0)
+        kind.append((is_log, value > 0))
+    elif isinstance(value, np.ndarray):
+        kind.append(value.shape)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            _take_apart(each, logs, kind)
+    elif is_dataclass(value):
+        kind.append(type(value))
+        for each in fields(value):
+            _take_apart(getattr(value, each.name), logs, kind)
+    else:
+        kind.append(value if isinstance(value, str | int | None) else type(value))
+
+
+class _Steps(Protocol):
+    """How states of a geometry are solved, one from others."""
+
+    order: int  # Degree of the polynomial that predicts a state from those along a line
+
+    def start(self, groups: Groups) -> Any:
+        """Return a state from cold."""
+
+    def follow(self, line: Line, groups: Groups) -> Any:
+        """Return a state from those along a line, None where that fails."""
+
+    def kept(self, state: Any) -> Any:
+        """Return what is kept of a state while others are solved."""
+
+    def finish(self, state: Any, groups: Groups, contact: Contact | None) -> Any:
+        """Return a state as a solution, or raise the error of its outcome."""
+
+
+class _CylinderSteps:
+    """Cylinders, on meshes that they share while these resolve them."""
+
+    order = 4
+
+    def __init__(self, rtol: float) -> None:
+        self.rtol, self.corrector = rtol, Corrector(rtol)
+
+    def start(self, groups: Groups) -> RefinedState:
+        """Return a state from cold."""
+        state = self.corrector.cold(groups)
+        return state if state is not None and state.outcome.ok else solve_cold_line(groups, self.rtol)
+
+    def follow(self, line: Line, groups: Groups) -> RefinedState | None:
+        """Return a state from those along a line, None where that fails."""
+        try:
+            self.corrector.move_to(line[-1][1])
+            return self.corrector.solve(extrapolate([(s, each.state) for s, each in line], 0.0), groups)
+        except (SolveError, FloatingPointError, np.linalg.LinAlgError):
+            return None
+
+    def kept(self, state: RefinedState) -> RefinedState:
+        """Return the state, whose operators the corrector may drop."""
+        return state
+
+    def finish(self, state: RefinedState, groups: Groups, contact: Contact | None) -> Any:
+        """Return a state as a solution, or raise the error of its outcome."""
+        return finish(state, groups, contact, self.rtol)
+
+
+class _BallSteps:
+    """Balls, of which only the last keeps its factors."""
+
+    order = 2
+
+    def __init__(self, rtol: float) -> None:
+        self.rtol = rtol
+
+    def start(self, groups: Groups) -> PointState:
+        """Return a state from cold."""
+        return solve_cold(groups, self.rtol)
+
+    def follow(self, line: Line, groups: Groups) -> PointState:
+        """Return a state from those along a line."""
+        moving = [(s, each) for s, each in line if isinstance(each.work, Pair)]
+        weights = steady_weights([s for s, _ in moving], 0.0, MAX_WEIGHT_SUM)
+        states = [each for _, each in moving[len(moving) - len(weights) :]]
+        several = list(zip(weights.tolist(), states, strict=True)) if len(states) > 1 else []
+        return solve_from(line[-1][1], groups, self.rtol, several)
+
+    def kept(self, state: PointState) -> PointState:
+        """Return the state without the factors that fill the memory."""
+        return without_factors(state)
+
+    def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
+        """Return a state as a solution, or raise the error of its outcome."""
+        return finish_point(state, contact)
