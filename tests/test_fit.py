@@ -13,7 +13,6 @@ import pytest
 from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 from rich.console import Console
-from stribeck.fits.states.cylinders import solved_parts
 
 import stribeck as sb
 from stribeck import FitSettings
@@ -29,6 +28,7 @@ from stribeck.fits.least_squares import minimise
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.objective import objective
 from stribeck.fits.posterior import draw_posterior
+from stribeck.fits.states.solved import solved_parts
 from stribeck.fits.states.sources import atlas_parts
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -65,7 +65,8 @@ def test_sensitivities_agree_with_differences(abscissa):
     )
     names = FREE if abscissa == "speed" else ("roughness", "load")
     free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
-    model, parts = FrictionModel(TRUE, data, free), solved_parts("published", 1e-7)
+    model = FrictionModel(TRUE, data, free)
+    parts = solved_parts(model, "published", 1e-7)
     jacobian = model.predict(np.zeros(len(free)), parts).jacobian
     step = 3e-3
     for i in range(len(free)):
@@ -90,7 +91,7 @@ def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
     names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
     free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
     model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
-    found = model.predict(theta, solved_parts("balanced", 1e-8))
+    found = model.predict(theta, solved_parts(model, "balanced", 1e-8))
     for i, value in enumerate(values):
         contact = model.contact_of(data.curve[i], theta)
         per_speed = {"speed": 1.0, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}
@@ -104,7 +105,7 @@ def test_atlas_and_solver_give_the_same_prediction():
     data = noisy(1)
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, FREE, FitSettings()))
     quick, slow = (
-        model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("published"), solved_parts("published", 1e-8))
+        model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("published"), solved_parts(model, "published", 1e-8))
     )
     assert quick.friction == pytest.approx(slow.friction, rel=2.4e-5)
     assert quick.jacobian == pytest.approx(slow.jacobian, abs=1e-4)

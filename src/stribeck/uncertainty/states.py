@@ -29,7 +29,7 @@ from stribeck.contacts.line import Groups
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import solve
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
 __all__ = ["FILM_NAMES", "films_of", "states_by_inputs", "states_of"]
@@ -93,10 +93,11 @@ def states_by_inputs(
     friction: Callable[[dict[str, Array]], Array],
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle."""
+    neighbours = Neighbours(rtol)
 
     def at(distances: Mapping[str, float]) -> Array:
         moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})
-        return _values(solve(moved, rtol=rtol), definition, contact)
+        return _values(neighbours.solution(moved.groups, moved), definition, contact)
 
     def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
         return at(dict.fromkeys(inputs, distance))
@@ -127,8 +128,10 @@ def _by_quadratics(
     middle = offsets.mean(axis=0)
     variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
 
+    neighbours = Neighbours(rtol)
+
     def values(distance: Array) -> Array:
-        return _values(solve(_scale_groups(groups, middle + distance), rtol=rtol), definition, contact)
+        return _values(neighbours.solution(_scale_groups(groups, middle + distance)), definition, contact)
 
     axes = []
     for variance, direction in zip(variances, directions.T, strict=True):
