@@ -105,7 +105,8 @@ def test_atlas_and_solver_give_the_same_prediction():
     data = noisy(1)
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, FREE, FitSettings()))
     quick, slow = (
-        model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("published"), solved_parts(model, "published", 1e-8))
+        model.predict(np.zeros(len(FREE)), parts)
+        for parts in (atlas_parts("published"), solved_parts(model, "published", 1e-8))
     )
     assert quick.friction == pytest.approx(slow.friction, rel=2.4e-5)
     assert quick.jacobian == pytest.approx(slow.jacobian, abs=1e-4)

@@ -171,7 +171,7 @@ def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
 def test_a_curve_of_states_goes_on_from_those_it_has(monkeypatch):
     groups = sb.Groups(0.1, 0.001, 0.0002, geometry="point")
     curve = sb.stribeck_curve(groups, speed=(0.08, 0.1), points=2, cavitation="exit", rtol=3e-3)
-    monkeypatch.setattr("stribeck.solver.point.path.solve_cold", None)  # a start from cold would fail
+    monkeypatch.setattr("stribeck.solver.neighbours.solve_cold", None)  # a start from cold would fail
     faster, slower = (continued(curve, end, 3) for end in (0.2, 0.04))
     assert faster.values == pytest.approx([0.1, 0.1 * 2**0.5, 0.2])
     assert slower.values == pytest.approx([0.04, (0.04 * 0.08) ** 0.5, 0.08])

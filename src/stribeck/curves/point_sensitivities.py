@@ -18,9 +18,9 @@ from stribeck.equations.point.observables import WITHIN, FrictionWithin, observa
 from stribeck.equations.point.sensitivity import LOG_STEP
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.quantities.part_inputs import part_names
-from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
+from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointObservables
 
 __all__ = ["point_sensitivities"]
@@ -35,7 +35,7 @@ WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
 def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -> tuple[PointSolution, dict[str, float]]:
     """Return the state of a ball and the logarithmic derivatives of its friction by each input."""
     groups, beta, mu0 = contact.groups, contact.beta, contact.boundary_friction
-    state = next_state(None, groups, rtol)
+    state = solve_cold(groups, rtol)
     solution = finish_point(state, contact)
     values: PointObservables = solution.observables
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from typing import Any, Protocol
 
@@ -17,7 +18,6 @@ from stribeck.equations.prediction import extrapolate
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
-from stribeck.solver.point.path import without_factors
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
@@ -53,10 +53,7 @@ class Neighbours:
         near, away = self._near(here)
         if near and near[0].groups == groups:
             return near[0].state
-        state = steps.follow(self._line(near, away, steps.order), groups) if near else None
-        if state is None or not state.outcome.ok:
-            cold = steps.start(groups)
-            state = cold if state is None or cold.outcome.ok else state
+        state = steps.follow(self._line(near, away, steps.order), groups) if near else steps.start(groups)
         if state.outcome.ok:
             here.state = steps.kept(state)
             self._known.appendleft(here)
@@ -155,7 +152,7 @@ class _Steps(Protocol):
         """Return a state from cold."""
 
     def follow(self, line: Line, groups: Groups) -> Any:
-        """Return a state from those along a line, None where that fails."""
+        """Return a state from those along a line, from cold where that fails."""
 
     def kept(self, state: Any) -> Any:
         """Return what is kept of a state while others are solved."""
@@ -177,13 +174,14 @@ class _CylinderSteps:
         state = self.corrector.cold(groups)
         return state if state is not None and state.outcome.ok else solve_cold_line(groups, self.rtol)
 
-    def follow(self, line: Line, groups: Groups) -> RefinedState | None:
-        """Return a state from those along a line, None where that fails."""
-        try:
+    def follow(self, line: Line, groups: Groups) -> RefinedState:
+        """Return a state from those along a line, from cold where that fails."""
+        with suppress(SolveError, FloatingPointError, np.linalg.LinAlgError):
             self.corrector.move_to(line[-1][1])
-            return self.corrector.solve(extrapolate([(s, each.state) for s, each in line], 0.0), groups)
-        except (SolveError, FloatingPointError, np.linalg.LinAlgError):
-            return None
+            found = self.corrector.solve(extrapolate([(s, each.state) for s, each in line], 0.0), groups)
+            if found.outcome.ok:
+                return found
+        return self.start(groups)
 
     def kept(self, state: RefinedState) -> RefinedState:
         """Return the state, whose operators the corrector may drop."""
@@ -207,7 +205,7 @@ class _BallSteps:
         return solve_cold(groups, self.rtol)
 
     def follow(self, line: Line, groups: Groups) -> PointState:
-        """Return a state from those along a line."""
+        """Return a state from those along a line, from cold where that fails."""
         moving = [(s, each) for s, each in line if isinstance(each.work, Pair)]
         weights = steady_weights([s for s, _ in moving], 0.0, MAX_WEIGHT_SUM)
         states = [each for _, each in moving[len(moving) - len(weights) :]]
@@ -216,7 +214,7 @@ class _BallSteps:
 
     def kept(self, state: PointState) -> PointState:
         """Return the state without the factors that fill the memory."""
-        return without_factors(state)
+        return state.without_factors()
 
     def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""

@@ -29,8 +29,8 @@ from stribeck.solver.path.path import (
     SolvedPath,
 )
 from stribeck.solver.point.level import Level, band_for
-from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, ReadState
 
 __all__ = ["CurveState", "PointProblem", "error_scales", "speeds_at"]
@@ -129,7 +129,7 @@ class PointProblem:
             start, predicted = nearest.point.state, self.guess(nearest, s)
             if self._last is not None and self._last[0] == nearest.coordinate:
                 start = self._last[1]
-        state = next_state(start, groups, self.rtol, predicted=predicted)
+        state = solve_cold(groups, self.rtol) if start is None else solve_from(start, groups, self.rtol, predicted=predicted)
         if not state.outcome.ok:
             self.failure = state
             return state.outcome
@@ -174,7 +174,7 @@ class PointProblem:
             logs[:, SHARE_COLUMN] = found.log_share
             logs[0, SHARE_COLUMN] = math.log(values[SHARE_COLUMN])
         errors = np.array([state.absolute_errors[name] for name in SMOOTH]) / scales[0]
-        return Expansion(s, PointPoint(without_factors(state), found.unknowns), series, logs, errors, known)
+        return Expansion(s, PointPoint(state.without_factors(), found.unknowns), series, logs, errors, known)
 
     def guess(self, of: Expansion, s: float) -> Unknowns:
         """Return a guess of the unknowns at a coordinate, on the mesh of a state."""
@@ -262,7 +262,7 @@ class PointProblem:
         """Return the state at a coordinate of a path, solved to the given tolerance."""
         left, right = ends_of(path, s)
         nearest = min((left, right), key=lambda one: abs(one.coordinate - s))
-        return next_state(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.between(left, right, s)[0])
+        return solve_from(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.between(left, right, s)[0])
 
 
 def with_factors(state: PointState) -> PointState:

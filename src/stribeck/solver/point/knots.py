@@ -17,8 +17,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.curve_path import error_scales, speeds_at
-from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.sensitivity import derivatives_along
+from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import LOOSE_OBSERVABLES, PointState, ReadState
 
 __all__ = ["BallKnots", "KnotState"]
@@ -102,7 +102,7 @@ class BallKnots:
             }
         else:
             values = dict(state.values)
-            ends = [next_state(None, self.groups_at(s + step), self.rtol) for step in (REST_STEP, -REST_STEP)]
+            ends = [solve_cold(self.groups_at(s + step), self.rtol) for step in (REST_STEP, -REST_STEP)]
             slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * REST_STEP) for name in values}
         errors = state.errors
         row, slope = (np.array([each.get(name, 0.0) for name in COLUMNS]) for each in (values, slopes))
@@ -113,7 +113,7 @@ class BallKnots:
             row / here,
             (slope - growth * row) / here,
             np.array([errors.get(name, errors["J_balanced"]) for name in COLUMNS]),
-            without_factors(state),
+            state.without_factors(),
         )
 
     def states_at(self, path: HermitePath, places: Array) -> Iterator[PointState]:
@@ -127,7 +127,7 @@ class BallKnots:
 
     def solved_at(self, path: HermitePath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved to the tolerance of its states."""
-        return next_state(path.nearest(s).state, self.groups_at(s), self.rtol)
+        return solve_from(path.nearest(s).state, self.groups_at(s), self.rtol)
 
 
 class KnotState(ReadState):

@@ -99,6 +99,10 @@ class Pair:
         """Return the pair relabelled with a model whose states start from it."""
         return replace(self, coarse=self.coarse.relabelled(model), fine=self.fine.relabelled(model))
 
+    def without_operators(self) -> Pair:
+        """Return the pair without the operators and factors that fill the memory."""
+        return replace(self, coarse=self.coarse.without_operators(), fine=self.fine.without_operators())
+
     @property
     def total(self) -> float:
         """Largest error over its scale among all observables but the minimum film."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -76,32 +77,34 @@ def solve_from(
     line: Sequence[tuple[float, PointState]] = (),
     predicted: Unknowns | None = None,
 ) -> PointState:
-    """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves."""
+    """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves, or from cold if that fails."""
+    # ``line`` holds weights and states whose sum predicts this one; ``predicted`` lies on the neighbour's finer mesh.
     check(groups, rtol)
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
     speed, law, model = float(groups.speed), contact_law(groups), effective_model(groups.model)
-    if pair.fine.resolution.model != model and same_kinds(pair.fine.resolution.model, model):
+    if same_kinds(pair.fine.resolution.model, model):
         pair = pair.relabelled(model)
     cold = None
     if predicted is None and _is_far(pair, speed, law):
         cold = solve_cold(groups, rtol)
         if cold.outcome.ok:
             return cold
+    warm = None
     if pair.fine.resolution.model == model:
         method = CAVITATION_METHODS[model.cavitation]
         pairs = [(weight, state.work.relabelled(model)) for weight, state in line if isinstance(state.work, Pair)]
         by_series = {} if predicted is None else {"predicted": predicted}
-        try:
+        with suppress(MeshTooLargeError):
             found = method.follow(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
-        except MeshTooLargeError:
-            found = None
-        if found is not None and method.holds(found, rtol):
-            return _state(groups, rtol, found)
-        if found is not None:
-            return _state(groups, rtol, method.refine(speed, law, found.fine, rtol, model, found))
-    return solve_cold(groups, rtol) if cold is None else cold
+            if found is not None:
+                held = method.holds(found, rtol)
+                warm = _state(groups, rtol, found if held else method.refine(speed, law, found.fine, rtol, model, found))
+    if warm is not None and warm.outcome.ok:
+        return warm
+    cold = solve_cold(groups, rtol) if cold is None else cold
+    return cold if cold.outcome.ok or warm is None else warm
 
 
 def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from stribeck._types import Array
@@ -60,6 +60,10 @@ class PointState:
     newton_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
     krylov_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
     work: Any = field(default=None, repr=False)  # Operators and preconditioner from which neighbours start; None if dropped
+
+    def without_factors(self) -> PointState:
+        """Return the state without the factors that fill the memory, from which neighbours may still start."""
+        return self if self.work is None else replace(self, work=self.work.without_operators())
 
     @property
     def errors(self) -> dict[str, float]:
