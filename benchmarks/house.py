@@ -203,7 +203,8 @@ def counted(tree: Path) -> dict[str, int]:
 # --- times ---
 
 WORK = """
-import json, sys, time
+import json, sys, tempfile, time
+from pathlib import Path
 import numpy as np
 from scipy.linalg import lapack
 import stribeck as sb
@@ -234,9 +235,13 @@ def regimes_of_a_ball():
 
 def fit_of_a_ball():
     contact = sb.load_case(sys.argv[2]).contact
-    found = sb.stribeck_curve(contact, points=9, rtol=1e-3)
-    measured = sb.Measurements(speed=found.speed, friction=found.friction) if hasattr(sb, "Measurements") else None
-    sb.fit(measured, contact, rtol=1e-3)
+    found = sb.stribeck_curve(contact, speed=(0.1 * contact.speed, 10 * contact.speed), points=9, rtol=1e-3)
+    noise = np.exp(0.02 * np.random.default_rng(3).standard_normal(9))
+    rows = zip(found.values.tolist(), (found.friction * noise).tolist())
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "measured.csv"
+        file.write_text("speed [m/s],friction\n" + "".join(f"{speed},{friction}\n" for speed, friction in rows))
+        sb.fit(file, contact)
 
 found = {}
 for work in (curve_of_a_line, curve_of_a_ball, margins_of_a_line, regimes_of_a_ball, fit_of_a_ball):
