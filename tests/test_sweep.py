@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,8 +20,8 @@ from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, finish, same_r
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.batches import chain as sweep_chain
 from stribeck.quantities.inputs import INPUTS
+from stribeck.solver import neighbours
 from stribeck.sweeps.lock import LOCK_FILE
 
 LONG = RANDOM.format(kind="sobol", points=1024)
@@ -81,17 +82,10 @@ def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
 
 
 def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch):
-    starts = []
-    cold = sweep_chain.Corrector.__call__
-
-    def counted(self, s, history):
-        starts.append(not history)
-        return cold(self, s, history)
-
-    monkeypatch.setattr(sweep_chain.Corrector, "__call__", counted)
+    starts, start = [], neighbours._CylinderSteps.start
+    monkeypatch.setattr(neighbours._CylinderSteps, "start", lambda self, here: starts.append(here) or start(self, here))
     assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 0
-    assert sum(starts) == 4
-    assert len(starts) < 1.5 * 68
+    assert len(starts) == 4
 
 
 def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
@@ -107,14 +101,15 @@ def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
 
 def fail_at(monkeypatch, when, how):
     """Let the solver fail wherever ``when(groups)`` holds."""
-    follow = sweep_chain.Corrector.__call__
+    solved = neighbours.Neighbours.at
 
-    def failing(self, s, history):
-        if when(self.groups_at(s)):
-            return how()
-        return follow(self, s, history)
+    def failing(self, groups):
+        if when(groups):
+            how()
+            return replace(solved(self, groups), state=None, outcome=Outcome.PATH_LOST)
+        return solved(self, groups)
 
-    monkeypatch.setattr(sweep_chain.Corrector, "__call__", failing)
+    monkeypatch.setattr(neighbours.Neighbours, "at", failing)
 
 
 @pytest.mark.quick

@@ -58,8 +58,10 @@ class Minimum:
 
     @property
     def converged(self) -> bool:
-        """Whether this is the optimum, within a hundredth of a standard error."""
-        return self.ended and self.distance < NEAR
+        """Whether this is the optimum, within a hundredth of a standard error or the error of the states."""
+        error = self.prediction.error / (self.prediction.friction if self.objective.logarithmic else 1.0)
+        known = float(np.sqrt(np.mean((error / self.objective.size) ** 2)))
+        return self.ended and (self.distance < NEAR or math.sqrt(self.fall) < known)
 
     @property
     def at_bound(self) -> Array:
