@@ -20,7 +20,7 @@ from pathlib import Path
 MOVES = 25
 
 CASES = [Path(__file__).parents[1] / "examples" / name for name in ("pdms_cylinder.toml", "rubber_ball.toml")]
-"""A cylinder that the atlas covers, and a ball whose film forms anew, whose curve is solved."""
+"""A cylinder that the atlas covers, and a ball whose film re-forms, whose curve is solved."""
 
 SOLVED = {
     "Greenwood and Williamson": ("law", "greenwood-williamson"),

@@ -82,14 +82,14 @@ def draw(family: str, index: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]
 
 
 def cavitation(rng: np.random.Generator, groups: sb.Groups, decades: tuple[float, float] = (-4, 0)) -> dict[str, Any]:
-    """Return a film that ends, or one that forms anew at a suction within some decades of the Hertz pressure."""
+    """Return a film that ends, or one that re-forms at a suction within some decades of the Hertz pressure."""
     if rng.random() < 0.5:
         return {"cavitation": "exit"}
     return {"cavitation": "reform", "cavity_pressure": -float(10 ** rng.uniform(*decades))}
 
 
 def wide_cavitation(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
-    """Return a film that ends or forms anew at any suction, of any fluid whose viscosity is that of its pressure."""
+    """Return a film that ends or re-forms at any suction, of any fluid whose viscosity is that of its pressure."""
     parts = cavitation(rng, groups, (-7, 1)) | motion_alone(rng)
     return parts | {"fluid": sb.fluids.Fluid(None, viscosity(rng))} if rng.random() < 0.3 else parts
 
@@ -120,7 +120,7 @@ def film_of(groups: sb.Groups) -> float:
 
 
 def wide_thinning(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
-    """Return a fluid that thins over ten decades of its rate, in a full film, one that ends or one that forms anew."""
+    """Return a fluid that thins over ten decades of its rate, in a full film, one that ends or one that re-forms."""
     parts = thinning(rng, groups, (-4, 6), 0.1)
     return parts | cavitation(rng, groups) if rng.random() < 2 / 3 else parts
 

@@ -1,4 +1,4 @@
-"""A ball whose film forms anew behind a cavity: known states, conservation of mass, limits in the pressure of the cavity."""
+"""A ball whose film re-forms behind a cavity: known states, conservation of mass, limits in the pressure of the cavity."""
 
 import math
 from dataclasses import replace
@@ -102,7 +102,7 @@ def test_along_a_curve_the_film_breaks_where_its_suction_does():
     full = sb.stribeck_curve(Groups(0.1, 1e-3, 1e-3, geometry="point"), speed=np.geomspace(0.02, 0.2, 5), rtol=1e-3)
     assert curve.outcome.ok
     less = full.observable("contact_load_share") - curve.observable("contact_load_share")
-    breaks = [any("forms anew" in note for note in s.notes) for s in curve.solutions]
+    breaks = [any("re-forms" in note for note in s.notes) for s in curve.solutions]
     assert breaks == sorted(breaks)
     assert 0 < sum(breaks) < 5
     assert (less[np.array(breaks)] > 0).all()
@@ -132,7 +132,7 @@ def drag_within(state, radius):
 
 
 def drags(share):
-    """Return those within two radii of a film that ends and of one that forms anew far behind, and the sum of their errors."""
+    """Return those within two radii of a film that ends and of one that re-forms far behind, and the sum of their errors."""
     factors = sb.fluids.PatirCheng(2.0, substrate_share=share)
     groups, found, doubt = Groups(0.05, 0.1, 0.1 * 0.1 ** (2 / 3), geometry="point"), [], 0.0
     for parts, rtol in (({"cavitation": "exit"}, 1e-3), ({"cavitation": "reform", "cavity_pressure": -1e-3}, 4e-3)):

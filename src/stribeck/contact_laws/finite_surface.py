@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw, WithArea, check_law, is_exponential
+from stribeck.contact_laws.law import AsperityLaw, WithArea, as_asperity_law, is_exponential
 from stribeck.contact_laws.persson import PerssonLaw
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -62,7 +62,7 @@ class FiniteSurface:
         """Refuse what cannot be."""
         if not to_si(self.alpha, "number", "alpha", "2.0") > 0:
             raise InputError(f"alpha = {show(self.alpha)} must be a positive number, that of the contact law.")
-        base = check_law(self.base)
+        base = as_asperity_law(self.base)
         if base is not None and not has_endless_tail(base):
             raise InputError(f"base = {base.name}: this law has a tail of its own; give Persson's law, or None.")
 

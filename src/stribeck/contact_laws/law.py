@@ -148,7 +148,7 @@ def _refuse(name: str, values: Array, wrong: Any, s: Array, what: str) -> None:
 _ACCEPTED: WeakValueDictionary[int, Any] = WeakValueDictionary()
 
 
-def check_law(law: Any) -> AsperityLaw | None:
+def as_asperity_law(law: Any) -> AsperityLaw | None:
     """Return a contact law, or None for the exponential one; refuse objects without its methods."""
     if law is None or _ACCEPTED.get(id(law)) is law:
         return law

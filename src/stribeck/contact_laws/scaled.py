@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
-from stribeck.contact_laws.law import AsperityLaw, check_law
+from stribeck.contact_laws.law import AsperityLaw, as_asperity_law
 from stribeck.quantities.units import InputError, show
 
 # Laws without parameters beside alpha, beta and h_rms; None is the exponential law.
@@ -143,7 +143,7 @@ class BlendedLaw:
 
 def law_of(law: Any) -> AsperityLaw | None:
     """Return a contact law, given itself or by its name; None is the exponential one."""
-    return named_law(law) if isinstance(law, str) else check_law(law)
+    return named_law(law) if isinstance(law, str) else as_asperity_law(law)
 
 
 def named_law(name: str) -> AsperityLaw | None:

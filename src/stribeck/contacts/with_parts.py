@@ -17,7 +17,7 @@ from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
-    "check_solid",
+    "refuse_fixed_memory",
     "hertz_units",
     "model_at",
     "models_at_both_sides",
@@ -95,7 +95,7 @@ def hertz_units(groups: Groups) -> FilmUnits:
     return FilmUnits(pressure=1.0, time=speed or 1.0, gap=1.0, viscosity=1.0, decay_length=roughness)
 
 
-def check_solid(groups: Groups, reason: str) -> None:
+def refuse_fixed_memory(groups: Groups, reason: str) -> None:
     """Refuse a viscoelastic body where its Deborah number would have to change with the speed."""
     solid = groups.model.solid
     if getattr(solid, "uses_speed", False):

@@ -14,7 +14,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import check_solid, with_parts
+from stribeck.contacts.with_parts import refuse_fixed_memory, with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
 from stribeck.curves.function import Progress
@@ -146,7 +146,7 @@ def stribeck_curve(
     base = with_parts(base, **parts) if parts else base
     contact = base if isinstance(base, Contact) else None
     if isinstance(base, Groups) and over == "speed":
-        check_solid(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
+        refuse_fixed_memory(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     check_points(points)
     coordinate = Coordinate(over, base)

@@ -32,7 +32,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.regime import friction_share
-from stribeck.contacts.with_parts import check_solid, models_at_both_sides
+from stribeck.contacts.with_parts import models_at_both_sides, refuse_fixed_memory
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states.interpolation import Between
@@ -64,7 +64,7 @@ class FrictionModel:
         self.remembers = [getattr(each.model.solid, "uses_speed", False) for each in groups]
         if data.abscissa != "speed":
             for each in groups:
-                check_solid(each, "which a fit must know; give a column of speeds, or fit with an elastic solid.")
+                refuse_fixed_memory(each, "which a fit must know; give a column of speeds, or fit with an elastic solid.")
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from functools import lru_cache
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, Law, RateLaw, ViscosityLaw
-from stribeck.quantities.units import InputError
+from stribeck.quantities.user_part import check_user_part, refusal
 
 __all__ = ["check_law"]
 
@@ -27,35 +26,22 @@ SEARCHED_SIZES = np.geomspace(1e-12, 1e12, 241)
 
 DECAY_LENGTHS = (1e-12, 1.0)  # Decay lengths of the roughness [m]: far below a length of the law's own, and the only length.
 
-GUIDE = "See Add a fluid in for_developers.md."
-
 
 def check_law(law: Any) -> None:
-    """Refuse a law of somebody else's whose members contradict each other; those of the package have tests of their own."""
-    if type(law).__module__.startswith("stribeck."):
-        return
-    if not isinstance(law, Hashable):
-        raise InputError(f"{_name(law)} cannot be hashed; make it a frozen dataclass.")
-    _check_once(law)
+    """Refuse a law of somebody else's whose members contradict each other."""
+    check_user_part("law", law, _check_members)
 
 
-@lru_cache(maxsize=64)
-def _check_once(law: Any) -> None:
-    try:
-        with np.errstate(all="ignore"):
-            for kind, check in CHECKS.items():
-                if isinstance(law, kind):
-                    check(law)
-    except InputError:
-        raise
-    except Exception as error:
-        raise InputError(f"{_name(law)} fails where it is checked ({type(error).__name__}: {error}). {GUIDE}") from error
+def _check_members(law: Any) -> None:
+    for kind, check in CHECKS.items():
+        if isinstance(law, kind):
+            check(law)
 
 
 def _rate_law(law: RateLaw) -> None:
     g, slope = _pair(law, "stress", CHECKED_RATES)
     if not (np.diff(g) > 0).all():
-        raise InputError(f"{_name(law)}: the stress must rise with the rate; here it does not.")
+        raise refusal("law", law, "the stress must rise with the rate; here it does not.")
     _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], CHECKED_RATES))
     if law.plateau >= CHECKED_RATES[0]:
         low = np.array([1e-3 * law.plateau])
@@ -128,7 +114,7 @@ def _pair(law: Any, member: str, at: Array) -> tuple[Array, Array]:
     found = getattr(law, member)(at)
     shapes = {at.shape, ()} if isinstance(law, FlowFactors) else {at.shape}
     if not isinstance(found, tuple) or len(found) != 2 or not {np.shape(each) for each in found} <= shapes:
-        raise InputError(f"{_name(law)}: {member} must return two arrays, its values and its slopes. {GUIDE}")
+        raise refusal("law", law, f"{member} must return two arrays, its values and its slopes.")
     value, slope = (np.broadcast_to(np.asarray(each, dtype=float), at.shape) for each in found)
     return value, slope
 
@@ -154,11 +140,6 @@ def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: 
     wrong = ~(np.abs(found - right) <= AGREEMENT_RTOL * np.maximum(np.abs(right), floor))
     if wrong.any():
         i = int(np.argmax(wrong))
-        raise InputError(
-            f"{_name(law)}: {member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}. "
-            f"{GUIDE}"
+        raise refusal(
+            "law", law, f"{member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}."
         )
-
-
-def _name(law: Law) -> str:
-    return f"the law {law.name or type(law).__name__!r}"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +9,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.units import InputError, show
+from stribeck.quantities.user_part import GUIDE, check_user_part, refusal
 from stribeck.solids.solid import Solid, lengths_of
 
 __all__ = ["check_solid"]
@@ -27,32 +26,20 @@ CHECKED_UNITS = (0.1, 10.0)  # Units of length to which the body is scaled.
 # Lengths at which a body that has no length of its own is checked, SI to Hertz units.
 CHECKED_LENGTHS = np.geomspace(1e-6, 1.0, 7)
 
-GUIDE = "See Add a fluid in for_developers.md."
-
 
 def check_solid(name: str, solid: Any) -> None:
-    """Refuse a body of somebody else's whose members contradict each other; those of the package have tests of their own."""
-    if type(solid).__module__.startswith("stribeck."):
-        return
+    """Refuse a body of somebody else's whose members contradict each other."""
     lacking = [member for member in REQUIRED_MEMBERS if not hasattr(solid, member)]
     if lacking:
         raise InputError(f"{name} = {show(solid)} lacks {', '.join(lacking)}. {GUIDE}")
-    if not isinstance(solid, Hashable):
-        raise InputError(f"{name} = {show(solid)} cannot be hashed; make it a frozen dataclass.")
-    _check_once(solid)
+    check_user_part("solid", solid, _check_members)
 
 
-@lru_cache(maxsize=64)
-def _check_once(solid: Solid) -> None:
-    try:
-        longest = _longest(solid.scaled(1.0))
-        for length in (longest,) if longest > 0 else CHECKED_LENGTHS.tolist():
-            _scaling(solid, length)
-        _far_gap(solid, longest if longest > 0 else 1.0)
-    except InputError:
-        raise
-    except Exception as error:
-        raise InputError(f"{_name(solid)} fails where it is checked ({type(error).__name__}: {error}). {GUIDE}") from error
+def _check_members(solid: Solid) -> None:
+    longest = _longest(solid.scaled(1.0))
+    for length in (longest,) if longest > 0 else CHECKED_LENGTHS.tolist():
+        _scaling(solid, length)
+    _far_gap(solid, longest if longest > 0 else 1.0)
 
 
 def _scaling(solid: Solid, length: float) -> None:
@@ -62,18 +49,22 @@ def _scaling(solid: Solid, length: float) -> None:
     for unit in CHECKED_UNITS:
         found = unit * length * _longest(solid.scaled(unit * length))
         if not abs(found - longest) <= SCALING_RTOL * longest:
-            raise InputError(
-                f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its lengths have "
-                f"{found:.6g} for {longest:.6g}. {GUIDE}"
+            raise refusal(
+                "solid",
+                solid,
+                f"scaled does not agree with the same body in another unit of length: its lengths have "
+                f"{found:.6g} for {longest:.6g}.",
             )
     first = _deflection(solid.scaled(length), mesh)
     size = float(np.abs(first).max())
     for unit in CHECKED_UNITS:
         other = unit * _deflection(solid.scaled(unit * length), Mesh(mesh.edges / unit, NODES_PER_PANEL))
         if not np.abs(other - first).max() <= SCALING_RTOL * size:
-            raise InputError(
-                f"{_name(solid)}: scaled does not agree with the same body in another unit of length: its deflection differs "
-                f"by {np.abs(other - first).max() / size:.2g} of the largest. {GUIDE}"
+            raise refusal(
+                "solid",
+                solid,
+                f"scaled does not agree with the same body in another unit of length: its deflection differs "
+                f"by {np.abs(other - first).max() / size:.2g} of the largest.",
             )
 
 
@@ -84,15 +75,17 @@ def _far_gap(solid: Solid, length: float) -> None:
     x = mesh.nodes[: -mesh.order]
     gap = np.asarray(scaled.far_gap(x), dtype=float)
     if gap.shape != x.shape:
-        raise InputError(f"{_name(solid)}: far_gap must return a number for each place. {GUIDE}")
+        raise refusal("solid", solid, "far_gap must return a number for each place.")
     beyond = gap - 0.5 * x**2 - _deflection(scaled, mesh)
     for side in (-1, 1):
         far = beyond[side * x > 0.1 * FAR_DISTANCE]
         if not np.ptp(far) <= FAR_GAP_TOLERANCE:
-            raise InputError(
-                f"{_name(solid)}: far_gap does not agree with deflection under a load of pi/2: beyond an offset they differ "
+            raise refusal(
+                "solid",
+                solid,
+                f"far_gap does not agree with deflection under a load of pi/2: beyond an offset they differ "
                 f"by {np.ptp(far):.2g} u_Hz from {0.1 * FAR_DISTANCE:g} to {FAR_DISTANCE:g} times the longest of its "
-                f"lengths. {GUIDE}"
+                f"lengths.",
             )
 
 
@@ -109,7 +102,7 @@ def _deflection(solid: Solid, mesh: Mesh) -> Array:
     """Return the deflection beyond its mean under a smooth load of pi/2 in the middle of the mesh, on the finite panels."""
     matrix = np.asarray(solid.deflection(mesh), dtype=float)
     if matrix.shape != (mesh.size, mesh.size) or not np.isfinite(matrix).all():
-        raise InputError(f"{_name(solid)}: deflection must return a finite matrix, nodes by nodes. {GUIDE}")
+        raise refusal("solid", solid, "deflection must return a finite matrix, nodes by nodes.")
     finite = slice(0, mesh.size - mesh.order)
     half = mesh.edges[-1] / FAR_DISTANCE
     x = mesh.nodes[finite] / half
@@ -122,7 +115,3 @@ def _longest(solid: Solid) -> float:
     """Return the longest length of a body; zero if it has none."""
     lengths = lengths_of(solid)
     return max((each for each in (lengths.thickness, *lengths.memories) if np.isfinite(each)), default=0.0)
-
-
-def _name(solid: Solid) -> str:
-    return f"the solid {solid.name or type(solid).__name__!r}"
