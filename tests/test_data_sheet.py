@@ -13,7 +13,7 @@ from stribeck.data_sheet.content import _inputs
 from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
 from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
 from stribeck.quantities.uncertain import split_error
-from stribeck.uncertainty.states import _by_quadratics, _values, states_of
+from stribeck.uncertainty.states import SampledStates, _values
 
 SHEET = {
     "modulus": None,
@@ -153,11 +153,12 @@ def test_an_error_is_read_in_each_way_that_it_is_written(value, dimension, expec
 
 def test_errors_of_groups_by_the_atlas_and_by_seven_states_agree():
     """Well inside the atlas, where both are possible."""
-    groups = TRUE.replace(speed="5 mm/s").groups
+    contact = TRUE.replace(speed="5 mm/s")
+    states = SampledStates(contact, "balanced", 1e-6, lambda each: each["contact_load_share"] + each["viscous"])
     offsets = np.random.default_rng(77).standard_normal((400, 3)) * [0.15, 0.1, 0.2]
-    read, method, _ = states_of(groups, offsets, "balanced", 1e-6)
+    read, method, _ = states.by_groups(offsets)
     assert method == "atlas"
-    made, _ = _by_quadratics(groups, offsets, "balanced", 1e-6)
+    made, _ = states.by_solved_groups(offsets)
     for name, values in read.items():
         parts = (0.025, 0.16, 0.5, 0.84, 0.975)
         width = np.quantile(values, 0.975) - np.quantile(values, 0.025)

@@ -21,7 +21,7 @@ from stribeck.fits.model import FrictionModel
 from stribeck.fits.states.sources import atlas_parts, ways_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.regimes.phase_from_atlas import transition_speeds
-from stribeck.uncertainty.states import states_of
+from stribeck.uncertainty.states import SampledStates
 
 ROWS = {row.name: row for row in TABLES}
 BALL, PERSSON, EXIT = (ROWS[name] for name in ("ball-exponential", "ball-persson", "ball-exit"))
@@ -286,7 +286,7 @@ def test_fits_begin_on_it_where_it_holds(cavitation):
 @pytest.mark.quick
 def test_uncertainties_are_sampled_on_it():
     contact = ball(wetted_radius=3e-3)
-    found, method, _ = states_of(contact.groups, np.zeros((2, 3)), "published", 1e-5, contact)
+    found, method, _ = SampledStates(contact, "published", 1e-5, lambda states: states["viscous"]).by_groups(np.zeros((2, 3)))
     assert method == "atlas"
     inputs = RULES["point"].of_contact(contact)
     share, viscous = sb.atlas.friction_terms(contact.groups, inputs, "published")

@@ -27,7 +27,7 @@ from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
-from stribeck.uncertainty.states import NODE_DEVIATION, films_of, states_by_inputs, states_of
+from stribeck.uncertainty.states import NODE_DEVIATION, SampledStates, films_of
 
 __all__ = ["STATE_RTOL", "errors_of_kept_inputs", "inputs_tied_to", "propagate"]
 
@@ -128,12 +128,12 @@ def propagate(
     def friction_of(states: dict[str, Array]) -> Array:
         return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
 
+    sampled = SampledStates(contact, definition, rtol, friction_of)
     if groups.model == BASE_MODEL:
-        states, method, notes = states_of(groups, offsets @ of_groups, definition, rtol, contact, friction_of)
+        states, method, notes = sampled.by_groups(offsets @ of_groups)
     else:
         widths = np.array([sigmas[name] for name in names])
-        sampled = draws[:, : len(names)]
-        states, notes = states_by_inputs(contact, moves, widths, sampled, definition, rtol, friction_of)
+        states, notes = sampled.by_inputs(moves, widths, draws[:, : len(names)])
         method = "solver"
     share = states["contact_load_share"]
     dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +32,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["FILM_NAMES", "films_of", "states_by_inputs", "states_of"]
+__all__ = ["FILM_NAMES", "SampledStates", "films_of"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
@@ -59,91 +59,80 @@ def films_of(geometry: Geometry) -> tuple[str, ...]:
     return tuple(name for name in FILM_NAMES if name in OUTPUT_TABLES[geometry].names)
 
 
-def states_of(
-    groups: Groups,
-    offsets: Array,
-    definition: Definition,
-    rtol: float,
-    contact: Contact | None = None,
-    friction: Callable[[dict[str, Array]], Array] | None = None,
-) -> tuple[dict[str, Array], str, tuple[str, ...]]:
-    """Return load share, viscous friction and films of samples."""
-    table = atlas.for_groups(groups)
-    if table is not None:
-        samples = _scale_groups(groups, offsets)
-        if bool(np.all(atlas.covers(samples))):
-            inputs = RULES[groups.geometry].of_contact(contact)
-            films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
-            found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
-            share, viscous = atlas.friction_terms(samples, inputs, definition)
-            found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
-            if all(np.isfinite(values).all() for values in found.values()):
-                return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas", ()
-    found, notes = _by_quadratics(groups, offsets, definition, rtol, contact, friction)
-    return found, "solver", notes
+@dataclass(frozen=True, eq=False)
+class SampledStates:
+    """States of samples around a contact: their load share, viscous friction and films."""
 
+    contact: Contact  # The middle of the samples
+    definition: Definition  # Of friction
+    rtol: float  # Relative tolerance of solved states
+    friction: Callable[[dict[str, Array]], Array]  # States of the samples -> friction coefficients
 
-def states_by_inputs(
-    contact: Contact,
-    moves: Sequence[tuple[str, ...]],
-    sigmas: Array,
-    draws: Array,
-    definition: Definition,
-    rtol: float,
-    friction: Callable[[dict[str, Array]], Array],
-) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return load share, viscous friction and films of samples of the inputs, from solved states beside the middle."""
-    neighbours = Neighbours(rtol)
+    def by_groups(self, offsets: Array) -> tuple[dict[str, Array], str, tuple[str, ...]]:
+        """Return states of samples of the groups, off the atlas where it has them, the method, and notes."""
+        groups = self.contact.groups
+        table = atlas.for_groups(groups)
+        if table is not None:
+            samples = _scale_groups(groups, offsets)
+            if bool(np.all(atlas.covers(samples))):
+                inputs = RULES[groups.geometry].of_contact(self.contact)
+                films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
+                found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
+                share, viscous = atlas.friction_terms(samples, inputs, self.definition)
+                found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
+                if all(np.isfinite(values).all() for values in found.values()):
+                    return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas", ()
+        states, notes = self.by_solved_groups(offsets)
+        return states, "solver", notes
 
-    def at(distances: Mapping[str, float]) -> Array:
-        moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})
-        return _values(neighbours.solution(moved.groups, moved), definition, contact)
+    def by_solved_groups(self, offsets: Array) -> tuple[dict[str, Array], tuple[str, ...]]:
+        """Return states of samples of the groups, by quadratics along their principal axes, and notes."""
+        groups, neighbours, middle = self.contact.groups, Neighbours(self.rtol), offsets.mean(axis=0)
+        variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
 
-    def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
-        return at(dict.fromkeys(inputs, distance))
+        def values(distance: Array) -> Array:
+            state = neighbours.solution(_scale_groups(groups, middle + distance))
+            return _values(state, self.definition, self.contact)
 
-    def sample(i: int) -> Array:
-        distances: dict[str, float] = {}
-        for inputs, distance in zip(moves, (draws[i] * sigmas).tolist(), strict=True):
-            for name in inputs:
-                distances[name] = distances.get(name, 0.0) + distance
-        return at(distances)
+        axes = []
+        for variance, direction in zip(variances, directions.T, strict=True):
+            width = float(np.sqrt(max(variance, 0.0)))
+            if width >= MIN_LOG_DEVIATION:
+                node = NODE_DEVIATION * width * direction
+                axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
+        found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
+        if not axes:
+            return found.values(), ()
+        places = np.stack([place for place, *_ in axes], axis=1)
+        return _correct_by_solved_states(found, places, lambda i: values(offsets[i] - middle), self.friction)
 
-    start = values()
-    axes = [
-        (draws[:, i], values(inputs, NODE_DEVIATION * sigma), values(inputs, -NODE_DEVIATION * sigma))
-        for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
-    ]
-    return _correct_by_solved_states(_quadratic(start, axes, contact.groups.geometry, len(draws)), draws, sample, friction)
+    def by_inputs(
+        self, moves: Sequence[tuple[str, ...]], sigmas: Array, draws: Array
+    ) -> tuple[dict[str, Array], tuple[str, ...]]:
+        """Return states of samples of the inputs, by quadratics along each, and notes; inputs of one move move together."""
+        contact, neighbours = self.contact, Neighbours(self.rtol)
 
+        def at(distances: Mapping[str, float]) -> Array:
+            moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})
+            return _values(neighbours.solution(moved.groups, moved), self.definition, contact)
 
-def _by_quadratics(
-    groups: Groups,
-    offsets: Array,
-    definition: Definition,
-    rtol: float,
-    contact: Contact | None = None,
-    friction: Callable[[dict[str, Array]], Array] | None = None,
-) -> tuple[dict[str, Array], tuple[str, ...]]:
-    middle = offsets.mean(axis=0)
-    variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
+        def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
+            return at(dict.fromkeys(inputs, distance))
 
-    neighbours = Neighbours(rtol)
+        def sample(i: int) -> Array:
+            distances: dict[str, float] = {}
+            for inputs, distance in zip(moves, (draws[i] * sigmas).tolist(), strict=True):
+                for name in inputs:
+                    distances[name] = distances.get(name, 0.0) + distance
+            return at(distances)
 
-    def values(distance: Array) -> Array:
-        return _values(neighbours.solution(_scale_groups(groups, middle + distance)), definition, contact)
-
-    axes = []
-    for variance, direction in zip(variances, directions.T, strict=True):
-        width = float(np.sqrt(max(variance, 0.0)))
-        if width >= MIN_LOG_DEVIATION:
-            node = NODE_DEVIATION * width * direction
-            axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
-    found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
-    if friction is None or not axes:
-        return found.values(), ()
-    places = np.stack([place for place, *_ in axes], axis=1)
-    return _correct_by_solved_states(found, places, lambda i: values(offsets[i] - middle), friction)
+        start = values()
+        axes = [
+            (draws[:, i], values(inputs, NODE_DEVIATION * sigma), values(inputs, -NODE_DEVIATION * sigma))
+            for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
+        ]
+        found = _quadratic(start, axes, contact.groups.geometry, len(draws))
+        return _correct_by_solved_states(found, draws, sample, self.friction)
 
 
 class _Samples(NamedTuple):
