@@ -19,7 +19,7 @@ from stribeck import atlas
 from stribeck.atlas.grid import BREAK_TERMS, MAX_L_OF_HEAVY
 from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
-from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
+from stribeck.quantities.inputs import LINE, quantity
 from stribeck.quantities.units import DIMENSIONS
 
 FUNCTIONS = ("log_odds", "viscous_balanced", "central_gap", "minimum_gap")
@@ -94,8 +94,8 @@ def inputs() -> dict[str, list[dict]]:
     """Return the rows of the sliders, in SI units and as groups: name, label, symbol, unit, ends and value at first."""
     given = tomllib.loads(EXAMPLE.read_text())["contact"]
     si = []
-    for name in INPUTS:
-        row = QUANTITIES[name]
+    for name in LINE.names:
+        row = LINE.quantities[name]
         kind = DIMENSIONS[row.dimension]
         low, high = SLIDERS.get(name, row.usual)
         steps = {str(power): unit for power, unit in kind.steps.items()}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from stribeck import Case, InputError, LineContact, load_case
 from stribeck.cases.case import CurveSettings
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import LINE
 
 EXAMPLES = sorted(
     path for path in (Path(__file__).parents[1] / "examples").glob("*.toml") if "\n[vary]\n" not in path.read_text()
@@ -120,7 +120,7 @@ def test_a_byte_order_mark_is_read_over(write):
 def test_a_case_knows_every_quantity(write):
     pair = {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"}
     second = {"radius_2", "youngs_modulus_2", "poisson_ratio_2"}
-    assert set(QUANTITIES) == set(CONTACT) | set(pair) | second | {"entrainment_speed"}
+    assert set(LINE.quantities) == set(CONTACT) | set(pair) | second | {"entrainment_speed"}
     assert load_case(write(toml(contact=pair))).contact.modulus > 2e6
 
 
@@ -348,7 +348,7 @@ def test_every_quantity_of_an_example_has_a_comment_above(path):
     contact = lines[lines.index("[contact]") + 1 :]
     above = ""
     for line in contact[: next((i for i, line in enumerate(contact) if line.startswith("[")), None)]:
-        if "=" in line and line.split(" =")[0] in QUANTITIES and "poisson" not in line:
+        if "=" in line and line.split(" =")[0] in LINE.quantities and "poisson" not in line:
             assert above.startswith("#"), line
         above = line
 

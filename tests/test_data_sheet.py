@@ -11,7 +11,7 @@ from fit_data import TRUE
 import stribeck as sb
 from stribeck.data_sheet.content import _inputs
 from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
-from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
+from stribeck.quantities.inputs import INPUT_TABLES, LINE
 from stribeck.quantities.uncertain import split_error
 from stribeck.uncertainty.states import SampledStates, _values
 
@@ -108,11 +108,11 @@ def test_what_cannot_be_converted_is_named_alone(tmp_path, changes, sentence):
 @pytest.mark.quick
 def test_the_table_of_conversions_is_whole():
     for row in CONVERSIONS:
-        assert row.of in QUANTITIES and row.formula and row.source
+        assert row.of in LINE.quantities and row.formula and row.source
         values = {each.name: float(each.typical) if each.dimension == "number" else each.typical for each in row.inputs}
         found = read_given(values, INPUT_TABLES[row.geometry or "line"])
         assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.sentences) == 1
-    assert not set(GIVEN) & set(QUANTITIES)
+    assert not set(GIVEN) & set(LINE.quantities)
 
 
 @pytest.mark.quick

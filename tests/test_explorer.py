@@ -966,7 +966,7 @@ def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
     for what in ("curve", "state"):
         assert files.content(f"{what}.png", shown).startswith(b"\x89PNG")
         assert ElementTree.fromstring(files.content(f"{what}.svg", shown)).tag.endswith("svg")
-    figure = picture.figure_of(shown, "curve")
+    figure = picture.figure_of(shown, "curve", lambda part: None)
     assert {"pinned", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
 
 

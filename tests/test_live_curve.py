@@ -15,7 +15,7 @@ from test_browser import LONG, chromium  # noqa: F401
 import stribeck as sb
 from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import LINE
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>Live curve</title>
@@ -135,7 +135,7 @@ def test_sliders_in_si_move_the_curve_and_the_link_opens_it_again(open_live):
     assert shown(page) == pytest.approx(sb.atlas.friction(contact.groups, contact.boundary_friction, contact.beta), rel=1e-6)
     assert shown(page, "minimum") == pytest.approx(sb.stribeck_curve(contact).minimum.value, rel=1e-3)
     for name, key in (("viscosity", "ArrowRight"), ("beta", "ArrowLeft"), ("speed", "ArrowRight")):
-        page.get_by_label(QUANTITIES[name].label, exact=True).focus()
+        page.get_by_label(LINE.quantities[name].label, exact=True).focus()
         for _ in range(7):
             page.keyboard.press(key)
     now = contact_of(page)

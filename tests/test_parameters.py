@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from stribeck import Groups, InputError, LineContact
 from stribeck.contacts.parts import Parts
-from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
+from stribeck.quantities.inputs import LINE
 
 PARTS = [field.name for field in dataclasses.fields(Parts)]
 
@@ -236,7 +236,7 @@ def test_an_unknown_input_is_answered_with_the_nearest_name():
 
 def test_the_signature_of_a_contact_names_every_input():
     assert list(inspect.signature(LineContact).parameters) == [
-        *QUANTITIES,
+        *LINE.quantities,
         "law",
         *(field.name for field in dataclasses.fields(Parts)),
     ]
@@ -245,7 +245,7 @@ def test_the_signature_of_a_contact_names_every_input():
 
 def test_the_exponents_of_an_input_are_those_of_the_groups():
     base = contact()
-    for name, exponents in GROUP_EXPONENTS.items():
+    for name, exponents in LINE.exponents.items():
         doubled = base.replace(**{name: 2 * getattr(base, name)})
         for group, exponent in zip(("speed", "load", "roughness"), exponents, strict=True):
             ratio = getattr(doubled.groups, group) / getattr(base.groups, group)
@@ -270,7 +270,7 @@ def test_values_whose_groups_overflow_are_refused(changes):
 
 
 def test_every_quantity_is_an_argument_of_the_contact_and_back():
-    assert set(inspect.signature(LineContact).parameters) == {*QUANTITIES, "law", *PARTS}
+    assert set(inspect.signature(LineContact).parameters) == {*LINE.quantities, "law", *PARTS}
 
 
 def test_replace_checks_and_keeps_the_rest():

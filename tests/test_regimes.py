@@ -15,7 +15,7 @@ from stribeck.curves import sensitivities
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.curves.stribeck_curve import continued
-from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.quantities.inputs import LINE
 from stribeck.regimes import margin_scan
 from stribeck.regimes import margins as margins_module
 from stribeck.regimes.margin_intervals import with_intervals
@@ -52,14 +52,14 @@ def test_a_regime_is_named_by_the_shares_of_load_and_friction(fluid, contact, re
     assert sb.regime_of(fluid, contact) == regime
 
 
-@pytest.mark.parametrize("name", GROUP_EXPONENTS)
+@pytest.mark.parametrize("name", LINE.exponents)
 def test_the_exponents_are_those_of_the_groups(name):
     def logs(factor):
         groups = CONTACT.replace(**{name: factor * getattr(CONTACT, name)}).groups
         return np.log([groups.speed, groups.load, groups.roughness])
 
     slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
-    np.testing.assert_allclose(slope, GROUP_EXPONENTS[name], atol=1e-12)
+    np.testing.assert_allclose(slope, LINE.exponents[name], atol=1e-12)
 
 
 @pytest.mark.parametrize(("speed", "definition"), [(1e-3, "published"), (0.03, "balanced")])
@@ -68,7 +68,7 @@ def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
     solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
     assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
     step = 1e-2
-    for name in GROUP_EXPONENTS:
+    for name in LINE.exponents:
 
         def log_friction(k, name=name):
             other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})

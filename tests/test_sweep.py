@@ -20,7 +20,7 @@ from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, finish, same_r
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.quantities.inputs import INPUTS
+from stribeck.quantities.inputs import LINE
 from stribeck.solver import neighbours
 from stribeck.sweeps.lock import LOCK_FILE
 
@@ -60,7 +60,7 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
     text = CONTACT + '[vary]\nload = ["30 N/m"]\nroughness = ["1 um"]\nspeed = ["1 mm/s", "1 m/s"]\n'
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
     for i, speed in enumerate((1e-3, 1.0)):
-        contact = sb.LineContact(**{name: float(found[name][i]) for name in INPUTS})
+        contact = sb.LineContact(**{name: float(found[name][i]) for name in LINE.names})
         assert contact.speed == speed
         state = sb.solve(contact)
         assert float(found.central_film_thickness[i]) == pytest.approx(state.central_gap * contact.hertz.indentation, rel=2e-6)

@@ -7,7 +7,7 @@ from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
 from stribeck.batches.order import CHAIN, chains_of, coordinates
-from stribeck.quantities.inputs import INPUTS
+from stribeck.quantities.inputs import LINE
 
 VARY = """
 [vary]
@@ -34,7 +34,7 @@ def test_a_grid_holds_every_combination_the_last_axis_fastest(tmp_path):
 def test_each_state_has_the_groups_of_its_contact(tmp_path):
     design = load(tmp_path, CONTACT + VARY)
     for i in (0, 7, 29):
-        contact = sb.LineContact(**{name: design.inputs[name][i] for name in INPUTS})
+        contact = sb.LineContact(**{name: design.inputs[name][i] for name in LINE.names})
         assert contact.radius == 0.01
         groups = contact.groups
         assert design.groups[i].tolist() == [groups.speed, groups.load, groups.roughness]

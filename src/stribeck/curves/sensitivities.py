@@ -18,7 +18,7 @@ from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.quantities.inputs import LINE
 from stribeck.quantities.part_inputs import PART_INPUTS, part_names
 from stribeck.quantities.units import InputError
 from stribeck.solver.path.line_path import with_ending_of
@@ -72,7 +72,7 @@ def friction_sensitivities(
         point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
-        names = [name for name in GROUP_EXPONENTS if getattr(contact, name, None)] + list(part_names(contact))
+        names = [name for name in LINE.exponents if getattr(contact, name, None)] + list(part_names(contact))
         names = names if groups.model != BASE_MODEL else []
         changes = {name: beside for name in names if (beside := models_at_both_sides(contact, name)) is not None}
         state = point.state  # of a film that may re-form, with a cavity or without
@@ -132,8 +132,8 @@ def _sensitivities(
     direct = {"boundary_friction": contact, "beta": viscous}
     total = (contact + viscous) or math.nan
     model = through or {}
-    exponents = {**dict.fromkeys(model, (0.0, 0.0, 0.0)), **GROUP_EXPONENTS}
+    exponents = {**dict.fromkeys(model, (0.0, 0.0, 0.0)), **LINE.exponents}
     return {
         name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0) + model.get(name, 0.0)) / total
-        for name in (*GROUP_EXPONENTS, *(name for name in model if name not in GROUP_EXPONENTS))
+        for name in (*LINE.exponents, *(name for name in model if name not in LINE.exponents))
     }

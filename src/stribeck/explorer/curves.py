@@ -38,6 +38,7 @@ __all__ = [
     "diagram_from_atlas",
     "hersey_scale",
     "in_atlas",
+    "solve_curve",
     "solved_curve",
     "solved_diagram",
     "transition_marks",
@@ -54,9 +55,8 @@ FIRST_RTOL = {"line": 5e-4, "point": SOLVED_RTOL}
 SOLVED_POINTS = {"line": CURVE_POINTS, "point": 15}
 
 
-# Points of the curve that is solved for its notes where the page reads it off the atlas, by geometry.
-NOTED_POINTS = {"line": 101, "point": 41}
-NOTED_RTOL = 1e-4  # Relative tolerance of that curve.
+# Points of the curve that is solved for its notes and its picture where the page reads it off the atlas, by geometry.
+PRINTED_POINTS = {"line": 101, "point": 41}
 
 
 class SolvedRows(NamedTuple):
@@ -184,12 +184,12 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
 def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
     """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas."""
     try:
-        return _solve_curve(contact, definition, report, NOTED_POINTS[contact.INPUTS.geometry], NOTED_RTOL).notes
+        return solve_curve(contact, definition, report, PRINTED_POINTS[contact.INPUTS.geometry], SOLVED_RTOL).notes
     except (InputError, SolveError) as problem:
         return (str(problem),)
 
 
-def _solve_curve(
+def solve_curve(
     contact: Contact,
     definition: Definition,
     report: Report,
@@ -215,7 +215,7 @@ def solved_curve(
     rtol: float = SOLVED_RTOL,
 ) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
-    found = _solve_curve(contact, definition, report, SOLVED_POINTS[contact.INPUTS.geometry], rtol)
+    found = solve_curve(contact, definition, report, SOLVED_POINTS[contact.INPUTS.geometry], rtol)
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
     if len(found) < CURVE_POINTS:
@@ -295,7 +295,7 @@ def _row(
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
     whole = speeds[0] / solved.room, speeds[1] * solved.room
     for low, high in (_expected(contact.roughness, whole, neighbour), whole):
-        found = _solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
+        found = solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
         is_slow = low == whole[0] or found.regimes[0] == "boundary"
         rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
         if is_slow and (rises or high == whole[1]):

@@ -7,7 +7,7 @@ import functools
 import io
 import json
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.explorer.charts.picture import picture
-from stribeck.explorer.curves import hersey_scale
+from stribeck.explorer.curves import Report, hersey_scale
 from stribeck.explorer.inputs.carried import model_changes, model_lines, tables_of, toml_text
 from stribeck.explorer.inputs.inputs import Inputs, exact_text
 from stribeck.explorer.view import View
@@ -106,7 +106,7 @@ def _rounded_text(inputs: Inputs, name: str) -> str:
     return "none" if value is None else si_text(float(value), name, 4, inputs.table)
 
 
-def content(kind: str, shown: View, go_on: Callable[..., object] | None = None) -> bytes:
+def content(kind: str, shown: View, go_on: Report = lambda part: None) -> bytes:
     """Return the content of a file of what is shown."""
     what, _, ending = kind.partition(".")
     if ending in ("png", "svg"):

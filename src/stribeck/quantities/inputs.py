@@ -18,12 +18,8 @@ from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = [
     "ALTERNATIVES",
-    "GROUP_EXPONENTS",
-    "INPUTS",
     "INPUT_TABLES",
     "LETTERS",
-    "QUANTITIES",
-    "SYMBOLS",
     "Alternative",
     "InputTable",
     "quantity",
@@ -103,9 +99,6 @@ LINE = InputTable("line", "LineContact", (*ROWS, *OTHER_BODY), ALTERNATIVES)  # 
 POINT = InputTable("point", "PointContact", POINT_ROWS, ALTERNATIVES)  # The inputs of a ball
 
 INPUT_TABLES = {"line": LINE, "point": POINT}  # The inputs by geometry
-
-# For a cylinder: its inputs by name, those that it keeps, symbols for pictures, exponents in the groups.
-QUANTITIES, INPUTS, SYMBOLS, GROUP_EXPONENTS = LINE.quantities, LINE.names, LINE.symbols, LINE.exponents
 
 # Symbols of the article and of the field, and the inputs that they stand for.
 LETTERS = {letter: row.name for table in (POINT, LINE) for row in table.rows for letter in row.letters}

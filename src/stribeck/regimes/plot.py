@@ -29,7 +29,7 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import QUANTITIES, SYMBOLS
+from stribeck.quantities.inputs import LINE
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -269,7 +269,7 @@ def _scaled(dataset: xarray.Dataset, name: str) -> tuple[Any, str]:
     if dataset[name].attrs["units"] == "1":
         return np.asarray, f"{name} group {SYMBOLS_OF_GROUPS[name]}"
     unit, factor = DISPLAYED[name]
-    return (lambda values: np.asarray(values) * factor), f"{name} {SYMBOLS[name]} ({unit})"
+    return (lambda values: np.asarray(values) * factor), f"{name} {LINE.symbols[name]} ({unit})"
 
 
 SYMBOLS_OF_GROUPS = {"speed": r"$\lambda$", "load": r"$\bar F_N$", "roughness": r"$\bar h_\mathrm{rms}$"}
@@ -288,14 +288,14 @@ def _caption(dataset: xarray.Dataset, loads: list[float]) -> tuple[list[list[str
     """Return what the diagram was made with, and how it ended where it is not whole."""
     attributes = dataset.attrs
     values = dict.fromkeys(
-        format_si(load, QUANTITIES["load"].dimension, 4) if dataset["load"].attrs["units"] != "1" else f"{load:.4g}"
+        format_si(load, LINE.quantities["load"].dimension, 4) if dataset["load"].attrs["units"] != "1" else f"{load:.4g}"
         for load in loads
     )
     name = "load" if dataset["load"].attrs["units"] != "1" else "load group"
     first = [f"{name} {' and '.join(values)}"]
-    for key, symbol in SYMBOLS.items():
+    for key, symbol in LINE.symbols.items():
         if f"input_{key}" in attributes:
-            first.append(f"{symbol} = {format_si(attributes[f'input_{key}'], QUANTITIES[key].dimension, 4)}")
+            first.append(f"{symbol} = {format_si(attributes[f'input_{key}'], LINE.quantities[key].dimension, 4)}")
     if "input_radius" not in attributes:
         first += [rf"$\mu_0$ = {attributes['boundary_friction']:.4g}", rf"$\beta$ = {attributes['beta']:.4g}"]
     solved = int((dataset.regime.values >= 0).sum())

@@ -27,7 +27,7 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import SYMBOLS
+from stribeck.quantities.inputs import LINE
 from stribeck.quantities.units import DIMENSIONS, InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.solution import Solution
@@ -176,7 +176,7 @@ def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to
     rms = 0.0 if solution is None else (1.0 if contact is None else contact.alpha) * float(solution.groups.relative_roughness)
     if rms > 0 and rms > 0.03 * gap.min():
         drawn = np.append(drawn, rms)
-        name = r"$h_\mathrm{rms}/\alpha$" if contact is None else SYMBOLS["roughness"]
+        name = r"$h_\mathrm{rms}/\alpha$" if contact is None else LINE.symbols["roughness"]
         axes.axhline(rms * to_gap[0], color=GREY, lw=1.0, ls=(0, (5, 3)), label=f"roughness {name}")
     if gap.min() > 0:
         make_logarithmic(axes, "y", drawn * to_gap[0])

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.explorer.charts.palette import LIGHT, PIN_DASHES
-from stribeck.explorer.curves import hersey_scale
+from stribeck.explorer.curves import PRINTED_POINTS, SOLVED_RTOL, Report, hersey_scale, solve_curve
 from stribeck.explorer.view import View
 
 __all__ = ["figure_of", "picture"]
 
-CURVE_POINTS = 101  # Points of the curve that is solved for a picture where the page reads it off the atlas.
-CURVE_RTOL = 1e-4  # Relative tolerance of that curve.
 
-
-def picture(shown: View, what: str, kind: str, go_on: Callable[..., object] | None = None) -> bytes:
+def picture(shown: View, what: str, kind: str, go_on: Report) -> bytes:
     """Return a picture of the curve, with pinned and measured ones, or of the state."""
     figure = figure_of(shown, what, go_on)
     file = io.BytesIO()
@@ -28,21 +23,15 @@ def picture(shown: View, what: str, kind: str, go_on: Callable[..., object] | No
     return file.getvalue()
 
 
-def figure_of(shown: View, what: str, go_on: Callable[..., object] | None = None) -> Any:
+def figure_of(shown: View, what: str, go_on: Report) -> Any:
     """Return the figure of the curve, over what the page shows it, or of the state."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
     if what == "state":
         return shown.answer.solution.plot(title=inputs.title)
     found = None if curve is None or curve.stale else curve.solved
     if found is None:
-        found = stribeck_curve(
-            inputs.contact,
-            speed=shown.answer.speeds,
-            points=CURVE_POINTS,
-            rtol=CURVE_RTOL,
-            definition=inputs.definition,
-            on_point=go_on,
-        )
+        points = PRINTED_POINTS[inputs.table.geometry]
+        found = solve_curve(inputs.contact, inputs.definition, go_on, points, SOLVED_RTOL, shown.answer.speeds)
     band = None if curve is None or curve.stale else curve.band
     verdict = shown.answer.checks_with_curve.headline
     figure = found.plot(title=inputs.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
