@@ -54,7 +54,7 @@ def friction_sensitivities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`. The last term is the
+    with G the three groups and n their exponents, ``INPUTS.exponents`` of the contact. The last term is the
     contact part of the friction for the friction coefficient and the viscous part for beta, and what changes through the
     fluid and the solid, whose numbers in Hertz units depend on inputs of the contact.
     """
