@@ -23,7 +23,7 @@ POLYNOMIAL_DEGREE = 10  # Degree of the polynomial around a separation.
 LOG_HALF_WIDTH = 0.25
 
 RELATIVE_HALF_WIDTH = 0.2  # Half-width of a polynomial over the separation, for laws of any separation.
-MIN_HALF_WIDTH = 0.2  # Least half-width of such a polynomial, as a separation.
+MIN_HALF_WIDTH = 0.2  # Least half-width of a polynomial, as a separation.
 
 # Separations around which a law is compared with its polynomials, whose intervals overlap.
 SCANNED_SEPARATIONS = np.concatenate([np.linspace(-3.0, 0.0, 16), np.geomspace(1e-3, 50.0, 64)])

@@ -7,7 +7,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 
-MAX_HALVINGS = 20
+MAX_HALVINGS = 20  # Halvings of a step whose contact pressure grows too much: one of 1e-6 makes no progress
 
 
 def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) -> float:

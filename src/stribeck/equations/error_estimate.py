@@ -53,7 +53,7 @@ __all__ = [
 
 SAFETY = 2.0  # Factor from the estimated to the stated error
 
-DEFECT_SAFETY = 3.0  # The same for the defect, of which finer nodes see only a part if the pressures need many more
+DEFECT_SAFETY = 3.0  # Safety factor of the defect: finer nodes see only a part of it if the pressures need many more nodes
 
 # If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is interpolated
 # itself: its formula is there the difference of nearly equal numbers.
@@ -64,7 +64,7 @@ ROUNDING_UNITS = 2.0
 
 SIGN_PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
 
-ROUNDING_DEVIATIONS = 2.0  # Standard deviations of these changes that are stated as the error by rounding
+ROUNDING_DEVIATIONS = 2.0  # Stated error by rounding over the standard deviation of the changes by SIGN_PATTERNS
 
 OFFSET_FLOOR = 1e-3  # The error of the offset is relative to it where it exceeds this; it crosses zero
 

@@ -280,7 +280,7 @@ class Equations:
         return found
 
     def by_cavity_stretch_alone(self, y: Array, d: float, g: Array) -> Array:
-        """Return the same at a fixed fluid pressure, without the rows of the pressure; g is the gradient of the pressure."""
+        """Return the derivative of the residual by the cavity stretch at fixed fluid pressure; g is the gradient."""
         op, n = self.operators, self.operators.mesh.size
         contact, fluid = self.pressures(y)
         pressure = contact + fluid

@@ -49,7 +49,7 @@ class Extrapolation:
 
     @property
     def offset(self) -> float:
-        """That of the last state; Newton's first step corrects it exactly."""
+        """Offset of the last state: Newton's first step corrects it exactly."""
         return self.states[-1].offset
 
     @cached_property
@@ -96,12 +96,12 @@ class Extrapolation:
 
     @property
     def reformation(self) -> float:
-        """That of the last state."""
+        """Edge of the last state's mesh at which the film re-forms."""
         return self.states[-1].reformation
 
     @property
     def cavity_stretch(self) -> float:
-        """Extrapolated in its logarithm."""
+        """Stretch of the cavity, extrapolated in its logarithm."""
         if self.reformation == math.inf:
             return 1.0
         lengths = [math.log(s.cavity_stretch * s.reformation) for s in self.states]
@@ -109,7 +109,7 @@ class Extrapolation:
 
     @property
     def minimum_position(self) -> float:
-        """That of the last state."""
+        """Position of the minimum gap of the last state."""
         return self.states[-1].minimum_position
 
     def log_gap(self, mesh: Mesh) -> Array:
@@ -180,12 +180,12 @@ class SeenFrom:
 
     @property
     def offset(self) -> float:
-        """That of the state."""
+        """Offset of the state."""
         return self.state.offset
 
     @property
     def minimum_position(self) -> float:
-        """That of the state, from the new origin."""
+        """Position of the minimum gap of the state, from the new origin."""
         return self.state.exit + self.state.cavity_stretch * self.state.minimum_position - self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:

@@ -207,7 +207,7 @@ class State:
 
     @property
     def effort(self) -> float:
-        """What :func:`continuation.march` steers by: 4 where the cubic prediction was as good as wanted."""
+        """Measure of the work by which :func:`continuation.march` steers; 4 for a cubic prediction as good as wanted."""
         return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_RTOL_FRACTION)
 
     @cached_property
@@ -285,7 +285,7 @@ def closed_gap(film: Film) -> float | None:
 
 
 def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
-    """Return what tells by how much the pressure gradient jumps between each node and the next one; None if it never does."""
+    """Return the function of the jump of the pressure gradient between each node and the next; None for smooth films."""
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
 
 

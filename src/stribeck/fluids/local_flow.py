@@ -96,7 +96,7 @@ class _Walls(NamedTuple):
 
     @classmethod
     def at(cls, law: RateLaw, x: Array, wanted: Array) -> _Walls:
-        """Return what is known at these wall rates."""
+        """Return stresses, slopes and defects at wall rates."""
         g, slope = _odd(law, x)
         integrals, by = _integrals(law, x, g)
         missing = wanted - integrals

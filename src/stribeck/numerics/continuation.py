@@ -22,7 +22,7 @@ MAX_STEP_GROWTH = 2.0  # of the step length, per step; also how much a hard step
 
 
 class State(Protocol):
-    """What :func:`march` asks of a state: how its solve ended, and how many factorisations that took."""
+    """A state of :func:`march`: how its solve ended, and how many factorisations that took."""
 
     @property
     def outcome(self) -> Outcome: ...  # noqa: D102

@@ -40,7 +40,7 @@ def _sums(order: int) -> Array:
 
 
 def hermite_weights(order: int, tau: Array) -> tuple[Array, Array]:
-    """Return what the coefficients of both ends are multiplied by, on an interval of length one."""
+    """Return the weights of the coefficients of both ends, on an interval of length one."""
     powers = np.arange(order + 1)
     sums = _sums(order).T
     left = (tau[:, None] ** powers @ sums) * (1 - tau[:, None]) ** (order + 1)
@@ -67,7 +67,7 @@ def _highest_order(order: int) -> Array:
 
 @lru_cache(maxsize=64)
 def _highest_orders(order: int) -> Array:
-    """Return these rows, and below them those of the order before, which one order alone may hide by chance."""
+    """Return the rows of the change by the highest order and, below, by the order before: one alone may vanish by accident."""
     left, right = np.hsplit(_highest_order(order - 1), 2)
     return np.vstack([_highest_order(order), np.hstack([np.pad(part, ((0, 0), (0, 1))) for part in (left, right)])])
 

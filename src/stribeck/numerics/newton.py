@@ -46,7 +46,7 @@ INVERSE_POINTS = 4  # Last places through which the next one is interpolated
 
 
 class Inverse(Protocol):
-    """What removes residuals to first order; made at one state, good near it."""
+    """A function that removes residuals to first order; made at one state, good near it."""
 
     @property
     def is_finite(self) -> bool:
@@ -164,7 +164,7 @@ class Dense:
 
 @dataclass(frozen=True, eq=False)
 class Root:
-    """What :func:`root_find` returns."""
+    """The result of :func:`root_find`."""
 
     x: Array  # The root, or the last iterate with a finite residual if the outcome is a failure
     outcome: Outcome  # How the iteration ended

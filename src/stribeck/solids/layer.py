@@ -55,12 +55,13 @@ SMOOTH_RULE_ERROR = 1e-13
 
 KERNEL_RULE_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure is integrated over the kernel's radius.
 
-# Nodes over that radius on each side of a target, and the power by which they cluster: 1e-14 for a logarithm.
-NEAR_RULE = (64, 8)
+# Nodes over the kernel's radius on each side of a target, clustered by NEAR_CLUSTER_POWER: good to 1e-14 for a logarithm.
+NEAR_NODES = 64
+NEAR_CLUSTER_POWER = 8  # Power by which these nodes cluster towards the target.
 
 FAR_FROM_PANEL = 4.0  # Distance from a wide panel [thicknesses] above which the deflection is interpolated.
 FAR_TARGETS = 40  # Chebyshev targets of that interpolation.
-FAR_RULE = (32, 1)  # Nodes over the kernel's radius for those targets, and the power by which they cluster.
+FAR_NODES = 32  # Evenly spread nodes over the kernel's radius for FAR_TARGETS.
 
 
 @dataclass(frozen=True, init=False)
@@ -178,7 +179,7 @@ class Layer:
                     -half - 0.5 * (FAR_FROM_PANEL + KERNEL_RADIUS),
                     0.5 * (KERNEL_RADIUS - FAR_FROM_PANEL),
                 )
-                there = ahead(middle + span * rule.nodes, *FAR_RULE)
+                there = ahead(middle + span * rule.nodes, FAR_NODES, 1)
                 found[far] = rule.interpolation((place[far] - middle) / span) @ there
                 some &= ~far
             first, length = first[some, None], (last - first)[some, None]
@@ -189,7 +190,9 @@ class Layer:
             found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
-        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), *NEAR_RULE).reshape(2, len(x), -1)
+        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), NEAR_NODES, NEAR_CLUSTER_POWER).reshape(
+            2, len(x), -1
+        )
         return np.asarray(to_right + to_left[:, ::-1])
 
     def far_gap(self, x: Array) -> Array:

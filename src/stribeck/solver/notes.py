@@ -35,9 +35,8 @@ THICK_PREFIX = "The film is"
 WETTED_PREFIX = "The liquid ends at"
 
 OIL_COEFFICIENT = 2e-8  # Pressure-viscosity coefficient of mineral oil [1/Pa], amid the usual 15 to 25 1/GPa
-MAX_PRESSURE_EXPONENT = (
-    1.0  # Pressure coefficient times Hertz pressure where films are 12 %, friction 88 % off (when_not_to_use.md)
-)
+# Pressure coefficient times Hertz pressure where films are 12 %, friction 88 % off (when_not_to_use.md).
+MAX_PRESSURE_EXPONENT = 1.0
 MAX_HERTZ_PRESSURE = MAX_PRESSURE_EXPONENT / OIL_COEFFICIENT  # Hertz pressure up to which an oil may count as isoviscous [Pa]
 MAX_CONTACT_SLOPE = 0.3  # Hertz half-width over the radius above which the model is coarse
 MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold

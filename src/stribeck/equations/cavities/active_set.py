@@ -29,13 +29,13 @@ from stribeck.equations.point.system import LOAD, Unknowns
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
 
-MAX_STEPS = 40  # Steps after which the iteration is given up
+MAX_STEPS = 40  # Most Newton steps
 
-MAX_KRYLOV_STEPS = 60  # Steps of GMRES for one of these
+MAX_KRYLOV_STEPS = 60  # Most GMRES steps of a Newton step
 
 GMRES_RTOL = 1e-3  # Relative error of a step that GMRES may leave; less near the solution
 
-GMRES_RTOL_ACTIVE_SET = 3e-2  # The same while nodes still break or heal
+GMRES_RTOL_ACTIVE_SET = 3e-2  # Relative error of a step that GMRES may leave while the active set changes
 
 LOAD_RTOL_FACTOR = 5e-3  # Relative error of the load over the tolerance of the gap: friction is read off the load
 

@@ -30,7 +30,7 @@ Single = npt.NDArray[np.float32]
 # that bordering costs more than factorising.
 REFACTOR_FRACTION = 0.15
 
-STORAGE_GROWTH = 1.2  # Room for columns over those of the known nodes, as a few more come with each step
+STORAGE_GROWTH = 1.2  # Columns allocated over columns needed: the active set grows by a few nodes a step
 
 BLOCK_COLUMNS = 128  # Nodes whose columns are found together: their arrays stay in the cache, and their memory is used again
 
@@ -47,7 +47,7 @@ class Capacitance:
     """Z: changes of total pressure by mode and of the offset, shape (size + 1, nodes)."""
     totals: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
     gaps: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
-    """The same at the nodes of the mesh, shape (size, nodes)."""
+    """Z at the nodes of the mesh: total pressure and gap, shape (size, nodes)."""
     room: list[Single] = field(default_factory=list)
     """Arrays of which these are the first columns."""
     last: _Factors | None = None

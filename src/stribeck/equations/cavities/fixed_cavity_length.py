@@ -49,7 +49,7 @@ class FixedLengthEquations(Equations):
         return found
 
     def fluid_by_cavity_stretch(self, g: Array, d: float, by_pressure: Array | None) -> Array:
-        """Return that of the fluid pressure."""
+        """Return the derivative of the fluid pressure by the cavity pressure, which takes the place of the stretch."""
         return self.operators.in_cavity
 
 

@@ -53,11 +53,11 @@ class CavitatedSystem(Equations):
     order: ClassVar[float] = 2.0
     """Power of the number of angles with which errors fall."""
     slack: ClassVar[float] = 1.25
-    """Stated error over that from the difference between two meshes by this power."""
+    """Stated error over the error by the difference between two meshes and the power ``order``."""
 
     @property
     def spread(self) -> csc_matrix | None:
-        """What unit gas at each node adds to the residual at all; None where it stays at its node."""
+        """Residuals by unit void at each node, node by node; None where a void acts at its own node alone."""
         return None
 
     def shear_error(self, y: Unknowns) -> float:

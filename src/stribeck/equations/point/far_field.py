@@ -52,7 +52,7 @@ def _rule() -> tuple[Array, Array]:
 
 
 def logarithms(rim: float, speed: float, far: FarFilm = FULL_FAR_FILM) -> tuple[float, float, float]:
-    """Return what shear, pressure flow and moment lack of their logarithms at the rim."""
+    """Return minus the logarithms of shear, pressure flow and moment at the rim."""
     log = speed * math.log(rim)
     return -far.couette * log, -far.poiseuille * log, 2.0 * far.poiseuille * log
 

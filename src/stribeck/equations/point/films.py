@@ -53,14 +53,14 @@ class FluxSlopes(NamedTuple):
 
 
 class Beyond(Protocol):
-    """What a film beyond the rim has more than one of constant viscosity."""
+    """The film outside the rim, less a film of constant viscosity."""
 
     is_all: ClassVar[bool]
     """Whether it is the whole film, but for the logarithms of friction."""
 
     @property
     def drag(self) -> float:
-        """An estimate of its drag."""
+        """Estimate of the drag of the film outside the rim."""
 
     def doubt(self, offset: float) -> float:
         """Return an estimate of the error of its friction integrals, with an offset."""
@@ -72,7 +72,7 @@ class Beyond(Protocol):
         """Return the parts of shear, pressure flow and moment."""
 
     def beyond(self, radius: float) -> Beyond:
-        """Return the same beyond another radius."""
+        """Return the film outside another radius."""
 
     def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
         """Return pressure, its radial derivative and lost radial flux at angles of the rim, and their offset derivatives."""
@@ -82,22 +82,22 @@ class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
     def beyond(self, speed: float, rim: float) -> Beyond | None:
-        """Return what the film beyond a rim has more than one of constant viscosity."""
+        """Return the film outside a rim less a film of constant viscosity; None where it is that film."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
 
     def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
-        """Return its derivatives."""
+        """Return the derivatives of the fluxes."""
 
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the drag of sliding over that of a fluid of the viscosity at ambient pressure and low rates, at the nodes."""
 
     def sheared(self, speed: float, gap: Array) -> Array:
-        """Return the same where the walls alone shear the film, at ambient pressure."""
+        """Return the drag of sliding, over a Newtonian fluid's, where the walls alone shear the film at ambient pressure."""
 
     def carried(self, gap: Array, pressure: Array) -> Array:
-        """Return what goes with the walls, C."""
+        """Return C, the volume that the walls carry."""
 
     def filled(self, gap: Array) -> Array:
         """Return the volume that the walls carry where the gap is full of liquid, over the gap: 1 + s S/h."""
@@ -120,7 +120,7 @@ class LinearPlane:
         raise NotImplementedError
 
     def carried(self, gap: Array, pressure: Array) -> Array:
-        """Return what goes with the walls, C."""
+        """Return C, the volume that the walls carry."""
         return self.flow(gap, pressure).carried
 
     def filled(self, gap: Array) -> Array:

@@ -27,11 +27,11 @@ MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
 
 REBUILD_AT = 12  # GMRES steps above which the next Newton step has a new preconditioner
 
-REBUILD_AT_NEAR_SOLUTION = 16  # GMRES steps for the same near the solution, where few Newton steps are left to save on
+REBUILD_AT_NEAR_SOLUTION = 16  # REBUILD_AT near the solution, where few Newton steps are left to gain from it
 
 MAX_BAND = 16  # Band of a new preconditioner if one with a narrower band does not serve
 
-MAX_POOR_STEPS = 4  # Steps that such a one may leave poorly solved
+MAX_POOR_STEPS = 4  # Newton steps that a preconditioner of MAX_BAND may leave poorly solved
 
 NEAR_SOLUTION_STEP = 0.03  # Size of a step below which the solution is near
 

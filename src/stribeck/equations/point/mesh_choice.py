@@ -69,7 +69,7 @@ MODES_PER_EDGE_WIDTH = 7.5
 
 MAX_MODES = 200  # The most modes of a mesh
 
-COARSE_MODES_RATIO = 0.25  # Modes over those of the minimum film with which the other observables are good to 1e-2
+COARSE_MODES_RATIO = 0.25  # Modes for 1e-2 in all observables but the minimum film, over the modes for the minimum film
 
 # A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
 # of an edge fall with 4.4**-n on the panels that lead to it.
@@ -84,9 +84,9 @@ MAX_SPLITS = 16  # Most splits of the panels of one mesh
 # states share a mesh.
 EDGE_GRID = 1 / 64
 
-EDGE_MARGIN = 0.25  # Distance of these edges from the line, at least [steps of the grid]
+EDGE_MARGIN = 0.25  # Least distance of the enclosing edges from the line of closing [steps of EDGE_GRID]
 
-MAX_EXTRA_EDGE_STEPS = 6.0  # Width of the rings between kept edges beyond what the line crosses, at most [steps of the grid]
+MAX_EXTRA_EDGE_STEPS = 6.0  # Width of the rings between kept edges beyond what the line crosses, at most [steps of EDGE_GRID]
 
 
 class MeshTooLargeError(Exception):
@@ -97,7 +97,7 @@ class MeshTooLargeError(Exception):
 
 @dataclass(frozen=True)
 class Resolution:
-    """What a mesh resolves."""
+    """The parameters of a mesh."""
 
     halvings: int  # The smallest panel is 2**-halvings scales wide
     doublings: int  # The scale of the contact is 2**doublings Hertz radii

@@ -14,7 +14,7 @@ MAX_STEPS = 12  # Newton steps towards a minimum
 
 CONVERGED_STEP = 1e-7  # Length of the last step over the spacing of nodes: the next would change the value by its square only
 
-MAX_CANDIDATES = 3  # Number of nodes from which the search starts: the lowest of those below their neighbours
+MAX_CANDIDATES = 3  # Local minima among the nodes from which the search starts, lowest first
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ OBSERVABLES = (
 # Those that are no smooth functions of the unknowns: the place of the minimum jumps.
 MINIMA = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
 
-SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)  # All others, which have a series
+SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)  # Observables that have a series
 
 # Friction integrals of FrictionWithin by name: what a film has up to where the liquid ends.
 WITHIN = ("within_couette", "within_poiseuille", "within_edge")
@@ -76,7 +76,7 @@ def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
 
 
 def smooth_observables(equations: Equations, y: Unknowns) -> dict[str, float]:
-    """Return those that are smooth functions of the unknowns: all but the minima of the gap."""
+    """Return the observables that are smooth functions of the unknowns: all but the minima of the gap."""
     mesh, h = equations.operators.mesh, y.gap
     contact = equations.law.pressure(h)
     found = {
@@ -143,7 +143,7 @@ class FrictionWithin:
 
     @classmethod
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
-        """Return those of a state with these observables."""
+        """Return the friction integrals of a state with these observables."""
         mesh, h, p, speed = equations.operators.mesh, y.gap, y.fluid, equations.speed
         cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
         turn = 2.0 * np.pi / mesh.modes

@@ -32,7 +32,7 @@ Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 
 LOG_STEP = 1e-4  # Step of the logarithm of a group in the central differences of the residual, whose error is its square
 
-MAX_GAP_CHANGE = 1e-4  # Largest relative change of the gap in those of the observables along the change of the unknowns
+MAX_GAP_CHANGE = 1e-4  # Largest relative change of the gap in the differences of observables
 
 # Preconditioned residual that GMRES leaves in one round: the preconditioner is in single precision, and the next round removes
 # the error that it leaves.

@@ -123,7 +123,7 @@ class Equations:
 
     @cached_property
     def beyond(self) -> Beyond | None:
-        """What the film beyond the rim has more than one of constant viscosity."""
+        """The film outside the rim less a film of constant viscosity; None where there is no such difference."""
         return self.film.beyond(self.speed, self.operators.mesh.rim) if self.speed > 0 else None
 
     def doubt_beyond(self, y: Unknowns) -> float:

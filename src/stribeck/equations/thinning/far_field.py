@@ -61,7 +61,7 @@ def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
 
 
 class _Film(NamedTuple):
-    """What the film has more than one that does not thin, at the nodes in v."""
+    """The film less a Newtonian one, at the nodes in v."""
 
     pressure: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2
     flux: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2

@@ -58,7 +58,7 @@ class ThinningPlane:
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
     def beyond(self, speed: float, rim: float) -> Beyond | None:
-        """Return what the film beyond a rim has more than one of constant viscosity; None where it thins no more."""
+        """Return the film outside a rim less one of constant viscosity; None where the fluid is Newtonian there."""
         if not has_viscosity_at_rest(self.film.law):
             return FarPower(self.film.law, self.film.slide, speed, rim)
         found = FarThinned(self.film.law, self.film.slide, speed, rim)

@@ -9,7 +9,8 @@ from stribeck.quantities.formats import format_si
 
 __all__ = ["drawing"]
 
-WIDTH, HEIGHT = 282, 132
+WIDTH = 282  # Width of the drawing [px].
+HEIGHT = 132  # Height of the drawing [px].
 CENTRE_X = 141.0  # Where the contact is drawn [px].
 SURFACE_Y = 84.0  # Where the undeformed surface is drawn [px].
 BODY_RADIUS = 150.0  # Radius with which the body is drawn [px].

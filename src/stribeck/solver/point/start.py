@@ -43,16 +43,17 @@ FEW_MODES = 16
 
 MAX_STEPS = 25  # Newton steps after which a first guess is given up
 
-STEEPNESS = 4.0  # Film thickness over the decay of the cushion that stands for the film in a first guess
+CUSHION_STEEPNESS = 4.0  # Film thickness over the decay of the cushion that stands for the film in a first guess
 
-# The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's.
-FAST, SLOW = 30.0, 1e-3
+MIN_RIGID_SPEED = 30.0  # Least speed at which the path from the rigid ball begins
 
-MOST_ROUNDS = 8  # Times that the panels of a first guess are split
+MIN_DRY_SPEED_RATIO = 1e-3  # Least speed at which the path from the dry contact begins, over the speed of the state
 
-MILDER = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own law
+MAX_PANEL_SPLITS = 8  # Most times that the panels of a first guess are split
 
-LONGEST_PATH = 60  # States on a path after which it is given up
+HOMOTOPY_STEPS = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own law
+
+MAX_STATES = 60  # States of a path after which it is given up
 
 
 def first_modes(speed: float, law: ContactLaw, model: Model) -> int:
@@ -79,11 +80,11 @@ class WithCushion:
     @property
     def decay_length(self) -> float:
         """The longer of the two decays."""
-        return max(float(np.max(self.law.decay_length)), self.film / STEEPNESS)
+        return max(float(np.max(self.law.decay_length)), self.film / CUSHION_STEEPNESS)
 
     def cushion(self, gap: Array) -> Array:
         """Return the pressure of the cushion, one at the film thickness."""
-        return np.asarray(np.exp(STEEPNESS * (1.0 - gap / self.film)))
+        return np.asarray(np.exp(CUSHION_STEEPNESS * (1.0 - gap / self.film)))
 
     def pressure(self, gap: Array) -> Array:
         """Return the sum of both pressures."""
@@ -91,12 +92,12 @@ class WithCushion:
 
     def log_pressure(self, gap: Array) -> Array:
         """Return its logarithm."""
-        return np.asarray(np.logaddexp(self.law.log_pressure(gap), STEEPNESS * (1.0 - gap / self.film)))
+        return np.asarray(np.logaddexp(self.law.log_pressure(gap), CUSHION_STEEPNESS * (1.0 - gap / self.film)))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return its derivative."""
         del pressure
-        return self.law.slope(gap, self.law.pressure(gap)) - STEEPNESS / self.film * self.cushion(gap)
+        return self.law.slope(gap, self.law.pressure(gap)) - CUSHION_STEEPNESS / self.film * self.cushion(gap)
 
     def local_decay_length(self, gap: Array) -> Array:
         """Return the length over which it falls by a factor e."""
@@ -116,7 +117,7 @@ def first_guess(
 ) -> tuple[Resolution, Unknowns] | None:
     """Return the first guess and a mesh for it; None if the dry contact fails."""
     cushioned = WithCushion(law, thickness_ratio * film_scale(film_speed(speed, found.model)))
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_PANEL_SPLITS):
         solved, operators = found, operators_of(found)
         dry = dry_contact(operators, cushioned, 1e-6)
         if not dry.outcome.ok or not dry.gap.min() > 0:
@@ -159,14 +160,14 @@ def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
 def _upward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from slow to the speed, if it gets there."""
     slow = speed
-    while film_scale(film_speed(slow, model)) > 0.1 * _dry_gap(law) and slow > SLOW * speed:
+    while film_scale(film_speed(slow, model)) > 0.1 * _dry_gap(law) and slow > MIN_DRY_SPEED_RATIO * speed:
         slow /= 4.0
     yield from _path(slow, speed, law, model)
 
 
 def _downward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the same from fast."""
-    yield from _path(max(FAST, 2.0 * speed), speed, law, model)
+    yield from _path(max(MIN_RIGID_SPEED, 2.0 * speed), speed, law, model)
 
 
 def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
@@ -185,7 +186,7 @@ def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
         guess = extrapolate_levels(weights, [level for _, level in history], mesh)
         return solve_level(on, speed, law, guess, mesh, TOLERANCE, max_steps=12)
 
-    found = march(correct, 0.0, 1.0, MILDER)
+    found = march(correct, 0.0, 1.0, HOMOTOPY_STEPS)
     if found.outcome.ok:
         last = found.states[-1]
         yield replace(last, resolution=replace(last.resolution, model=model))
@@ -197,7 +198,7 @@ def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[L
     def correct(s: float, history: Sequence[tuple[float, Level]]) -> Level | None:
         nonlocal count
         count += 1
-        if count > LONGEST_PATH:
+        if count > MAX_STATES:
             return None
         speed = math.exp(s)
         here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
