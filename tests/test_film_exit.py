@@ -23,7 +23,7 @@ from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
 from stribeck.solver.cavities.cavity_length import _cavity_in_gap
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.homotopy import _coarse, _seen_from_exit
+from stribeck.solver.homotopy import _guess_at_zero_crossing, coarse_state
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.refinement import RefinedState
@@ -210,7 +210,7 @@ def test_an_exit_that_crosses_a_sharp_edge_of_the_contact_is_followed():
     groups = with_parts(sb.Groups(1e-7, 0.1, 1e-6), cavitation="exit")
 
     def correct(s, history):
-        return _coarse(replace(groups, speed=math.exp(s)), extrapolate(history, s))
+        return coarse_state(replace(groups, speed=math.exp(s)), extrapolate(history, s))
 
     begin, end = math.log(1e-7), math.log(1e-8)
     path = march(correct, begin, end, Steps(0.7, 2.0, 1e-3), history=[(begin, first_path(groups).states[-1])])
@@ -279,8 +279,8 @@ def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
     groups = sb.Groups(3.7224e-9, 2.32711e-8, 2.96201e-14)
     path = first_path(groups)
     ending = replace(groups, model=ENDING)
-    guess = _seen_from_exit(path.states[-1])
-    state = _coarse(ending, guess)
+    guess = _guess_at_zero_crossing(path.states[-1])
+    state = coarse_state(ending, guess)
     assert state is not None
     assert state.outcome.ok
     assert abs(state.exit - guess.exit) > 0.05
@@ -294,8 +294,8 @@ def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
 def test_an_exit_is_sought_where_the_gap_grows_through_that_of_the_flux_not_at_infinity():
     """Behind that gap the gradient falls to zero at infinity too: Newton's step pointed there, away from the film."""
     groups = sb.Groups(2.710267970250662e-09, 1.0889806625813665, 0.029095843970784)
-    guess = _seen_from_exit(first_path(groups).states[-1])
-    state = _coarse(replace(groups, model=ENDING), guess)
+    guess = _guess_at_zero_crossing(first_path(groups).states[-1])
+    state = coarse_state(replace(groups, model=ENDING), guess)
     assert state is not None
     assert state.outcome.ok
     assert state.exit < guess.exit - 0.2

@@ -1,16 +1,13 @@
 r"""Cold start of models other than the article's: from its state, one part of the model after the other.
 
-The path of loads has the solid of the model, if it reaches the state with it.  First the film ends: where the pressure of the
-full film falls to zero, or as under a rigid parabola.  Then the fluid of the model replaces the Newtonian one, and its solid
-the half-plane if need be, in one step if Newton's iteration converges, else down from a larger speed, or along
+The path of loads has the solid of the model.  First the film ends, where the pressure of the full film falls to zero.  Then
+the fluid of the model replaces the Newtonian one, at once if Newton's iteration converges, else along
 
 .. math::
 
-    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
-    D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid} .
+    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} ,
 
-In a fluid that thins the Newtonian part falls exponentially, as films that thin much do with it; not where roughness hinders
-the flow, whose films would lose it at once.  Films that re-form behind a cavity come after these, see
+else along milder laws.  Films that re-form behind a cavity come after these, see
 :mod:`stribeck.solver.cavities.cavity_length`.
 """
 
@@ -26,7 +23,7 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.model import Model
 from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_at_fixed_exit
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
@@ -36,62 +33,35 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
-from stribeck.numerics.panels import Mesh, MeshTooLargeError
+from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
-from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.solid import Lengths, Solid, lengths_of
 
-__all__ = ["extended", "paths_to_model", "settled"]
+__all__ = ["coarse_state", "with_final_state", "paths_to_model"]
 
-ORDER = 10
-MESH_TOLERANCE = 1e-3
-NEWTON_TOLERANCE = 1e-5
-MOST_STEPS = 100
-
-# The same where the exit is free: what takes more goes to and fro, and the exit is sought by states with given ones.
-FREE_STEPS = 15
-
-HELD_STEPS = 25  # The same with an exit that is given
-
-# Exits that are tried, those without a state in a row, and how far apart in units of the width of contact and film.
-MOST_EXITS, MOST_MISSED, FARTHEST_EXIT = 15, 2, 0.3
-
-# Relative change of the gap from its guess above which a state is one only if a mesh made for it holds it too.
-FAR_FROM_GUESS = 1.0
-
-# Relative change of the gap from one mesh to the one made for its state up to which both are the same state: on coarse meshes
-# the exit of a film that carries little may be wrong by many of the film's own lengths.
-SETTLED = 0.2
-
-ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE = 12, 1e-4  # Nodes per panel and tolerance of the meshes where these differ
-
-LOOKED_AT = 4001  # Points at which the end of the full film is searched
-
-NEAREST_EXIT = 0.4  # No film ends within this part of the half-width from the middle
-
-BLENDING = Steps(1.0, 1.0, 1e-3)
-
-# Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100.
-MOST_WORK, UNIT_SIZE = 3000.0, 300.0
-
-FADING = 8.0  # Logarithmic decay of the Newtonian part of a blend with a fluid that thins, as films are powers of that part
-
-
-@dataclass
-class Work:
-    """Newton steps of :data:`UNIT_SIZE` unknowns that may be taken, and those that were."""
-
-    most: float
-    spent: float = 0.0
-
-    @property
-    def is_done(self) -> bool:
-        """Whether no more may be taken."""
-        return self.spent >= self.most
+ORDER = 10  # Nodes per panel of a coarse state, less one
+MESH_TOLERANCE = 1e-3  # Tolerance of the mesh of a coarse state
+NEWTON_TOLERANCE = 1e-5  # Relative error of the gap that Newton's iteration leaves in a coarse state
+MAX_STEPS_FULL_FILM = 100  # Newton steps after which a full film is given up
+# Newton steps with a free exit after which films with a fixed exit are solved instead: more steps oscillate.
+MAX_STEPS_FREE_BOUNDARY = 15
+MAX_STEPS_FIXED_BOUNDARY = 25  # Newton steps after which a film with a fixed exit is given up
+MAX_EXITS = 15  # Fixed exits that are tried before the exit is given up
+MAX_FAILED_EXITS = 2  # Fixed exits without a state in a row before the exit is given up
+MAX_EXIT_STEP_WIDTHS = 0.3  # Longest step of a fixed exit over the width of contact and film
+SCAN_POINTS = 4001  # Points at which the zero of the full film's pressure is searched
+MIN_EXIT_WIDTHS = 0.4  # Smallest distance of a first exit from the middle over the width of contact and film
+BLEND_STEPS = Steps(1.0, 1.0, 1e-3)  # First, longest and shortest step in the part of the fluid's own gradient
+# First, longest and shortest step in the part of the fluid's own law: at once, stiff fluids have false coarse states.
+MILDER_LAW_STEPS = Steps(0.25, 1.0, 1e-3)
+# Logarithmic decay of the Newtonian part of a blend with a fluid that thins: its films are powers of that part; without decay
+# the thinnest are lost (test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error).
+NEWTONIAN_DECAY = 8.0
+MAX_PATH_WORK = 3000.0  # Newton steps of 300 unknowns after which a path is given up; the longest of 200 random ones took 2100
+WORK_UNIT_UNKNOWNS = 300.0  # Unknowns of a Newton step that counts as one unit of work
 
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
-"""What :func:`march` asks for a state."""
+"""A corrector of :func:`march`: a state at a coordinate from those before, or None."""
 
 
 @dataclass(frozen=True)
@@ -104,12 +74,12 @@ class BlendedFilm:
 
     @property
     def name(self) -> str:
-        """That of the film."""
+        """The name of the film."""
         return self.film.name
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Those of the film."""
+        """The parameters of the film."""
         return self.film.parameters
 
     @property
@@ -140,61 +110,25 @@ class BlendedFilm:
         return getattr(self.film, name)
 
 
-@dataclass(frozen=True)
-class BlendedSolid:
-    """A solid whose deflection lies between that of the half-plane and its own."""
-
-    solid: Solid
-    part: float
-    plain: Solid = HalfPlane()
-
-    @property
-    def name(self) -> str:
-        """That of the solid."""
-        return self.solid.name
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """Those of the solid."""
-        return self.solid.parameters
-
-    @property
-    def lengths(self) -> Lengths:
-        """Those of the solid."""
-        return lengths_of(self.solid)
-
-    def deflection(self, mesh: Mesh) -> Array:
-        """Return the weighted mean of both."""
-        return np.asarray((1 - self.part) * self.plain.deflection(mesh) + self.part * self.solid.deflection(mesh))
-
-    def far_gap(self, x: Array) -> Array:
-        """Return the weighted mean of both."""
-        return (1 - self.part) * self.plain.far_gap(x) + self.part * self.solid.far_gap(x)
+def _blend_gradients(film: Film, part: float) -> Film:
+    newtonian = (1 - part) * (math.exp(-NEWTONIAN_DECAY * part) if is_thinning(film) else 1.0)
+    return cast(Film, BlendedFilm(film, 1 - newtonian))
 
 
-def _blend(film: Film, part: float) -> Film:
-    plain = (1 - part) * (math.exp(-FADING * part) if is_thinning(film) else 1.0)
-    return cast(Film, BlendedFilm(film, 1 - plain))
-
-
-def _milder(film: Film, part: float) -> Film:
+def _milder_law(film: Film, part: float) -> Film:
     return film.milder(part)
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
     """Yield paths whose last state, where they arrive, is a first, coarse one of the groups and their model."""
-    model, solid = groups.model, groups.model.solid
-    path, state = _newtonian(groups, article, solid)
-    if state is None and not isinstance(solid, HalfPlane):
-        solid = BASE_MODEL.solid
-        path, state = _newtonian(groups, article, solid)
+    path, state = _newtonian_start(groups, article)
     if state is None:
         yield replace(path, outcome=path.outcome if not path.outcome.ok else Outcome.PATH_LOST)
-    elif model.film == Newtonian() and model.solid == solid:
-        yield extended(path, state)
+    elif groups.model.film == Newtonian():
+        yield _resolve_on_adapted_mesh(with_final_state(path, state))
     else:
-        for film_at in (_blend, _milder):
-            yield _blended(groups, path, state, film_at)
+        for film_at, steps in ((_blend_gradients, BLEND_STEPS), (_milder_law, MILDER_LAW_STEPS)):
+            yield _resolve_on_adapted_mesh(_follow_homotopy(groups, state, film_at, steps))
 
 
 def is_lost_to_rounding(path: Path[State]) -> bool:
@@ -202,64 +136,67 @@ def is_lost_to_rounding(path: Path[State]) -> bool:
     return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < MIN_GAP
 
 
-def _newtonian(groups: Groups, article: Callable[[Groups], Path[State]], solid: Solid) -> tuple[Path[State], State | None]:
-    """Return the path from cold with the fluid of the article on a solid, and its end; None where it was not reached.
-
-    A film that ends may be found from states before the one at which the path of the full film was lost to its suction.
-    """
+def _newtonian_start(groups: Groups, article: Callable[[Groups], Path[State]]) -> tuple[Path[State], State | None]:
+    """Return the path from cold with the fluid of the article on the solid of the groups, and its end or None."""
+    # Films that end are found also from the last state of a path that was lost to the suction of the full film.
+    solid = groups.model.solid
     path = article(replace(groups, model=Model(solid=solid)))
     if groups.model.cavitation is not Cavitation.NONE and groups.speed > 0 and path.states:
-        return path, _ended(replace(groups, model=Model(cavitation=Cavitation.EXIT, solid=solid)), path)
+        return path, _start_with_exit(replace(groups, model=Model(cavitation=Cavitation.EXIT, solid=solid)), path)
     return path, path.states[-1] if path.outcome.ok else None
 
 
-def extended(path: Path[State], state: State) -> Path[State]:
+def with_final_state(path: Path[State], state: State) -> Path[State]:
     """Return a path that arrives, with one more state at its end."""
     states, coordinates = (*path.states, state), (*path.coordinates, path.coordinates[-1])
     return replace(path, coordinates=coordinates, states=states, outcome=Outcome.CONVERGED)
 
 
-def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
+def coarse_state(groups: Groups, guess: Guess) -> State | None:
     """Return a coarse state from a guess, or None."""
     ends = groups.model.cavitation is Cavitation.EXIT
-    operators = _operators(groups, guess, order, tolerance)
+    operators = _operators(groups, guess)
     if operators is None:
         return None
     if not ends:
-        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MOST_STEPS)
-    state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, FREE_STEPS)
-    return state if state.outcome.ok else _with_exit_sought(groups, guess, state, order, tolerance)
+        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FULL_FILM)
+    state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FREE_BOUNDARY)
+    return state if state.outcome.ok else _search_exit(groups, guess, state)
 
 
-def _operators(groups: Groups, guess: Guess, order: int, tolerance: float) -> Operators | None:
+def _resolve_on_adapted_mesh(path: Path[State]) -> Path[State]:
+    """Return a path whose last state, where it arrives, is solved once more on a mesh made for it."""
+    # On the mesh of its guess a film that ends may be another than that of finer meshes.
+    again = coarse_state(path.states[-1].groups, path.states[-1]) if path.outcome.ok else None
+    return path if again is None or not again.outcome.ok else with_final_state(path, again)
+
+
+def _operators(groups: Groups, guess: Guess) -> Operators | None:
     """Return the operators of a mesh for a guess, or None if that needs too many panels."""
     # Predictions from panels that lie elsewhere in the contact are uneven, which may ask for more panels than there are.
     shapes: tuple[Guess, ...] = (guess, guess.states[-1]) if isinstance(guess, Extrapolation) else (guess,)
     for shape in shapes:
         try:
-            mesh = mesh_for(shape, groups, contact_law(groups), order, tolerance, anew=False)
+            mesh = mesh_for(shape, groups, contact_law(groups), ORDER, MESH_TOLERANCE, anew=False)
         except MeshTooLargeError:
             continue
         return Operators(mesh, groups.model)
     return None
 
 
-def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, tolerance: float) -> State:
-    """Return a coarse state from a guess, by states whose exit is given; the one that failed with a free exit if that fails.
-
-    Its Newton steps are those of all.
-    """
+def _search_exit(groups: Groups, guess: Guess, failed: State) -> State:
+    """Return a coarse state from films with fixed exits, or the failed one with a free exit, with the Newton steps of all."""
     last, step, spent, bounds, missed = None, 0.0, failed.root.steps, [-math.inf, math.inf], 0
-    for _ in range(MOST_EXITS):
-        operators = _operators(groups, guess, order, tolerance)
+    for _ in range(MAX_EXITS):
+        operators = _operators(groups, guess)
         if operators is None:
             break
-        held, free = solve_at_fixed_exit(groups, operators, guess, NEWTON_TOLERANCE, HELD_STEPS)
+        held, free = solve_at_fixed_exit(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FIXED_BOUNDARY)
         spent += held.root.steps
         if held.root.outcome.ok:
             last, missed, step = held, 0, float(free[held.equations.layout.exit.start])
             if held.equations.admissible(held.y, free) == 1.0:
-                found = solve_state(groups, operators, held, NEWTON_TOLERANCE, FREE_STEPS)
+                found = solve_state(groups, operators, held, NEWTON_TOLERANCE, MAX_STEPS_FREE_BOUNDARY)
                 spent += found.root.steps
                 if found.outcome.ok:
                     failed = found
@@ -269,77 +206,56 @@ def _with_exit_sought(groups: Groups, guess: Guess, failed: State, order: int, t
             step = step if step * to_flux > 0 else to_flux
             if not bounds[0] < held.exit + step < bounds[1]:
                 step = 0.5 * (bounds[0] + bounds[1]) - held.exit
-            longest = FARTHEST_EXIT * math.sqrt(1.0 + float(held.gap.min()))
+            longest = MAX_EXIT_STEP_WIDTHS * math.sqrt(1.0 + float(held.gap.min()))
             step = math.copysign(min(abs(step), longest), step)
         else:
             missed, step = missed + 1, 0.5 * step
-        if last is None or missed > MOST_MISSED or not math.isfinite(step):
+        if last is None or missed > MAX_FAILED_EXITS or not math.isfinite(step):
             break
         guess = SeenFrom(last, last.exit + step)
     return replace(failed, root=replace(failed.root, steps=spent))
 
 
-def settled(groups: Groups, guess: Guess) -> State | None:
-    """Return a coarse state on a mesh made for it, or None; one of a finer mesh where the coarse ones disagree."""
-    found = None
-    for order, tolerance in ((ORDER, MESH_TOLERANCE), (ORDER_TO_SETTLE, TOLERANCE_TO_SETTLE)):
-        state = _coarse(groups, guess, order, tolerance)
-        again = None if state is None or not state.outcome.ok else _coarse(groups, state, order, tolerance)
-        if again is None or not again.outcome.ok:
-            break
-        found = again
-        if again.prediction_error <= SETTLED:
-            break
-    return found
-
-
-def _ended(groups: Groups, full: Path[State]) -> State | None:
+def _start_with_exit(groups: Groups, full: Path[State]) -> State | None:
     """Return the state whose film ends, from that of the full film."""
-    return settled(groups, _seen_from_exit(full.states[-1]))
+    found = coarse_state(groups, _guess_at_zero_crossing(full.states[-1]))
+    return found if found is not None and found.outcome.ok else None
 
 
-def _seen_from_exit(state: State) -> SeenFrom:
+def _guess_at_zero_crossing(state: State) -> SeenFrom:
     """Return the guess of a film that ends where the pressure of the full film falls to zero behind its maximum."""
     width = math.sqrt(1.0 + float(state.gap.min()))
     nodes = state.mesh.nodes
-    x = np.union1d(np.linspace(-2 * width, 2 * width, LOOKED_AT), nodes[np.abs(nodes) < 2 * width])
+    x = np.union1d(np.linspace(-2 * width, 2 * width, SCAN_POINTS), nodes[np.abs(nodes) < 2 * width])
     pressure = state.fields(x)[1]
     highest = int(np.argmax(pressure))
     behind = highest + np.flatnonzero(pressure[highest:] <= 0)
     if not len(behind):
         return SeenFrom(state, width)
-    end = np.linspace(x[behind[0] - 1], x[behind[0]], LOOKED_AT)
-    return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
+    end = np.linspace(x[behind[0] - 1], x[behind[0]], SCAN_POINTS)
+    return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), MIN_EXIT_WIDTHS * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State, film_at: Callable[[Film, float], Film]) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups, at once if Newton's iteration converges."""
-    own, plain = groups.model, start.groups.model
+def _follow_homotopy(groups: Groups, start: State, film_at: Callable[[Film, float], Film], steps: Steps) -> Path[State]:
+    """Return the path on which the fluid changes into that of the groups."""
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        film: Film = own.film
-        solid: Solid = own.solid
-        if part < 1.0:
-            film = film_at(film, part) if film != plain.film else film
-            solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
-        here = replace(groups, model=replace(plain, film=film, solid=solid))
-        state = _coarse(here, extrapolate(history, part) if history else start)
-        if state is None or not state.outcome.ok or state.prediction_error <= FAR_FROM_GUESS:
-            return state
-        return _coarse(here, state)
+        film = groups.model.film if part == 1.0 else film_at(groups.model.film, part)
+        here = replace(groups, model=replace(start.groups.model, film=film))
+        return coarse_state(here, extrapolate(history, part) if history else start)
 
-    found = march(_within(correct, Work(MOST_WORK)), 0.0, 1.0, BLENDING, history=[(0.0, start)])
-    again = settled(found.states[-1].groups, found.states[-1]) if found.outcome.ok else None
-    return found if again is None else extended(found, again)
+    return march(_limit_work(correct), 0.0, 1.0, steps, history=[(0.0, start)])
 
 
-def _within(correct: Correct, work: Work) -> Correct:
-    """Return a corrector that gives up when all its solves together have taken that much work."""
+def _limit_work(correct: Correct) -> Correct:
+    """Return a corrector that gives up when all its solves together have taken as much work as a path may."""
+    spent = 0.0
 
     def limited(s: float, history: Sequence[tuple[float, State]]) -> State | None:
-        state = None if work.is_done else correct(s, history)
+        nonlocal spent
+        state = None if spent >= MAX_PATH_WORK else correct(s, history)
         if state is not None:
-            work.spent += state.root.steps * (state.mesh.size / UNIT_SIZE) ** 2
+            spent += state.root.steps * (state.mesh.size / WORK_UNIT_UNKNOWNS) ** 2
         return state
 
     return limited

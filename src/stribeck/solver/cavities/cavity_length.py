@@ -28,16 +28,15 @@ from stribeck.solver.homotopy import (
     MESH_TOLERANCE,
     NEWTON_TOLERANCE,
     ORDER,
-    SETTLED,
-    extended,
+    coarse_state,
     paths_to_model,
-    settled,
+    with_final_state,
 )
 
 __all__ = ["paths_to_cavity", "cavitated_start"]
 
 SCAN_POINTS = 4001  # Lengths of cavities behind an exit that are compared
-POINTS_PER_NODE = (8, 64)  # Resolutions at which a cavity is sought in the gap of the full film, the second for short ones
+POINTS_PER_NODE = 8  # Resolution at which a cavity is sought in the gap of the full film
 MAX_BISECTIONS = 50  # Bisections of the flux with which a cavity is sought in the gap of the full film
 FIRST_SUCTION_RATIO = 0.3  # First suction of the cavity behind an exit over the largest with which the film could reform
 MAX_LOG_LENGTH_STEP = 0.7  # Longest step in the logarithm of a cavity's length
@@ -56,23 +55,23 @@ def paths_to_cavity(groups: Groups, article: Callable[[Groups], Path[State]]) ->
     for path in paths_to_model(replace(groups, model=ending), article):
         found = _start_behind_exit(groups, path.states[-1]) if path.outcome.ok else None
         if found is not None:
-            yield extended(path, found)
+            yield with_final_state(path, found)
         else:
             yield replace(path, outcome=Outcome.PATH_LOST) if path.outcome.ok else path
 
 
 def cavitated_start(groups: Groups, full: State) -> State | None:
     """Return a coarse state with a cavity from the full film of the same groups, or None."""
-    found = next(filter(None, (_cavity_in_gap(groups, full, places) for places in POINTS_PER_NODE)), None)
+    found = _cavity_in_gap(groups, full)
     return None if found is None else _find_length(groups, *found, full.lowest_pressure)
 
 
-def _cavity_in_gap(groups: Groups, full: State, places: int = POINTS_PER_NODE[0]) -> tuple[SeenFrom, float] | None:
+def _cavity_in_gap(groups: Groups, full: State) -> tuple[SeenFrom, float] | None:
     """Return the cavity in the gap of the full film and its slope of ln suction by ln length, or None."""
     # The film ruptures where the pressure no longer falls, at the flux that gives it the cavity pressure there; it reforms
     # where the pressure, integrated from behind at that flux, has fallen as far.
     nodes, film, wanted = full.mesh.nodes[: -full.mesh.order], full.equations.film, groups.model.cavity_pressure
-    x = np.interp(np.arange(0, nodes.size - 1, 1 / places), np.arange(nodes.size), nodes)
+    x = np.interp(np.arange(0, nodes.size - 1, 1 / POINTS_PER_NODE), np.arange(nodes.size), nodes)
     log_gap, pressure = full.fields(x)
     gap, inlet = np.exp(log_gap), int(np.argmax(pressure))
 
@@ -137,8 +136,8 @@ def _find_length(groups: Groups, guess: SeenFrom, slope: float, deepest: float =
             pressures.append(place(state.groups.model.cavity_pressure))
             exits.append(state.exit)
             missing = wanted - pressures[-1]
-            found = settled(groups, state) if abs(missing) < FREE_LENGTH_LOG_PRESSURE else None
-            if found is not None and found.prediction_error <= SETTLED:
+            found = coarse_state(groups, state) if abs(missing) < FREE_LENGTH_LOG_PRESSURE else None
+            if found is not None and found.outcome.ok:
                 return found
             if len(lengths) > 1:
                 apart = lengths[-1] - lengths[-2]
