@@ -214,7 +214,7 @@ def test_far_from_a_ball_a_power_law_near_one_is_nearly_newtonian():
     offset = 20.0
     assert far.first(offset) == pytest.approx(-0.8e-7 * (1 - 4e-4 * offset), rel=3e-3)
     assert far.first(offset) / far.first(0.0) == pytest.approx(1 - 4e-4 * offset, rel=1e-5)
-    step = np.subtract(far.tails(0.0), far.beyond(300.0).tails(0.0)) / 0.1
+    step = np.subtract(far.tails(0.0), far.at_radius(300.0).tails(0.0)) / 0.1
     np.testing.assert_allclose(step, 0.0, atol=1e-3)
 
 
@@ -246,7 +246,7 @@ def test_the_film_of_a_power_law_far_away_states_its_error():
     finer = similar(law, slide, 96)[0]
     far = FarPower(law, slide, 0.1, 1000.0)
     wrong = abs(similar(law, slide)[0].shear - finer.shear) / (2 * math.pi * (2 - 2 * exponent))
-    assert FAR_DRAG_RTOL < wrong < far.doubt(0.0) / far.drag
+    assert FAR_DRAG_RTOL < wrong < far.friction_error(0.0) / far.drag
 
 
 @pytest.mark.parametrize("fluid", [Cross(3.5, 0.1), Cross(3.5, 0.316), PowerLaw(3.5, 0.7)], ids=["slow", "resonant", "power"])
@@ -257,7 +257,7 @@ def test_the_film_beyond_the_rim_is_known(fluid):
     state = sb.solve(groups, fluid=fluid, slide_to_roll=0.3, rtol=1e-4).state
     fine = state.work.fine
     assert state.outcome.ok
-    assert fine.equations.beyond.drag > 1e-3
+    assert fine.equations.outside_film.drag > 1e-3
     wider = replace(fine.resolution, farther=fine.resolution.farther + 1)
     level = solve_level(wider, 0.2, fine.equations.law, fine.unknowns, fine.mesh, 1e-9)
     farther = observables(level.equations, level.unknowns)

@@ -35,8 +35,8 @@ class ContinuedLaw:
 
     name: str  # Name of the shape
     logarithmic: bool  # Whether polynomials are in the logarithm of the separation
-    centre: Array  # Where they are centred, and their unit
-    reach: Array  # Where they are centred, and their unit
+    centre: Array  # Middle of the interval of each polynomial
+    reach: Array  # Half-width of the interval, the unit of its coordinate
     coefficients: Array  # Of ln(Phi), ascending
 
     @classmethod

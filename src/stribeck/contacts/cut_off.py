@@ -78,8 +78,8 @@ class FarFilm:
     r"""How a film far from the contact ends, and the logarithms of its friction."""
 
     pressure: float  # The factor of `-\lambda \cos\theta/r^3` in the film pressure [-]
-    couette: float  # Coefficients of `\lambda \ln X` in the two parts of the friction integral [-]
-    poiseuille: float  # Coefficients of `\lambda \ln X` in the two parts of the friction integral [-]
+    couette: float  # Coefficient of `\lambda \ln X` in the Couette part of the friction integral [-]
+    poiseuille: float  # Coefficient of `\lambda \ln X` in the Poiseuille part [-]
     rise: float
 
 

@@ -114,9 +114,9 @@ class Friction(float):
 class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
     """Friction coefficients of many states, an array with its parts; called, those for other coefficients."""
 
-    contact: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
-    viscous: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
-    error: Array  # Parts from asperities and fluid, and estimated absolute error of their sum [-]
+    contact: Array  # Part from asperities [-]
+    viscous: Array  # Part from the fluid [-]
+    error: Array  # Estimated absolute error of the sum [-]
     _other: Callable[..., FrictionArray]
 
     def __new__(cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]) -> Self:

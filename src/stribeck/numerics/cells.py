@@ -20,8 +20,8 @@ __all__ = ["Cells"]
 class Cells:
     """Functions on equal cells side by side; beyond the ends they are those at the ends."""
 
-    start: float  # Where the first cell begins, and the width of each
-    width: float  # Where the first cell begins, and the width of each
+    start: float  # Left end of the first cell
+    width: float  # Width of each cell
     coefficients: Array  # Of powers of the place in a cell, 0 to 1
 
     @classmethod

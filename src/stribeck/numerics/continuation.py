@@ -55,9 +55,9 @@ class Path(Generic[S]):
 class Steps:
     """How long the steps of a march are."""
 
-    first: float  # Lengths of the first, the longest and the shortest step, all > 0
-    longest: float  # Lengths of the first, the longest and the shortest step, all > 0
-    shortest: float  # Lengths of the first, the longest and the shortest step, all > 0
+    first: float  # Length of the first step, > 0
+    longest: float  # Length of the longest step, > 0
+    shortest: float  # Length of the shortest step, > 0
     order: int = 3  # Degree of the prediction: the corrector sees at most `order + 1` points
     aim: float = 4  # Effort at which the step length is kept; two less doubles it, two more halves it
 

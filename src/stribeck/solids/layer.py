@@ -190,9 +190,8 @@ class Layer:
             found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
-        to_right, to_left = self.thickness * ahead(np.concatenate([place, -place]), NEAR_NODES, NEAR_CLUSTER_POWER).reshape(
-            2, len(x), -1
-        )
+        both_sides = ahead(np.concatenate([place, -place]), NEAR_NODES, NEAR_CLUSTER_POWER)
+        to_right, to_left = self.thickness * both_sides.reshape(2, len(x), -1)
         return np.asarray(to_right + to_left[:, ::-1])
 
     def far_gap(self, x: Array) -> Array:

@@ -36,14 +36,14 @@ class CavitatedEquations(CavitatedSystem):
     finest: ClassVar[float] = 1e-4
 
     @cached_property
-    def beyond(self) -> None:
+    def outside_film(self) -> None:
         """Nothing: a film that is cavitated and thins beyond the rim is taken for one that does not thin."""
         return
 
-    def doubt_beyond(self, y: Unknowns) -> float:
+    def friction_error_outside(self, y: Unknowns) -> float:
         """Return an estimate of the friction that is lost there."""
         del y
-        lost = self.film.beyond(self.speed, self.operators.mesh.rim)
+        lost = self.film.outside_film(self.speed, self.operators.mesh.rim)
         return 0.0 if lost is None else lost.drag
 
     @property

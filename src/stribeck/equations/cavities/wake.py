@@ -28,8 +28,8 @@ class Rupture:
 
     rings: Indices  # Rings that it crosses
     angles: Array  # Where it crosses them; nearer to the middle line the film is cavitated
-    distances: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
-    gaps: Array  # Distances from the middle line, ascending from zero [a], and the gap there over one plus their square
+    distances: Array  # Distances from the middle line, ascending from zero [a]
+    gaps: Array  # Gap at these distances over one plus their square
 
     def gap_at(self, across: Array) -> Array:
         """Return the gap at the line by the distance from the middle line [u_Hz]."""

@@ -52,7 +52,7 @@ class FluxSlopes(NamedTuple):
     rim: tuple[Array, Array, Array]  # Mobility at the rim, and the derivatives of mobility and carried amount by the gap there
 
 
-class Beyond(Protocol):
+class OutsideFilm(Protocol):
     """The film outside the rim, less a film of constant viscosity."""
 
     is_all: ClassVar[bool]
@@ -62,7 +62,7 @@ class Beyond(Protocol):
     def drag(self) -> float:
         """Estimate of the drag of the film outside the rim."""
 
-    def doubt(self, offset: float) -> float:
+    def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of its friction integrals, with an offset."""
 
     def first(self, offset: float) -> float:
@@ -71,7 +71,7 @@ class Beyond(Protocol):
     def tails(self, offset: float) -> tuple[float, float, float]:
         """Return the parts of shear, pressure flow and moment."""
 
-    def beyond(self, radius: float) -> Beyond:
+    def at_radius(self, radius: float) -> OutsideFilm:
         """Return the film outside another radius."""
 
     def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
@@ -81,7 +81,7 @@ class Beyond(Protocol):
 class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
-    def beyond(self, speed: float, rim: float) -> Beyond | None:
+    def outside_film(self, speed: float, rim: float) -> OutsideFilm | None:
         """Return the film outside a rim less a film of constant viscosity; None where it is that film."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
@@ -112,7 +112,7 @@ def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
 class LinearPlane:
     """A film whose flow is linear in the pressure gradient."""
 
-    def beyond(self, speed: float, rim: float) -> None:
+    def outside_film(self, speed: float, rim: float) -> None:
         """Return nothing: the film is that at ambient pressure."""
 
     def flow(self, gap: Array, pressure: Array) -> Flow:

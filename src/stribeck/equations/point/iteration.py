@@ -143,7 +143,9 @@ def iterate(
                 continue
             bending = max(MIN_CURVATURE, min(100.0, size / before**2)) if math.isfinite(before) else MIN_CURVATURE
             left = bending * size * size + solved.missed
-            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= MAX_RIM_CHANGE_RATIO * tolerance):
+            if left <= tolerance and (
+                equations.outside_film is None or rim_change(y, step) <= MAX_RIM_CHANGE_RATIO * tolerance
+            ):
                 return ended(Outcome.CONVERGED)
             if solved.steps > (REBUILD_AT_NEAR_SOLUTION if size < NEAR_SOLUTION_STEP else REBUILD_AT):
                 preconditioner = None

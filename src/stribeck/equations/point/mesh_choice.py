@@ -101,8 +101,8 @@ class Resolution:
 
     halvings: int  # The smallest panel is 2**-halvings scales wide
     doublings: int  # The scale of the contact is 2**doublings Hertz radii
-    degree: int  # Degree of the polynomials, and number of cosines
-    modes: int  # Degree of the polynomials, and number of cosines
+    degree: int  # Degree of the polynomials on a panel
+    modes: int  # Number of cosines
     splits: tuple[float, ...] = ()  # Radii at which panels are split besides [a]
     model: Model = BASE_MODEL  # Fluid, cavitation and solid, whose equations are solved on the mesh
     farther: int = 0  # Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity

@@ -24,7 +24,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import logarithms, tails
-from stribeck.equations.point.films import Beyond
+from stribeck.equations.point.films import OutsideFilm
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
@@ -113,7 +113,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    more, first, plain = equations.beyond, 0.0, speed
+    more, first, plain = equations.outside_film, 0.0, speed
     if more is not None:
         first, plain = more.first(y.offset), 0.0 if more.is_all else speed
         couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails(y.offset)).tolist()
@@ -136,9 +136,9 @@ class FrictionWithin:
     mesh: PolarMesh  # The mesh
     running: Array  # At the nodes: both parts up to there, and `-oint h p_f cos(theta) r`
     finite: tuple[float, float, float]  # The finite parts of both, and what the third is of the far film
-    beyond: Beyond | None  # What the film beyond the rim has more than that
-    offset: float  # Offset, and speed group
-    speed: float  # Offset, and speed group
+    outside_film: OutsideFilm | None  # What the film beyond the rim has more than that
+    offset: float  # Offset [u_Hz]
+    speed: float  # Speed group
     far: FarFilm  # The logarithms
 
     @classmethod
@@ -155,15 +155,15 @@ class FrictionWithin:
         edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii
         finite = values["J_couette"], values["J_poiseuille"], equations.far.poiseuille * speed
         running = np.concatenate([up_to, edge[None]])
-        return cls(mesh, running, finite, equations.beyond, y.offset, speed, equations.far)
+        return cls(mesh, running, finite, equations.outside_film, y.offset, speed, equations.far)
 
     def __call__(self, which: int, log_radius: float) -> float:
         """Return one of the three at a radius, less its finite part and logarithm."""
         radius = math.exp(log_radius)
         if radius >= self.mesh.rim:
-            if self.beyond is None:
+            if self.outside_film is None:
                 return 0.0
-            more = self.beyond.beyond(radius)
+            more = self.outside_film.at_radius(radius)
             if which < 2:
                 return -more.tails(self.offset)[which]
             edge = -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first(self.offset)

@@ -25,7 +25,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION_COEFFICIENT, particular, rates
-from stribeck.equations.point.films import ISOVISCOUS_PLANE, Beyond, PlaneFilm
+from stribeck.equations.point.films import ISOVISCOUS_PLANE, OutsideFilm, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane
@@ -122,30 +122,31 @@ class Equations:
         return self.operators.load_row
 
     @cached_property
-    def beyond(self) -> Beyond | None:
+    def outside_film(self) -> OutsideFilm | None:
         """The film outside the rim less a film of constant viscosity; None where there is no such difference."""
-        return self.film.beyond(self.speed, self.operators.mesh.rim) if self.speed > 0 else None
+        return self.film.outside_film(self.speed, self.operators.mesh.rim) if self.speed > 0 else None
 
-    def doubt_beyond(self, y: Unknowns) -> float:
+    def friction_error_outside(self, y: Unknowns) -> float:
         """Return an estimate of the error of the friction integrals by a film that still thins beyond the rim."""
-        return 0.0 if self.beyond is None else self.beyond.doubt(y.offset)
+        return 0.0 if self.outside_film is None else self.outside_film.friction_error(y.offset)
 
     @property
     def drag_beyond(self) -> float:
         """An estimate of what the finite parts of friction leave out, if it is no logarithm."""
-        return self.beyond.beyond(USUAL_WETTED_RADIUS).drag if self.beyond is not None and self.beyond.is_all else 0.0
+        film = self.outside_film
+        return film.at_radius(USUAL_WETTED_RADIUS).drag if film is not None and film.is_all else 0.0
 
     @cached_property
     def _more_at_rim(self) -> tuple[Array, Array]:
         """Pressure, radial derivative and lost flux of that at the angles of the rim, and their derivatives by the offset."""
         mesh = self.operators.mesh
         nothing = np.zeros((3, mesh.modes))
-        return (nothing, nothing) if self.beyond is None else self.beyond.at_rim(mesh.angles, mesh.modes)
+        return (nothing, nothing) if self.outside_film is None else self.outside_film.at_rim(mesh.angles, mesh.modes)
 
     @cached_property
     def _plain(self) -> float:
         """Speed of the far film that does not thin."""
-        return 0.0 if self.beyond is not None and self.beyond.is_all else self.speed
+        return 0.0 if self.outside_film is not None and self.outside_film.is_all else self.speed
 
     def more_at_rim(self, offset: float) -> Array:
         """Return pressure, radial derivative and flux that the rim has more than a film of constant viscosity."""

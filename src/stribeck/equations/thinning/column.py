@@ -78,8 +78,8 @@ class FlowCurve:
     """Fluidity as a function of the stress, from a table."""
 
     lowest: float  # Logarithm of the smallest stress of the table
-    log_fluidity: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
-    slopes: Array  # `ln(x/g)` and its derivative by `ln g` at even spacings; constant slopes at both ends go on
+    log_fluidity: Array  # `ln(x/g)` at even spacings of `ln g`
+    slopes: Array  # Its derivative by `ln g`, constant beyond both ends
     points: int = QUADRATURE_POINTS[0]  # Of the rule across the film that the law needs
 
     def __call__(self, square: Array) -> tuple[Array, Array]:

@@ -63,8 +63,8 @@ def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
 class _Film(NamedTuple):
     """The film less a Newtonian one, at the nodes in v."""
 
-    pressure: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2
-    flux: Array  # Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2
+    pressure: Array  # Coefficients of the cosines of the pressure, over r**-3
+    flux: Array  # Coefficients of the cosines of the flux along the radius, over r**2
     steepness: Array  # Derivative of the pressure's at the rim by ln r, over r**-3
     drag: Array  # Of the shear, around the ring
 
@@ -98,7 +98,7 @@ class FarThinned(OutsideRim):
         """An estimate of the drag that is lost beyond the rim."""
         return math.pi / 3.0 * self.speed * self.lost / self.power
 
-    def doubt(self, offset: float) -> float:
+    def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
         return OFFSET_ERROR_FACTOR * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
 

@@ -165,7 +165,7 @@ class FarPower(OutsideRim):
         """An estimate of the drag up to the rim."""
         return math.pi * self._unit
 
-    def doubt(self, offset: float) -> float:
+    def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of the friction."""
         return self.drag * (self._known + OFFSET_ERROR * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
 

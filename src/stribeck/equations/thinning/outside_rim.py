@@ -28,12 +28,12 @@ class Waves(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OutsideRim:
-    """The film of a ball beyond a rim, of a fluid that thins."""
+    """The film of a ball outside a rim, of a shear-thinning fluid."""
 
     law: RateLaw  # The law, its time in Hertz units at this speed
     slide: float  # Half the slide-to-roll ratio
-    speed: float  # Speed group, and radius of the rim [a]
-    rim: float  # Speed group, and radius of the rim [a]
+    speed: float  # Speed group
+    rim: float  # Radius of the rim [a]
 
     is_all: ClassVar[bool] = False
     """Whether it is the whole film; else what it has more than that of a fluid that does not thin."""
@@ -43,7 +43,7 @@ class OutsideRim:
         """The waves at the rim without an offset, and their derivatives by the offset."""
         raise NotImplementedError
 
-    def beyond(self, radius: float) -> Self:
+    def at_radius(self, radius: float) -> Self:
         """Return the film beyond another radius."""
         return replace(self, rim=radius)
 

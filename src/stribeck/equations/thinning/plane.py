@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
+from stribeck.equations.point.films import Fluxes, FluxSlopes, OutsideFilm, weights_of
 from stribeck.equations.thinning.column import (
     FIRST_ORDER_STRESS_CHANGE,
     Column,
@@ -57,7 +57,7 @@ class ThinningPlane:
     film: ShearThinning  # That of the line, at a speed
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
-    def beyond(self, speed: float, rim: float) -> Beyond | None:
+    def outside_film(self, speed: float, rim: float) -> OutsideFilm | None:
         """Return the film outside a rim less one of constant viscosity; None where the fluid is Newtonian there."""
         if not has_viscosity_at_rest(self.film.law):
             return FarPower(self.film.law, self.film.slide, speed, rim)

@@ -13,15 +13,15 @@ __all__ = ["DARK", "LIGHT", "PIN_DASHES", "Palette"]
 class Palette:
     """Colours of charts."""
 
-    ink: str  # Of lines and text, of what stands back, of grids, of the ground
-    grey: str  # Of lines and text, of what stands back, of grids, of the ground
-    grid: str  # Of lines and text, of what stands back, of grids, of the ground
-    card: str  # Of lines and text, of what stands back, of grids, of the ground
-    contact: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
-    fluid: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
-    mark: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
-    point: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
-    thin: str  # Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas
+    ink: str  # Lines and text
+    grey: str  # Secondary lines
+    grid: str  # Grids
+    card: str  # Ground
+    contact: str  # Parts from asperities
+    fluid: str  # Parts from the fluid
+    mark: str  # The minimum
+    point: str  # The present state
+    thin: str  # Formulas
     tints: dict[str, str]  # Ground of each regime
     pins: tuple[str, ...]  # Of pinned curves
 

@@ -91,14 +91,15 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_error(fine.unknowns)
+    outside = fine.equations.friction_error_outside(fine.unknowns)
+    streaks = speed / 6.0 * fine.equations.shear_error(fine.unknowns)
     of_load, of_moment = kink_tails(fine).sum(axis=1).tolist()
     for name, factor in KINK_MOMENT_SAFETY.items():
         errors[name] = max(errors[name], factor * of_moment)
-    errors["J_poiseuille"] += beyond
+    errors["J_poiseuille"] += outside
     # By the balance of forces and the sum of both parts these three differ by what is known better.
     least = SHEAR_ERROR_TIMES_ANGLES2 / fine.mesh.modes**2 * scales["J_balanced"]
-    errors |= dict.fromkeys(SHEAR_INTEGRALS, max(least, max(errors[name] for name in SHEAR_INTEGRALS) + beyond + doubt))
+    errors |= dict.fromkeys(SHEAR_INTEGRALS, max(least, max(errors[name] for name in SHEAR_INTEGRALS) + outside + streaks))
     for (name, factor), tail in zip(CENTRE_SAFETY.items(), centre_tails(fine), strict=True):
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.

@@ -225,7 +225,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] = max(errors[name], balance)
     for name, factor in KINK_MOMENT_SAFETY.items():
         errors[name] = max(errors[name], factor * kinked)
-    beyond = fine.equations.doubt_beyond(fine.unknowns)
+    beyond = fine.equations.friction_error_outside(fine.unknowns)
     for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
         errors[name] += beyond
     for (name, factor), tail in zip(CENTRE_SAFETY.items(), centre_tails(fine), strict=True):

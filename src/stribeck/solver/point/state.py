@@ -36,8 +36,8 @@ class PointFields(NamedTuple):
     """Fields of a state at given positions, each of the broadcast shape of x and y."""
 
     gap: Array  # Gap [u_Hz]
-    contact_pressure: Array  # The two parts of the pressure [p_Hz]
-    fluid_pressure: Array  # The two parts of the pressure [p_Hz]
+    contact_pressure: Array  # Part of the pressure from asperities [p_Hz]
+    fluid_pressure: Array  # Part of the pressure from the fluid [p_Hz]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +53,12 @@ class PointState:
     identity_error: float  # `J_balanced - J_published - J_pcx + 0.4 pi lambda`, zero but for the errors of mesh and iteration
     load_error: float  # Error of the load carried by the pressures, relative to the load
     mesh: Any = field(repr=False)
-    nodal_gap: Array = field(repr=False)  # Fields at the nodes
-    nodal_contact_pressure: Array = field(repr=False)  # Fields at the nodes
-    nodal_fluid_pressure: Array = field(repr=False)  # Fields at the nodes
+    nodal_gap: Array = field(repr=False)  # Gap at the nodes [u_Hz]
+    nodal_contact_pressure: Array = field(repr=False)  # Pressure of asperities at the nodes [p_Hz]
+    nodal_fluid_pressure: Array = field(repr=False)  # Pressure of the fluid at the nodes [p_Hz]
     fields: Callable[[Array, Array], PointFields] = field(repr=False)
-    newton_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
-    krylov_steps: int = 0  # Steps of Newton's iteration, and of GMRES in them
+    newton_steps: int = 0  # Newton steps
+    krylov_steps: int = 0  # GMRES steps
     work: Any = field(default=None, repr=False)  # Operators and preconditioner from which neighbours start; None if dropped
 
     def without_factors(self) -> PointState:
