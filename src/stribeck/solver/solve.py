@@ -35,8 +35,6 @@ from stribeck.solver.cavities.cavity_length import cavitated_start
 from stribeck.solver.cold_start import first_paths
 from stribeck.solver.homotopy import is_lost_to_rounding
 from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
-from stribeck.solver.point.solution import PointSolution, finish_point
-from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError, describe
@@ -44,6 +42,7 @@ from stribeck.solver.solve_error import SolveError, describe
 if TYPE_CHECKING:
     from stribeck.contacts.line import LineContact
     from stribeck.contacts.point import PointContact
+    from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
 PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
@@ -173,6 +172,10 @@ def _solve_line(groups: Groups, contact: Contact | None, rtol: float, on_failure
 
 def _solve_point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
     """Return the state of a point contact."""
+    # Here, as the solver of balls loads scipy.sparse, which a cylinder does not need (test_solve_loads_no_more_than_it_needs)
+    from stribeck.solver.point.solution import finish_point
+    from stribeck.solver.point.solve import solve_cold
+
     return finish_point(solve_cold(groups, rtol), contact, on_failure)
 
 
