@@ -31,25 +31,17 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.cavities.cavity_length import paths_to_cavity
 from stribeck.solver.homotopy import paths_to_model
 
-RIGID_SPEED = 30.0  # Speed group above which the rigid film starts Newton's iteration safely
-
-RIGID_ROUGHNESS = 30.0  # Relative roughness above which the rigid contact starts it safely
-
-RIGID_REACH = 0.7  # Logarithm of the factor of the load within which it may start it too
-
+MIN_RIGID_SPEED = 30.0  # Speed group above which the rigid film starts Newton's iteration safely
+MIN_RIGID_ROUGHNESS = 30.0  # Relative roughness above which the rigid contact starts Newton's iteration safely
+MAX_RIGID_LOG_FACTOR = 0.7  # Logarithm of the factor of the load within which the rigid film or contact is tried too
 # Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading at low
 # speed would cross the sudden hand-over from asperities to film.
-SATURATED_LOAD = 0.5
-
-# Logarithms of the largest height of a rigid film and of 1 over the smallest: of contacts, then of double precision.
-HEIGHTS = (80.0, 400.0)
-
-# Newton steps after which a path is given up; no state of the box of :mod:`stribeck.solver.solve` takes more than 300.
-MAX_NEWTON_STEPS = 600
-
-ORDER = 10
-MESH_TOLERANCE = 1e-3
-NEWTON_TOLERANCE = 1e-5
+MIN_SATURATED_LOAD = 0.5
+MAX_LOG_HEIGHT = 400.0  # Logarithm of the largest height of a rigid film, and of 1 over the smallest, in double precision
+MAX_NEWTON_STEPS = 600  # Newton steps after which a path is given up; none of 200 random states takes more than 300
+ORDER = 10  # Nodes per panel of a coarse state, less one
+MESH_TOLERANCE = 1e-3  # Tolerance of the mesh of a coarse state
+NEWTON_TOLERANCE = 1e-5  # Relative error of the gap that Newton's iteration leaves in a coarse state
 
 
 @dataclass(frozen=True)
@@ -98,31 +90,30 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
     x, dx = np.linspace(-6, 6, 241, retstep=True)
     x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
 
-    for end in HEIGHTS:
-        low, high = -end, end
-        while high - low > 1e-6:  # the load falls with the height, and scipy.optimize takes longer to import than a solve
-            middle = 0.5 * (low + high)
-            height = math.exp(middle)
-            with np.errstate(over="ignore"):
-                contact = float(law.pressure(height + x * x / 2).sum() * dx)
-            film = min(speed / (height * math.sqrt(height)), 1e6)
-            low, high = (middle, high) if math.pi / 48 * film * film + contact > LOAD else (low, middle)
-        if -end < low and high < end:
-            height = math.exp(0.5 * (low + high))
-            return RigidGuess(speed, height, 4 * height / 3)
-    return None
+    low, high = -MAX_LOG_HEIGHT, MAX_LOG_HEIGHT
+    while high - low > 1e-6:  # the load falls with the height, and scipy.optimize takes longer to import than a solve
+        middle = 0.5 * (low + high)
+        height = math.exp(middle)
+        with np.errstate(over="ignore"):
+            contact = float(law.pressure(height + x * x / 2).sum() * dx)
+        film = min(speed / (height * math.sqrt(height)), 1e6)
+        low, high = (middle, high) if math.pi / 48 * film * film + contact > LOAD else (low, middle)
+    if low == -MAX_LOG_HEIGHT or high == MAX_LOG_HEIGHT:
+        return None
+    height = math.exp(0.5 * (low + high))
+    return RigidGuess(speed, height, 4 * height / 3)
 
 
 def cold_start(groups: Groups) -> Path[State]:
     """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution."""
     kappa = float(groups.relative_roughness)
-    by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
+    by_speed = groups.speed > 0 and groups.load > MIN_SATURATED_LOAD and kappa < MIN_RIGID_ROUGHNESS
     along = faster if by_speed else unloaded
     factors = []
     if groups.speed > 0:
-        factors.append(0.5 * math.log(RIGID_SPEED / groups.speed))
+        factors.append(0.5 * math.log(MIN_RIGID_SPEED / groups.speed))
     if kappa > 0 and not by_speed:
-        factors.append(math.log(RIGID_ROUGHNESS / kappa))
+        factors.append(math.log(MIN_RIGID_ROUGHNESS / kappa))
     top = max(0.0, min(factors))
     steps = 0
 
@@ -134,7 +125,7 @@ def cold_start(groups: Groups) -> Path[State]:
             here = along(groups, log_factor)
         except InputError:  # lifted out of the range of groups
             return None
-        rigid = top - log_factor < RIGID_REACH and len(history) < 3
+        rigid = top - log_factor < MAX_RIGID_LOG_FACTOR and len(history) < 3
         guess: Guess | None = rigid_guess(here) if rigid else extrapolate(history, log_factor)
         if guess is None:
             return None
@@ -146,7 +137,7 @@ def cold_start(groups: Groups) -> Path[State]:
         steps += state.root.steps
         return state
 
-    if 0.0 < top < RIGID_REACH:
+    if 0.0 < top < MAX_RIGID_LOG_FACTOR:
         direct = correct(0.0, ())
         if direct is not None and direct.outcome.ok:
             return Path((0.0,), (direct,), Outcome.CONVERGED, None)
