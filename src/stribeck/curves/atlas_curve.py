@@ -2,59 +2,48 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES, FrictionRule
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import friction_share
-from stribeck.curves.regime import (
-    BOUNDARY_FLUID_SHARE,
-    HYDRODYNAMIC_CONTACT_SHARE,
-    Regime,
-    Transition,
-    ranges_of,
-    regimes_along,
-)
-from stribeck.files.results import Drawn
+from stribeck.curves.base_curve import BaseCurve
+from stribeck.curves.coordinate import Over
+from stribeck.curves.function import CurveValues
+from stribeck.curves.landmarks import Landmark, vanishing
+from stribeck.curves.regime import HYDRODYNAMIC_CONTACT_SHARE, Transition
+from stribeck.numerics.events import Event, first_zero, least_by_slope
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.results import Card, Shown
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import Card
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.notes import law_notes
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 
 
-SUBDIVISION = 33
-ROUNDS = 4
-"""Points and rounds of the search for a crossing between two points."""
-
-
-@dataclass(frozen=True)
-class Mark:
-    """Where a curve on the atlas has its minimum or a transition."""
-
-    name: str  # Its name, as on a solved curve
-    value: float  # Where along the curve: group [-], or SI where the curve has a contact
-    friction: float  # Friction coefficient there [-]
+LOCATION_LOG_TOLERANCE = 1e-9  # Change of ln(value) to which a landmark is located on the table
+LOG_STEP = 1e-4  # Step of ln(value) in the slope from which a landmark's error follows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AtlasCurve(Drawn, Shown):
+class AtlasCurve(BaseCurve):
     """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields."""
 
     _picture = "stribeck.curves.plot.plot_atlas_curve"
 
-    over: str  # What varies
+    over: Over  # What varies
     values: Array  # Where the points lie, ascending: the group [-], or SI units where the curve has a contact
     groups_at: Callable[[Array], Groups]  # The groups at an array of such values
     contact: Contact | None  # The contact
@@ -65,10 +54,6 @@ class AtlasCurve(Drawn, Shown):
     def __post_init__(self) -> None:
         """Refuse a geometry, model or law that the atlas does not hold."""
         _ = self.table
-
-    def __len__(self) -> int:
-        """Return the number of points."""
-        return len(self.values)
 
     @cached_property
     def table(self) -> TableRow:
@@ -82,73 +67,60 @@ class AtlasCurve(Drawn, Shown):
 
     def observable(self, name: str) -> Array:
         """Return a load share, a gap or the offset of every point."""
-        known = [each for each in OBSERVABLES if each != "flux_gap" or each in self.table.functions]
-        if name not in known:
-            raise InputError(f"name = {show(name)}; the atlas has {', '.join(known)}.")
-        return np.asarray(getattr(atlas, name)(self.groups))
-
-    @cached_property
-    def friction(self) -> Array:
-        """Friction coefficient [-]."""
-        return self._friction_at(self.values)
+        return self._observable(name, self.groups)
 
     @property
-    def friction_viscous(self) -> Array:
-        """Viscous part of the friction coefficient [-]."""
-        return atlas.friction_terms(self.groups, self._inputs(self.groups), self.definition)[1]
+    def observables(self) -> tuple[str, ...]:
+        """Names of the observables that the table holds."""
+        return tuple(each for each in OBSERVABLES if each != "flux_gap" or each in self.table.functions)
 
-    @property
-    def friction_contact(self) -> Array:
-        """Contact part of the friction coefficient [-]."""
-        return np.asarray(self._rubbing * self.observable("contact_load_share"))
+    def _observable(self, name: str, groups: Groups) -> Array:
+        if name not in self.observables:
+            raise InputError(f"name = {show(name)}; the atlas has {', '.join(self.observables)}.")
+        return np.asarray(getattr(atlas, name)(groups))
 
-    @property
-    def friction_error(self) -> Array:
-        """Stated absolute error of the friction coefficient [-]."""
-        return self.table.error * np.abs(self.friction)
-
-    @property
-    def regimes(self) -> tuple[Regime, ...]:
-        """Lubrication regime of each point."""
-        return regimes_along(self.observable("fluid_load_share"), self.friction_contact, self.friction)
-
-    @cached_property
-    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
-        """Regimes along the curve, ascending: name, and the values between which it holds."""
-        return ranges_of(self.values, self.regimes, self.transitions)
-
-    @cached_property
-    def minimum(self) -> Mark | None:
-        """The minimum of the size of the friction; None where the curve has none inside."""
-        i = int(np.argmin(np.abs(self.friction)))
-        if not 0 < i < len(self) - 1:
-            return None
-        return self._mark(Transition.MINIMUM, i - 1, i + 1, self._slope_at)
-
-    @cached_property
-    def transitions(self) -> tuple[Mark, ...]:
-        """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
-        found = [] if self.minimum is None else [self.minimum]
-        for name, line, function in (
-            (Transition.BOUNDARY_END, BOUNDARY_FLUID_SHARE, self._fluid_at),
-            (Transition.EQUAL_SHARES, 0.5, self._fluid_at),
-            (Transition.HYDRODYNAMIC_START, HYDRODYNAMIC_CONTACT_SHARE, self._contact_part_at),
-        ):
-            crossings = np.nonzero(np.diff(np.sign(function(self.values) - line)))[0]
-            if len(crossings):
-                i = int(crossings[0])
-
-                def above(values: Array, function: Callable[[Array], Array] = function, line: float = line) -> Array:
-                    return function(values) - line
-
-                found.append(self._mark(name, i, i + 1, above))
-        return tuple(sorted(found, key=lambda mark: mark.value))
-
-    def local_minima(self) -> tuple[Mark, ...]:
+    def local_minima(self) -> tuple[Landmark, ...]:
         """Return all minima of the size of the friction inside the curve, those above the boundary plateau too."""
         slope = self._slope_at(self.values)
-        crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
-        return tuple(self._mark(Transition.MINIMUM, int(i), int(i) + 1, self._slope_at) for i in crossings)
+        places = np.log(self.values)
+        inside = [slice(i, i + 2) for i in np.flatnonzero((slope[:-1] < 0) & (slope[1:] >= 0))]
+        events = [first_zero(self._along(self._slope_at), places[i], slope[i], LOCATION_LOG_TOLERANCE) for i in inside]
+        return tuple(self._landmark(Transition.MINIMUM, event) for event in events if event is not None)
+
+    @property
+    def solutions(self) -> tuple[Any, ...]:
+        """No states."""
+        return ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """No notes: those on the contact law are in :attr:`law_in_doubt`."""
+        return ()
+
+    @property
+    def outcome(self) -> Outcome:
+        """Always CONVERGED."""
+        return Outcome.CONVERGED
+
+    @property
+    def requested(self) -> int:
+        """Number of points."""
+        return len(self)
+
+    @property
+    def rtol(self) -> float:
+        """Stated relative error of the table."""
+        return self.table.error
+
+    @property
+    def law(self) -> AsperityLaw | None:
+        """Contact law of all points; None is the exponential one."""
+        return self.groups.law
+
+    @property
+    def error_estimate(self) -> float:
+        """Stated relative error of the table."""
+        return self.table.error
 
     @cached_property
     def law_in_doubt(self) -> Array:
@@ -170,19 +142,90 @@ class AtlasCurve(Drawn, Shown):
     def _where(self, value: float) -> str:
         return f"{value:.4g}" if self.contact is None else si_text(float(value), self.over, 4, self.contact.INPUTS)
 
-    def _mark(self, name: str, first: int, last: int, function: Callable[[Array], Array]) -> Mark:
-        value = crossing(function, float(self.values[first]), float(self.values[last]))
-        return Mark(name, value, float(self._friction_at(np.array([value]))[0]))
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return float(self.values[0]), float(self.values[-1])
+
+    def _sampled(self, values: Array) -> Self:
+        return replace(self, values=values)
+
+    def _values(self, value: Any, s: Array) -> CurveValues:
+        groups = self.groups_at(self._inside(s))
+        contact, viscous, total, error = self._friction_terms(groups, self.boundary_friction, self.beta, self.definition).T
+        values = {name: self._observable(name, groups) for name in self.observables}
+        shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
+        return CurveValues(
+            value=value,
+            values={name: shown(column) for name, column in values.items()},
+            relative_errors=np.full((*np.shape(value), len(values)), self.table.error),
+            minimum_position_error=math.nan,
+            friction_contact=shown(contact),
+            friction_viscous=shown(viscous),
+            friction=shown(total),
+            friction_error=shown(error),
+            names=self.observables,
+        )
+
+    def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        return self._friction_terms(self.groups, boundary_friction, beta, definition)
+
+    def _friction_terms(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        """Return contact and viscous friction, their sum and its error at groups, shape (n, 4)."""
+        share, viscous = atlas.friction_terms(groups, {**self._inputs(groups), "beta": beta}, definition)
+        contact = boundary_friction * self._sliding * share
+        total = contact + viscous
+        return np.stack([contact, viscous, total, self.table.error * np.abs(total)], axis=1)
+
+    def _accepted(self, rtol: float | None) -> float:
+        return self.table.error
+
+    def _find(self, mark: Transition, accepted: float) -> Landmark | None:
+        places = np.log(self.values)
+
+        def function(values: Array) -> Array:
+            groups = self.groups_at(values)
+            fluid = self._observable("fluid_load_share", groups)
+            return vanishing(mark, fluid, *self._friction_terms(groups, *self._coefficients)[:, :2].T)
+
+        known = function(self.values)
+        event = first_zero(self._along(function), places, known, LOCATION_LOG_TOLERANCE)
+        if event is None and mark is Transition.MINIMUM:
+            event = least_by_slope(self._along(self._slope_at), places, np.abs(known), LOCATION_LOG_TOLERANCE)
+        return None if event is None else self._landmark(mark, event)
+
+    def _landmark(self, mark: Transition, event: Event) -> Landmark:
+        """Return the landmark at an event, with the error that the table's own error leaves."""
+        found = self._values(math.exp(event.place), np.array([event.place]))
+        before, after = (event.function(event.place + step) for step in (-LOG_STEP, LOG_STEP))
+        scale = {
+            Transition.MINIMUM: abs(found.friction),
+            Transition.HYDRODYNAMIC_START: HYDRODYNAMIC_CONTACT_SHARE,
+        }.get(mark, found.fluid_load_share)
+        steepness = abs(after - before) / (2 * LOG_STEP)
+        error = self.table.error * scale / steepness if steepness else math.inf
+        return Landmark(mark, found.value, found.friction, error=error)
+
+    def _inside(self, s: Array) -> Array:
+        """Return values of coordinates, inside the curve but for rounding."""
+        return np.clip(np.exp(s), *self._ends)
+
+    def _along(self, function: Callable[[Array], Array]) -> Callable[[float], float]:
+        """Return a function of many values as one of a coordinate."""
+        return lambda s: float(function(self._inside(np.array([s])))[0])
+
+    @property
+    def _coefficients(self) -> tuple[float, float, Definition]:
+        return self.boundary_friction, self.beta, self.definition
 
     @property
     def _rule(self) -> FrictionRule:
         return RULES[self.table.geometry]
 
     @cached_property
-    def _rubbing(self) -> float:
-        """``boundary_friction`` as far as it acts, with the sign of the sliding."""
+    def _sliding(self) -> float:
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
         inputs = self._rule.of_contact(self.contact)
-        return self.boundary_friction * float(self._rule.sliding_factor(self.groups_at(self.values[:1]), inputs))
+        return float(self._rule.sliding_factor(self.groups_at(self.values[:1]), inputs))
 
     def _inputs(self, groups: Groups) -> dict[str, Any]:
         """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
@@ -199,11 +242,6 @@ class AtlasCurve(Drawn, Shown):
             return {}
         return {name: powers["load"] for name, powers in self._rule.exponents.items()}
 
-    def _friction_at(self, values: Array) -> Array:
-        groups = self.groups_at(values)
-        contact, viscous = atlas.friction_terms(groups, self._inputs(groups), self.definition)
-        return np.asarray(self._rubbing * contact + viscous)
-
     def _slope_at(self, values: Array) -> Array:
         """Return the derivative of the size of the friction along the curve."""
         groups = self.groups_at(values)
@@ -217,14 +255,7 @@ class AtlasCurve(Drawn, Shown):
         for name, power in self._moving.items():
             moved = {**inputs, name: inputs[name] * (1 + 1j * COMPLEX_STEP)}
             found = found + power * np.imag(atlas.friction_terms(groups, moved, self.definition)[1]) / COMPLEX_STEP
-        return np.asarray(found * np.sign(self._friction_at(values)))
-
-    def _fluid_at(self, values: Array) -> Array:
-        return np.asarray(atlas.fluid_load_share(self.groups_at(values)))
-
-    def _contact_part_at(self, values: Array) -> Array:
-        contact = self._rubbing * np.asarray(atlas.contact_load_share(self.groups_at(values)))
-        return friction_share(contact, self._friction_at(values) - contact)
+        return np.asarray(found * np.sign(self._friction_terms(groups, *self._coefficients)[:, 2]))
 
 
 @dataclass(frozen=True)
@@ -252,16 +283,3 @@ def where_law_is_in_doubt(
         groups = replace(along, speed=speed, load=load, roughness=roughness)
         found.append(bool(law_notes(groups, contact, _Read(*values), given)))
     return np.array(found, bool)
-
-
-def crossing(function: Callable[[Array], Array], low: float, high: float) -> float:
-    """Return where a function of an array changes its sign, the first such place between two positive numbers."""
-    for _ in range(ROUNDS):
-        points = np.geomspace(low, high, SUBDIVISION)
-        values = function(points)
-        changes = np.nonzero(np.diff(np.sign(values)))[0]
-        i = int(changes[0]) if len(changes) else int(np.argmin(np.abs(values[:-1])))
-        low, high = float(points[i]), float(points[i + 1])
-    first, last = function(np.array([low, high]))
-    part = 0.5 if first == last else float(np.clip(first / (first - last), 0.0, 1.0))
-    return float(low * (high / low) ** part)

@@ -15,15 +15,15 @@ from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import friction_share
+from stribeck.curves.base_curve import END_ROUNDING
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress, observed
-from stribeck.curves.landmarks import Landmark, friction_at
-from stribeck.curves.regime import Transition, check_transition, excess
-from stribeck.curves.result import SLACK, StribeckCurve
+from stribeck.curves.landmarks import Landmark, friction_at, vanishing
+from stribeck.curves.regime import Transition
+from stribeck.curves.result import StribeckCurve
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.newton import root_between
+from stribeck.numerics.events import first_zero, least_by_slope
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
@@ -39,19 +39,13 @@ from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["PointCurve", "point_curve", "point_speeds"]
 
-LOCATION_TOLERANCE = 1e-7  # Of the logarithm of the place of a mark, whose own error is that of the curve
-SLOPE_STEP = 1e-4  # Step of the logarithm in central differences of the friction, for its minimum
-PARTS = np.arange(8) / 8  # Places at which marks are searched for, as parts of the interval between two states
-
-SLOWEST, FASTEST = 1e-8, 1e3
-"""Smallest and largest speed group of a curve that chooses its own range."""
-
-COARSE = 1e-3
-"""Tolerance of the states on which the range is found."""
-
-PLATEAU, BRANCH = 1e-3, 1e-2
-"""The curve ends where the load share changes by less than this over a decade of speed, and asperities cause less than this
-part of the friction."""
+LOCATION_LOG_TOLERANCE = 1e-7  # Change of ln(value) to which a landmark is located, whose own error is that of the curve
+SLOPE_LOG_STEP = 1e-4  # Step of ln(value) in central differences of the friction, for its minimum
+INTERVAL_FRACTIONS = np.arange(8) / 8  # Places of an interval at which landmarks are searched for
+MIN_SPEED, MAX_SPEED = 1e-8, 1e3  # Speed groups between which a curve chooses its own range
+RANGE_RTOL = 1e-3  # Tolerance of the states on which the range is found
+PLATEAU_SHARE_CHANGE = 1e-3  # Change of the load share over a decade of speed below which the boundary plateau is reached
+BRANCH_CONTACT_SHARE = 1e-2  # Part of the friction caused by asperities below which the hydrodynamic branch is reached
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,11 +67,6 @@ class PointCurve(StribeckCurve):
     def error_estimate(self) -> float:
         """Largest estimated relative error over all points."""
         return max((s.error_estimate for s in self.solutions), default=math.nan)
-
-    @property
-    def hydrodynamic_friction(self) -> Array:
-        """None: the article's law for smooth surfaces is of the line contact."""
-        return np.full(len(self), math.nan)
 
     def _values(self, value: Any, s: Array) -> CurveValues:
         def shown(column: list[Any]) -> Any:
@@ -138,59 +127,36 @@ class PointCurve(StribeckCurve):
 
     @cached_property
     def _searched(self) -> tuple[Array, Array, Array, Array]:
-        """Coordinates at which marks are searched for; there the fluid's load share and both parts of the friction."""
-        places = self._function.places(PARTS)
+        """Coordinates at which landmarks are searched for; there the fluid's load share and both parts of the friction."""
+        places = self._function.places(INTERVAL_FRACTIONS)
         return places, *self._parts_at(places)
 
-    @cached_property
-    def minimum(self) -> Landmark | None:
-        """The minimum of the size of the friction; None where the curve has none inside."""
-        if not bool(np.all(np.asarray(self.groups.speed) > 0)):
+    def _accepted(self, rtol: float | None) -> float:
+        return self.rtol
+
+    def _find(self, mark: Transition, accepted: float) -> Landmark | None:
+        if mark is Transition.MINIMUM and not bool(np.all(np.asarray(self.groups.speed) > 0)):
             return None
-        places, _, contact, viscous = self._searched
-        total = contact + viscous
-        # Friction that changes its sign is least, by its size, where it vanishes.
-        crossing = self._zero(Transition.MINIMUM, places, total, lambda s: float(np.add(*self._parts_at(s)[1:])[0]))
-        size = np.abs(total)
-        i = int(np.argmin(size))
-        if crossing is not None or not 0 < i < len(places) - 1 or np.ptp(size) <= self.rtol * size.max():
-            return crossing
+        places, *parts = self._searched
+        values = vanishing(mark, *parts)
 
-        def slope(s: Array) -> float:
-            ahead, behind = (float(np.add(*self._parts_at(s + step)[1:])[0]) for step in (SLOPE_STEP, -SLOPE_STEP))
-            return ahead - behind
+        def at(s: float) -> float:
+            return float(vanishing(mark, *self._parts_at(np.array([s])))[0])
 
-        around = places[i - 1 : i + 2]
-        return self._zero(Transition.MINIMUM, around, np.array([slope(s) for s in around[:, None]]), slope)
+        def slope(s: float) -> float:
+            return at(s + SLOPE_LOG_STEP) - at(s - SLOPE_LOG_STEP)
 
-    def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
-        """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
-        mark = check_transition(name)
-        if mark is Transition.MINIMUM:
-            return self.minimum
-        places, fluid, contact, viscous = self._searched
-
-        def above(s: Array) -> float:
-            fluid, contact, viscous = self._parts_at(s)
-            return float(excess(mark, fluid, friction_share(contact, viscous))[0])
-
-        return self._zero(mark, places, excess(mark, fluid, friction_share(contact, viscous)), above)
-
-    def _zero(self, mark: Transition, places: Array, values: Array, function: Callable[[Array], float]) -> Landmark | None:
-        """Return the first zero of a function between places where it is known, as a mark; None where it has none."""
-        changes = np.nonzero(np.diff(np.sign(values)))[0]
-        if not len(changes):
-            return None
-        low, high = places[changes[0] : changes[0] + 2].tolist()
-        place = root_between(lambda s: function(np.array([s])), low, high, LOCATION_TOLERANCE)
-        if place is None:
+        event, size = first_zero(at, places, values, LOCATION_LOG_TOLERANCE), np.abs(values)
+        if event is None and mark is Transition.MINIMUM and np.ptp(size) > self.rtol * size.max():
+            event = least_by_slope(slope, places, size, LOCATION_LOG_TOLERANCE)
+        if event is None:
             return None
         try:
-            [solution] = self._read(np.array([place]))
+            [solution] = self._read(np.array([event.place]))
         except SolveError:
             return None
         friction = solution.friction(self.boundary_friction, self.beta, self.definition)
-        return Landmark(mark, math.exp(place), friction_at(friction), solution)  # type: ignore[arg-type]
+        return Landmark(mark, math.exp(event.place), friction_at(friction), solution)
 
 
 def _solutions(path: SolvedPath | HermitePath, coordinate: Coordinate, places: Array) -> Iterator[PointSolution]:
@@ -235,7 +201,7 @@ def point_curve(
             finish_point(problem.failure, contact)
         raise SolveError(path.outcome, None, f"{describe(start)}: {path.outcome.value}")
     low, high = path.coordinates[[0, -1]]
-    asked = values[(places >= low - SLACK) & (places <= high + SLACK)]
+    asked = values[(places >= low - END_ROUNDING) & (places <= high + END_ROUNDING)]
     found: dict[float, PointSolution] = {}
     try:
         for value, solution in zip(asked[::-1].tolist(), _solutions(path, coordinate, np.log(asked[::-1])), strict=True):
@@ -285,15 +251,15 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     """
     kappa = float(groups.relative_roughness)
     if kappa == 0:
-        return SLOWEST, 10.0
-    neighbours = Neighbours(COARSE)
-    fastest, low, share = FASTEST, min(FASTEST, max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
+        return MIN_SPEED, 10.0
+    neighbours = Neighbours(RANGE_RTOL)
+    fastest, low, share = MAX_SPEED, min(MAX_SPEED, max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
     high = low
 
     def contact_part(state: PointState) -> float:
         return solution_of(state, None).friction(boundary_friction, beta, definition).contact_share
 
-    while low > SLOWEST:
+    while low > MIN_SPEED:
         state = neighbours.at(replace(groups, speed=low))
         if not state.outcome.ok:
             if share is not None:  # slower ones are not solved
@@ -301,10 +267,10 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
                 break
             fastest = low = high = low / 10
             continue
-        if contact_part(state) < BRANCH:
+        if contact_part(state) < BRANCH_CONTACT_SHARE:
             high = low
         found = float(state.values["fluid_load_share"])
-        if share is not None and abs(share - found) < PLATEAU and state.values["contact_load_share"] > 0.1:
+        if share is not None and abs(share - found) < PLATEAU_SHARE_CHANGE and state.values["contact_load_share"] > 0.1:
             break
         share, low = found, low / 10
-    return max(low, SLOWEST), min(10 * high, fastest)
+    return max(low, MIN_SPEED), min(10 * high, fastest)

@@ -5,25 +5,23 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, model_words
-from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
+from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL
-from stribeck.curves.coordinate import Coordinate, Over, check_points, given_values
+from stribeck.curves.base_curve import BaseCurve
+from stribeck.curves.coordinate import Coordinate, Over
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, observed, rows_of, solved_at
-from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place, friction_at
-from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
-from stribeck.files.results import Exported
+from stribeck.curves.landmarks import MAX_STATE_RTOL, Landmark, Landmarks, friction_at
+from stribeck.curves.regime import Transition
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.results import ByValue, Card
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD_PREFIX, law_notes, minimum_note
@@ -32,16 +30,13 @@ from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate
 
 if TYPE_CHECKING:
-    import xarray
+    pass
 
 __all__ = ["StribeckCurve"]
 
-SLACK = 1e-12
-"""Rounding of the ends of a curve."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StribeckCurve(Exported, Shown, ByValue):
+class StribeckCurve(BaseCurve, ByValue):
     """Converged states along one coordinate, and the friction on them.
 
     Attributes
@@ -77,10 +72,6 @@ class StribeckCurve(Exported, Shown, ByValue):
     requested: int
     _path: Coordinate = field(repr=False, compare=False)
     _function: SolvedPath = field(repr=False, compare=False)
-
-    def __len__(self) -> int:
-        """Return the number of points."""
-        return len(self.values)
 
     @cached_property
     def _rows(self) -> tuple[Array, Array]:
@@ -131,68 +122,21 @@ class StribeckCurve(Exported, Shown, ByValue):
             return np.array(self._rows[0][:, COLUMNS.index(name)])
         return observed(self.solutions, name)
 
-    def at(self, value: Any) -> CurveValues:
-        """Return all observables and the friction anywhere on the curve, with their errors.
-
-        Parameters
-        ----------
-        value : float, str or array_like
-            What the curve runs over, inside its range: groups [-], or SI numbers or text with units where the curve has a
-            contact.
-
-        Returns
-        -------
-        CurveValues
-            Numbers for one value, arrays for many.
-
-        Raises
-        ------
-        InputError
-            If a value is outside the curve.
-        SolveError
-            If no states can be solved along the curve.
-
-        Notes
-        -----
-        A curve is about a dozen solved states, expanded into Taylor series.  Between them observables are polynomials in the
-        logarithm of ``value``; their difference from polynomials of lower order is part of the error
-        (``test_curve_function.py``).
-        """
-        values = given_values(self.over, value, self.contact)
-        path = self._function
-        low, high = (float(end) for end in np.exp(path.coordinates[[0, -1]]))
-        if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
-            raise InputError(
-                f"{self.over} = {show(value)} is outside the curve, which runs from {self._path.where(low)} to "
-                f"{self._path.where(high).removeprefix(self.over + ' ')}; compute a curve that contains it."
-            )
-        return self._values(values if np.ndim(values) else float(values), np.log(np.atleast_1d(values)))
-
     def _values(self, value: Any, s: Array) -> CurveValues:
         """Return the values of the curve at coordinates."""
         plain = CurveValues.of(value, *self._function.at(s), self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
-    def sampled(self, points: int) -> StribeckCurve:
-        """Return the same curve with other points, evenly in the logarithm; they are read off it.
+    @property
+    def _ends(self) -> tuple[float, float]:
+        low, high = np.exp(self._function.coordinates[[0, -1]]).tolist()
+        return low, high
 
-        Parameters
-        ----------
-        points : int
-            Their number, at least 2.
+    def _where(self, value: float) -> str:
+        return self._path.where(value)
 
-        Returns
-        -------
-        StribeckCurve
-            Between the same ends.
-
-        Raises
-        ------
-        InputError
-            For a number that is none.
-        """
-        check_points(points)
-        return self._along(self._function, np.geomspace(self.values[0], self.values[-1], points), points)
+    def _sampled(self, values: Array) -> Self:
+        return self._along(self._function, values, len(values))
 
     def solve_at(self, value: Any) -> Solution:
         """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
@@ -223,7 +167,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         point = solved_at(self._function, s)
         return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
 
-    def _along(self, path: SolvedPath, values: Array, requested: int) -> StribeckCurve:
+    def _along(self, path: SolvedPath, values: Array, requested: int) -> Self:
         """Return the curve on another path, with points at ``values``."""
         return replace(self, values=values, outcome=path.outcome, requested=requested, _function=path)
 
@@ -237,77 +181,10 @@ class StribeckCurve(Exported, Shown, ByValue):
         """Smallest error that is stated."""
         return minimum_estimate(self.rtol, self._path.groups_at(0.0).model)
 
-    @cached_property
-    def _friction(self) -> Array:
-        return self._friction_of(self.boundary_friction, self.beta, self.definition)
-
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
         found = CurveValues.of(self.values, *self._rows, self._sliding, self._least_error)
         found = found.with_friction(boundary_friction, beta, definition)
         return np.stack([found.friction_contact, found.friction_viscous, found.friction, found.friction_error], axis=1)
-
-    @property
-    def friction_contact(self) -> Array:
-        """Contact part of the friction coefficient [-]."""
-        return np.asarray(self._friction[:, 0])
-
-    @property
-    def friction_viscous(self) -> Array:
-        """Viscous part of the friction coefficient [-]."""
-        return np.asarray(self._friction[:, 1])
-
-    @property
-    def friction(self) -> FrictionArray:
-        """Friction coefficients [-]: an array with its parts ``contact``, ``viscous`` and its ``error``.
-
-        For the coefficients and the definition of the curve; ``friction(boundary_friction, beta, definition)`` returns it for
-        others, each optional.
-        """
-        return self._friction_for()
-
-    def _friction_for(
-        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition | None = None
-    ) -> FrictionArray:
-        if boundary_friction is None and beta is None and definition is None:
-            found = self._friction
-        else:
-            given = coefficients(
-                None,
-                self.boundary_friction if boundary_friction is None else boundary_friction,
-                self.beta if beta is None else beta,
-            )
-            found = self._friction_of(*given, self.definition if definition is None else check_definition(definition))
-        return FrictionArray(found[:, 0], found[:, 1], found[:, 2], found[:, 3], self._friction_for)
-
-    @property
-    def friction_error(self) -> Array:
-        """Estimated absolute error of the friction coefficient [-]."""
-        return np.asarray(self._friction[:, 3])
-
-    @property
-    def hersey_number(self) -> Array:
-        """Hersey number of the points [-], eta U/F_N of a line and eta U R/F_N of a ball."""
-        return np.asarray(self.groups.hersey_number(self.beta))
-
-    @property
-    def hydrodynamic_friction(self) -> Array:
-        """Friction of smooth surfaces by the article's law, the abscissa of its second plot; nan for other models."""
-        if self.groups.model != BASE_MODEL:
-            return np.full(len(self), np.nan)
-        return np.asarray(hydrodynamic.friction(self.groups, self.beta))
-
-    @property
-    def regimes(self) -> tuple[Regime, ...]:
-        """Lubrication regime of each point."""
-        return regimes_along(self.observable("fluid_load_share"), self.friction_contact, self.friction)
-
-    @cached_property
-    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
-        """Regimes along the curve, ascending: name, and the values between which it holds.
-
-        They meet at a located transition where there is one, else in the middle between two points.
-        """
-        return ranges_of(self.values, self.regimes, self.transitions)
 
     @property
     def law_in_doubt(self) -> Array:
@@ -352,71 +229,16 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _landmarks(self) -> Landmarks:
         return Landmarks(self._function, self._path, self.rtol)
 
-    @property
-    def minimum(self) -> Landmark | None:
-        """The minimum of the size of the friction, where it or its slope vanishes; None where the curve has none inside."""
-        return self.landmark(Transition.MINIMUM)
+    def _accepted(self, rtol: float | None) -> float:
+        return check_rtol(min(self.rtol, MAX_STATE_RTOL) if rtol is None else rtol)
 
-    def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
-        """Return one transition, or the minimum.
-
-        Parameters
-        ----------
-        name : str
-            ``"boundary_end"``, ``"equal_shares"``, ``"hydrodynamic_start"`` or ``"minimum"``, or the name in outputs.
-        rtol : float, optional
-            Error of the observables up to which it is read off the curve: the tolerance of the curve costs no further
-            state.  Beyond, a state is solved there.  1e-6 if omitted, or the tolerance of the curve if that is smaller.
-
-        Returns
-        -------
-        Landmark or None
-            None where the curve does not hold it.
-
-        Raises
-        ------
-        InputError
-            For another name, or a tolerance that is none.
-        """
-        mark = check_transition(name)
-        accepted = min(self.rtol, STATES_RTOL) if rtol is None else rtol
-        accepted = check_rtol(accepted)
-        if (mark, accepted) not in self._found:
-            rubbing = self._sliding * self.boundary_friction
-            place = self._landmarks.place(mark, rubbing, self.beta, self.definition, accepted)
-            self._found[mark, accepted] = None if place is None else self._landmark(mark, place)
-        return self._found[mark, accepted]
-
-    @cached_property
-    def _found(self) -> dict[tuple[Transition, float], Landmark | None]:
-        return {}
-
-    def _landmark(self, name: Transition, place: Place) -> Landmark:
+    def _find(self, mark: Transition, accepted: float) -> Landmark | None:
+        rubbing = self._sliding * self.boundary_friction
+        place = self._landmarks.place(mark, rubbing, self.beta, self.definition, accepted)
+        if place is None:
+            return None
         friction = friction_at(place.solution.friction(self.boundary_friction, self.beta, self.definition))
-        return Landmark(name, math.exp(place.coordinate), friction, place.solution, place.error)
-
-    @cached_property
-    def transitions(self) -> tuple[Landmark, ...]:
-        """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
-
-        As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
-        10 % of the friction, and where friction is at its minimum.
-        """
-        found = [self.landmark(name) for name in Transition]
-        return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the curve as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Observables, friction, regimes and inputs of each point, with units and long names as attributes;
-            needs the extra ``data``.
-        """
-        from stribeck.curves.table import curve_dataset
-
-        return curve_dataset(self)
+        return Landmark(mark, math.exp(place.coordinate), friction, place.solution, place.error)
 
     def to_si(self) -> dict[str, Array]:
         """Return films and Hertz scales of the points in SI units.

@@ -16,11 +16,12 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import refuse_fixed_memory, with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
+from stribeck.curves.base_curve import END_ROUNDING
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
 from stribeck.curves.function import Progress
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
-from stribeck.curves.result import SLACK, StribeckCurve
+from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
@@ -226,7 +227,7 @@ def continued(
     begin = math.exp(path.coordinates[0 if end > curve.values[0] else -1])
     low, high = np.exp(path.coordinates[[0, -1]]) if path.outcome.ok else sorted((begin, end))
     values = np.geomspace(low, high, points)
-    reached = np.exp(path.coordinates[[0, -1]]) * (1 - SLACK, 1 + SLACK)
+    reached = np.exp(path.coordinates[[0, -1]]) * (1 - END_ROUNDING, 1 + END_ROUNDING)
     inside = values[(values >= reached[0]) & (values <= reached[1])]
     return curve._along(path, inside, points)
 

@@ -11,6 +11,7 @@ from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
+from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import AREA_ROWS, GROUPS, OUTPUT_TABLES
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["curve_dataset"]
 
 
-def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
+def curve_dataset(curve: StribeckCurve | AtlasCurve, title: str = "") -> xarray.Dataset:
     """Return a Stribeck curve as an xarray Dataset."""
     over = curve.over
     unit, what = ("1", f"{over} group") if curve.contact is None else (unit_of(over, curve.contact.INPUTS), over)
@@ -32,7 +33,7 @@ def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
     return new_dataset(columns, {over: (over, curve.values, unit, f"{what}, what varies")}, _attributes(curve, title))
 
 
-def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
+def _columns(curve: StribeckCurve | AtlasCurve) -> dict[str, tuple[Any, str, str]]:
     """Return values, unit and long name of each variable."""
     columns: dict[str, tuple[Any, str, str]] = {
         "friction": (curve.friction, "1", f"friction coefficient, definition {curve.definition}"),
@@ -47,8 +48,12 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             "friction coefficient of smooth surfaces by the law of the hydrodynamic branch",
         ),
     }
-    table = curve.solutions[0].outputs if len(curve) else OUTPUT_TABLES[curve.groups.geometry]
-    for name, (unit, label) in table.listed.items():
+    solutions = curve.solutions
+    table = solutions[0].outputs if solutions else OUTPUT_TABLES[curve.groups.geometry]
+    listed = {
+        name: row for name, row in table.listed.items() if not isinstance(curve, AtlasCurve) or name in curve.observables
+    }
+    for name, (unit, label) in listed.items():
         columns[name] = (curve.observable(name), unit, label)
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
@@ -57,18 +62,18 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
         columns[name] = (found.total, "1", f"friction coefficient, {label}")
         columns[f"{name}_viscous"] = (found.viscous, "1", f"friction coefficient, {label}: contribution of the fluid")
         columns[f"{name}_error"] = (found.error, "1", f"friction coefficient, {label}: estimated absolute error")
-    if isinstance(curve.law, WithArea):
+    if isinstance(curve.law, WithArea) and not isinstance(curve, AtlasCurve):
         for name, (unit, label) in AREA_ROWS.items():
             columns[name] = (curve.observable(name), unit, label)
-    films = [si_films(solution) for solution in curve.solutions]
+    films = [si_films(solution) for solution in solutions]
     for name, (_, unit, label) in (films[0] if films else {}).items():
         columns[name] = (np.array([film[name][0] for film in films]), unit, label)
-    outcomes = np.array([s.outcome.name for s in curve.solutions], dtype=object)
+    outcomes = np.array([s.outcome.name for s in solutions] or [curve.outcome.name] * len(curve), dtype=object)
     columns["outcome"] = (outcomes, "1", "how the solve of the point ended")
     return columns
 
 
-def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
+def _attributes(curve: StribeckCurve | AtlasCurve, title: str) -> dict[str, Any]:
     """Return what belongs to the whole curve: provenance, inputs, settings, landmarks, outcome."""
     finished = curve.outcome.ok and len(curve) == curve.requested
     found: dict[str, Any] = {
@@ -80,7 +85,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
         "over": curve.over,
         "geometry": curve.groups.geometry,
         "definition": curve.definition,
-        **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
+        **law_attributes(curve.law, bool(curve.solutions) and curve.solutions[0].law == "smooth"),
         **part_attributes(curve.groups, curve.contact),
         "rtol": curve.rtol,
         "error_estimate": curve.error_estimate,
@@ -100,7 +105,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
     return found
 
 
-def _landmark_attributes(curve: StribeckCurve) -> dict[str, Any]:
+def _landmark_attributes(curve: StribeckCurve | AtlasCurve) -> dict[str, Any]:
     """Return where minimum and transitions lie, nan where the curve holds no minimum."""
     minimum, marks = curve.minimum, curve.transitions
     return {

@@ -20,6 +20,7 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
@@ -130,7 +131,7 @@ def weakening(
     coarse = np.linspace(math.log(high), math.log(low), count).tolist()
     values = [slope(s) for s in coarse]
     # Imported here because it takes longer than the rest of the package, and few uses get here.
-    from scipy.optimize import brentq, minimize_scalar
+    from scipy.optimize import minimize_scalar
 
     i = min(max(1, int(np.argmin(values))), count - 2)
     minimize_scalar(slope, bounds=(coarse[i + 1], coarse[i - 1]), method="bounded", options={"xatol": SPEED_TOLERANCE})
@@ -138,7 +139,8 @@ def weakening(
     above = [s for s in sorted(slope.found) if s > lowest and slope.found[s] > 0]
     if slope.found[lowest] >= 0 or not above:
         return Weakening(math.exp(lowest), slope.found[lowest])
-    s = float(brentq(slope, lowest, above[0], xtol=MINIMUM_TOLERANCE))
+    s = root_between(slope, lowest, above[0], MINIMUM_TOLERANCE)
+    assert s is not None
     slope(s)
     return Weakening(math.exp(lowest), slope.found[lowest], math.exp(s), slope.friction(s))
 
@@ -175,8 +177,6 @@ def roughness_without_minimum(
 
 def _root(excess: Callable[[float], float], rtol: float) -> float:
     """Return the relative roughness at which ``excess``, growing with its logarithm, vanishes; nan if it is not found."""
-    from scipy.optimize import brentq
-
     known = {math.log(KAPPA_START): excess(math.log(KAPPA_START))}
     (start,) = known
     step = -math.log(KAPPA_STEP) if known[start] >= 0 else math.log(KAPPA_STEP)
@@ -194,4 +194,5 @@ def _root(excess: Callable[[float], float], rtol: float) -> float:
     def remembered(s: float) -> float:
         return known[s] if s in known else excess(s)
 
-    return math.exp(float(brentq(remembered, min(here, there), max(here, there), xtol=max(rtol, 1e-9))))
+    found = root_between(remembered, min(here, there), max(here, there), max(rtol, MINIMUM_TOLERANCE))
+    return math.nan if found is None else math.exp(found)
