@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -19,6 +20,7 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Regime, Transition, check_transition, ranges_of, regimes_along
 from stribeck.files.results import Exported
 from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show
 
@@ -49,6 +51,11 @@ class BaseCurve(Exported, Shown):
     @abstractmethod
     def _ends(self) -> tuple[float, float]:
         """Values between which the curve is a function."""
+
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """Names of the observables that the curve has."""
+        return tuple(OUTPUT_TABLES[self.groups.geometry].listed)
 
     @abstractmethod
     def observable(self, name: str) -> Array:
@@ -134,7 +141,7 @@ class BaseCurve(Exported, Shown):
         Raises
         ------
         InputError
-            For a number that is none, or if the curve is known at its points only.
+            For a number that is none.
         """
         check_points(points)
         return self._sampled(np.geomspace(self.values[0], self.values[-1], points))
@@ -261,6 +268,6 @@ class BaseCurve(Exported, Shown):
             Observables, friction, regimes and inputs of each point, with units and long names as attributes;
             needs the extra ``data``.
         """
-        from stribeck.curves.table import curve_dataset
-
-        return curve_dataset(self)  # type: ignore[arg-type]
+        # By name, as pictures are: the table needs the curve.
+        found: xarray.Dataset = import_module("stribeck.curves.table").curve_dataset(self)
+        return found

@@ -11,7 +11,6 @@ from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
-from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import AREA_ROWS, GROUPS, OUTPUT_TABLES
@@ -20,12 +19,10 @@ from stribeck.solver.base_solution import si_films
 if TYPE_CHECKING:
     import xarray
 
-    from stribeck.curves.result import StribeckCurve
-
 __all__ = ["curve_dataset"]
 
 
-def curve_dataset(curve: StribeckCurve | AtlasCurve, title: str = "") -> xarray.Dataset:
+def curve_dataset(curve: Any, title: str = "") -> xarray.Dataset:
     """Return a Stribeck curve as an xarray Dataset."""
     over = curve.over
     unit, what = ("1", f"{over} group") if curve.contact is None else (unit_of(over, curve.contact.INPUTS), over)
@@ -33,7 +30,7 @@ def curve_dataset(curve: StribeckCurve | AtlasCurve, title: str = "") -> xarray.
     return new_dataset(columns, {over: (over, curve.values, unit, f"{what}, what varies")}, _attributes(curve, title))
 
 
-def _columns(curve: StribeckCurve | AtlasCurve) -> dict[str, tuple[Any, str, str]]:
+def _columns(curve: Any) -> dict[str, tuple[Any, str, str]]:
     """Return values, unit and long name of each variable."""
     columns: dict[str, tuple[Any, str, str]] = {
         "friction": (curve.friction, "1", f"friction coefficient, definition {curve.definition}"),
@@ -50,11 +47,9 @@ def _columns(curve: StribeckCurve | AtlasCurve) -> dict[str, tuple[Any, str, str
     }
     solutions = curve.solutions
     table = solutions[0].outputs if solutions else OUTPUT_TABLES[curve.groups.geometry]
-    listed = {
-        name: row for name, row in table.listed.items() if not isinstance(curve, AtlasCurve) or name in curve.observables
-    }
-    for name, (unit, label) in listed.items():
-        columns[name] = (curve.observable(name), unit, label)
+    for name, (unit, label) in table.listed.items():
+        if solutions or name in curve.observables:
+            columns[name] = (curve.observable(name), unit, label)
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
     for definition in DEFINITIONS:
@@ -62,7 +57,7 @@ def _columns(curve: StribeckCurve | AtlasCurve) -> dict[str, tuple[Any, str, str
         columns[name] = (found.total, "1", f"friction coefficient, {label}")
         columns[f"{name}_viscous"] = (found.viscous, "1", f"friction coefficient, {label}: contribution of the fluid")
         columns[f"{name}_error"] = (found.error, "1", f"friction coefficient, {label}: estimated absolute error")
-    if isinstance(curve.law, WithArea) and not isinstance(curve, AtlasCurve):
+    if isinstance(curve.law, WithArea) and solutions:
         for name, (unit, label) in AREA_ROWS.items():
             columns[name] = (curve.observable(name), unit, label)
     films = [si_films(solution) for solution in solutions]
@@ -73,7 +68,7 @@ def _columns(curve: StribeckCurve | AtlasCurve) -> dict[str, tuple[Any, str, str
     return columns
 
 
-def _attributes(curve: StribeckCurve | AtlasCurve, title: str) -> dict[str, Any]:
+def _attributes(curve: Any, title: str) -> dict[str, Any]:
     """Return what belongs to the whole curve: provenance, inputs, settings, landmarks, outcome."""
     finished = curve.outcome.ok and len(curve) == curve.requested
     found: dict[str, Any] = {
@@ -105,7 +100,7 @@ def _attributes(curve: StribeckCurve | AtlasCurve, title: str) -> dict[str, Any]
     return found
 
 
-def _landmark_attributes(curve: StribeckCurve | AtlasCurve) -> dict[str, Any]:
+def _landmark_attributes(curve: Any) -> dict[str, Any]:
     """Return where minimum and transitions lie, nan where the curve holds no minimum."""
     minimum, marks = curve.minimum, curve.transitions
     return {
