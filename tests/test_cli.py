@@ -685,7 +685,7 @@ def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
 def test_a_second_ctrl_c_throws_no_point_of_a_ball_away(tmp_path):
     ours, theirs = pty.openpty()
     file = tmp_path / "curve.csv"
-    arguments = ("curve", EXAMPLES / "pdms_ball.toml", "--points", "41", "--rtol", "1e-5", "-o", file)
+    arguments = ("curve", EXAMPLES / "pdms_ball.toml", "--points", "41", "--rtol", "1e-3", "-o", file)
     process = start(*arguments, stdout=subprocess.PIPE, stderr=theirs, stdin=subprocess.DEVNULL, text=True)
     os.close(theirs)
     try:

@@ -380,9 +380,9 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
 
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=SLOW), 2])
 def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path, workers):
-    text = RANDOM.format(kind="sobol", points=128)
-    again = kill_and_resume(tmp_path, text, 128, 32, workers)
-    assert again.outcomes == {"CONVERGED": 128}
+    text = RANDOM.format(kind="sobol", points=64)
+    again = kill_and_resume(tmp_path, text, 64, 16, workers)
+    assert again.outcomes == {"CONVERGED": 64}
     right(again)
 
 
@@ -395,10 +395,10 @@ def right(sweep, step=16):
 
 
 def test_a_killed_worker_process_is_replaced(tmp_path):
-    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=128)), tmp_path / "store"
+    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=64)), tmp_path / "store"
     process = start(file, store, "--workers", "2")
     try:
-        until(lambda: rows_in(store) > 20)
+        until(lambda: rows_in(store) > 10)
         before = chunks(store)
         os.kill(workers_of(process.pid)[-1], signal.SIGKILL)
         _, err = finish(process, 120)
@@ -408,7 +408,7 @@ def test_a_killed_worker_process_is_replaced(tmp_path):
     after = chunks(store)
     flags = {path for path in before if path.startswith("done/")}
     assert {path: after[path] for path in flags} == {path: before[path] for path in flags}
-    assert sb.open_sweep(store).outcomes == {"CONVERGED": 128}
+    assert sb.open_sweep(store).outcomes == {"CONVERGED": 64}
 
 
 def test_workers_that_die_again_and_again_end_the_sweep_with_a_sentence(tmp_path):
