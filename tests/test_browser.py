@@ -202,14 +202,14 @@ def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
 def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
     page = open_page()
     now = at_rest(page, lambda: pick(page, "solid", "layer"))
-    assert now.contact.solid.thickness == 0.002
+    assert now.contact.solid.layer_thickness == 0.002
     thickness = page.locator("#detail-solid-layer_thickness")
     thickness.fill("3 s")
     thickness.press("Enter")
     page.wait_for_function("document.querySelector('[data-choice=solid] .sentence').textContent.includes('is a time')")
     assert contact_of(page) == now and thickness.get_attribute("aria-invalid") == "true"
     now = at_rest(page, lambda: (thickness.fill("4 mm"), thickness.press("Enter")))
-    assert now.contact.solid.thickness == 0.004
+    assert now.contact.solid.layer_thickness == 0.004
     now = at_rest(page, lambda: pick(page, "preset", "glycerol-water"))
     assert now.contact.viscosity == sb.fluids.PRESETS["glycerol-water"]().viscosity
     check_numbers(page, now)

@@ -78,7 +78,7 @@ def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_o
     assert set(TABLES_BY_LAW) == set(LAWS)
     for law in sorted(set(LAWS) - set(NEEDED_TABLE)):
         found = sb.load_case(case(law, {"alpha": "1.0"})).contact.law
-        assert found == NAMED_LAWS[law]
+        assert found is None or isinstance(found, NAMED_LAWS[law])
         assert (found is None) == (law == "exponential")
 
 

@@ -462,9 +462,11 @@ def test_a_preset_is_a_viscosity_and_a_fluid():
 
 
 def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
-    shown = choices.choose(choices.choose(START, "solid", "layer"), "solid", "Prony")
+    shown = choices.choose(choices.choose(START, "solid", "layer"), "solid", "prony")
     row = choices.state_of(shown, "solid")
-    assert row["value"] == "Prony" and ["relaxation_times", "relaxation times", "1 ms, 10 ms", ""] in row["details"]
+    assert (
+        row["value"] == "prony" and ["relaxation_times", "relaxation times of the body", "1 ms, 10 ms", ""] in row["details"]
+    )
     typed = choices.with_detail(shown, "solid", "relaxation_times", "2 ms,20 ms")
     assert typed.contact.solid == Prony(["2 ms", "20 ms"], [1.0, 0.5])
     assert choices.with_detail(typed, "solid", "layer_thickness", "1 mm").contact.solid.base == sb.solids.Layer("1 mm")
@@ -498,9 +500,9 @@ def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
     assert [key for key, _ in choices.state_of(ball, "solid")["options"]] == ["half-space", "layer"]
     assert [name for name in choices.CHOICES if choices.state_of(ball, name)["hidden"]] == ["motion"]
     with pytest.raises(sb.InputError, match="soft body must be a half-space or a bonded layer"):
-        choices.choose(ball, "solid", "StandardLinearSolid")
+        choices.choose(ball, "solid", "standard-linear-solid")
     with pytest.raises(sb.InputError, match="soft body"):
-        choices.choose(choices.choose(START, "solid", "Prony"), "geometry", "point")
+        choices.choose(choices.choose(START, "solid", "prony"), "geometry", "point")
 
 
 def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():

@@ -120,7 +120,7 @@ def test_each_curve_keeps_its_own_fluid_where_no_number_of_it_is_free():
 
 def test_what_the_contact_does_not_have_cannot_be_free():
     data = measured(SPEEDS, np.ones(6))
-    with pytest.raises(sb.InputError, match=r"relaxation_time is free, but no curve has one.*thins"):
+    with pytest.raises(sb.InputError, match=r"relaxation_time is free, but no curve has one.*carreau"):
         sb.fit(data, TRUE, free=["relaxation_time"])
     with pytest.raises(sb.InputError, match="layer_thickness = 1, but this contact has none"):
         TRUE.replace(layer_thickness=1)

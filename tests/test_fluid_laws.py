@@ -425,7 +425,7 @@ def test_the_friction_factor_is_the_mean_of_one_over_the_width():
         (lambda: Barus("1 GPa"), "inverse pressure"),
         (lambda: Roelands(1e-8, reference_pressure=0), "reference_pressure"),
         (lambda: Roelands(1e-8).scaled(FilmUnits(1, 1, 1, 1e-5)), "Barus"),
-        (lambda: DowsonHigginson(limit=0.9), "limit"),
+        (lambda: DowsonHigginson(density_limit=0.9), "density_limit"),
         (lambda: PatirCheng(2.0, gamma=2.0), "1/9, 1/6"),
         (lambda: PatirCheng(2.0, substrate_share=2), "substrate_share"),
         (lambda: PatirCheng(2.0, 3.0, friction_factors=True), "isotropic"),

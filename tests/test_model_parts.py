@@ -67,8 +67,8 @@ def towards(model):
     """Yield models on the way: a thin layer by thicker ones."""
     if isinstance(model.solid, Layer):
         for thickness in (1.0, 0.7):
-            if model.solid.thickness < thickness:
-                yield replace(model, solid=replace(model.solid, thickness=thickness))
+            if model.solid.layer_thickness < thickness:
+                yield replace(model, solid=replace(model.solid, layer_thickness=thickness))
     yield model
 
 
@@ -246,7 +246,9 @@ def test_a_pressure_coefficient_out_of_range_is_refused_and_names_who_solves_it(
         check_range(Barus(5.5))
 
 
-@pytest.mark.parametrize("arguments", [{"thickness": 0.0}, {"thickness": np.inf}, {"thickness": 1.0, "poisson_ratio": 0.6}])
+@pytest.mark.parametrize(
+    "arguments", [{"layer_thickness": 0.0}, {"layer_thickness": np.inf}, {"layer_thickness": 1.0, "poisson_ratio": 0.6}]
+)
 def test_a_layer_out_of_range_is_refused(arguments):
     with pytest.raises(sb.InputError, match="must|finite"):
         Layer(**arguments)

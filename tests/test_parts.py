@@ -52,7 +52,9 @@ def test_laws_of_a_contact_are_scaled_from_si_units():
     assert stress == pytest.approx(hertz, rel=1e-12)
     rough = contact(flow_factors="effective-medium").groups.model.film.flow
     assert rough.sigma == pytest.approx(c.roughness / u_hz)
-    assert contact(solid=sb.solids.Layer("2 mm")).groups.model.solid.thickness == pytest.approx(2e-3 / c.hertz.half_width)
+    assert contact(solid=sb.solids.Layer("2 mm")).groups.model.solid.layer_thickness == pytest.approx(
+        2e-3 / c.hertz.half_width
+    )
     assert contact(slide_to_roll=0.5).groups.model.film.slide == 0.25
 
 

@@ -141,7 +141,7 @@ def test_far_panels_on_a_layer_act_on_the_contact_as_finer_ones():
 def test_at_rest_a_thin_layer_bears_the_load_as_springs_do():
     # p = (b**2 - r**2)/2 k with b**4 = 8 k/3.
     layer = Layer(0.3, 0.0)
-    springs = 2 / np.pi * layer.thickness
+    springs = 2 / np.pi * layer.layer_thickness
     found = with_part("solid", layer, Groups(0.0, 1e-3, 1e-5, geometry="point"), 1e-3).central_pressure
     assert found == pytest.approx(np.sqrt(8 * springs / 3) / (2 * springs), rel=5e-3)
 

@@ -63,7 +63,7 @@ def test_the_optional_tables_of_a_new_case_are_read_once_uncommented(tmp_path):
     path = tmp_path / "parts.toml"
     path.write_text(text[:i] + re.sub("^# ", "", text[i:end], flags=re.M) + text[end:])
     contact = sb.load_case(path).contact
-    assert str(contact.cavitation) == "exit" and contact.solid.thickness > 0
+    assert str(contact.cavitation) == "exit" and contact.solid.layer_thickness > 0
 
 
 @pytest.mark.quick

@@ -166,9 +166,9 @@ def test_solids_of_a_contact_are_scaled_from_si_units():
         solid=sb.solids.TwoBodies(sb.solids.StandardLinearSolid("10 ms", 2.0, sb.solids.Layer("2 mm"))),
     )
     a, solid = contact.hertz.half_width, contact.groups.model.solid.first
-    assert solid.time == pytest.approx(0.75 * 0.1 * 0.01 / a)  # the substrate moves with u1 = (1 + s) U/2
-    assert solid.base.thickness == pytest.approx(2e-3 / a)
-    assert contact.replace(speed=0.0).groups.model.solid.first == Layer(solid.base.thickness)
+    assert solid.retardation_time == pytest.approx(0.75 * 0.1 * 0.01 / a)  # the substrate moves with u1 = (1 + s) U/2
+    assert solid.base.layer_thickness == pytest.approx(2e-3 / a)
+    assert contact.replace(speed=0.0).groups.model.solid.first == Layer(solid.base.layer_thickness)
 
 
 @pytest.mark.quick
@@ -213,7 +213,7 @@ def test_rows_of_states_are_deflected_each_by_its_own_solid(cavitation):
     [
         (lambda: StandardLinearSolid(0, 2.0), "time"),
         (lambda: StandardLinearSolid("10 ms", 1.0), "ratio"),
-        (lambda: Prony("1 s", [1.0]), "lists"),
+        (lambda: Prony("1 s", [1.0]), "must be a list"),
         (lambda: Prony([1.0], [1.0, 2.0]), "as many"),
         (lambda: Prony([1.0, 1.0], [1.0, 2.0]), "differ"),
         (lambda: TwoBodies(first_share=1.2), "first_share"),

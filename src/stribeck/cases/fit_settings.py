@@ -12,11 +12,11 @@ from typing import Any, Literal, Self
 
 from stribeck.cases.model_parts import take_parts
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, InputTable, quantity
-from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["FREE_INPUTS", "FitSettings", "Prior", "check_fit_table", "free_names"]

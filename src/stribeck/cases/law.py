@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.exponential import SpectralExponential
-from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
-from stribeck.contact_laws.scaled import NAMED_LAWS
+from stribeck.contact_laws.scaled import NAMED_LAWS, named_law
 from stribeck.contact_laws.spectrum import Spectrum
 from stribeck.contact_laws.table import TableLaw
 from stribeck.files.text_table import read_two_columns
+from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
@@ -33,9 +33,10 @@ __all__ = [
     "self_contained",
 ]
 
-Law = Literal["exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"]
+Law = str
+"""Name of a contact law in a file."""
 
-LAWS: tuple[Law, ...] = get_args(Law)
+LAWS: tuple[Law, ...] = tuple(dict.fromkeys(("exponential", "persson", *NAMED_LAWS, "table")))
 
 SURFACE_KEYS = (
     "h_rms",
@@ -56,7 +57,10 @@ SURFACE_KEYS = (
 # The key that names a file in a table, and the two lists of numbers that may stand in its place.
 FILE_KEYS = {"surface": ("spectrum", ("wavenumber", "density")), "table": ("file", ("separation", "pressure"))}
 
-ASPERITY_KEYS = ("density", "radius", "deviation")
+COEFFICIENT_KEYS = ("density", "radius", "deviation")  # Of a surface from which a law makes alpha, beta and roughness
+
+# Keys of the table [asperities]: the surface of a law of asperities, or the numbers of another law.
+ASPERITY_KEYS = (*COEFFICIENT_KEYS, *dict.fromkeys(key for law in NAMED_LAWS.values() for key in numbers_of(law)))
 
 TABLE_KEYS = ("file", "separation", "pressure")
 
@@ -64,13 +68,11 @@ INPUTS_OF_SURFACES = ("alpha", "beta", "roughness")  # Inputs of a contact that 
 
 NEEDED_TABLE: dict[Law, str] = {"persson": "surface", "table": "table"}
 TABLES_BY_LAW: dict[Law, tuple[str, ...]] = {
+    **dict.fromkeys(NAMED_LAWS, ("asperities",)),
     "exponential": ("surface",),
     "persson": ("surface",),
-    "greenwood-williamson": ("asperities",),
-    "greenwood-tripp": ("asperities",),
     "table": ("table",),
 }
-
 
 # The table that each law may come from, where there is one.
 FIRST_TABLE_BY_LAW: dict[Law, str] = {law: names[0] for law, names in TABLES_BY_LAW.items() if names}
@@ -100,8 +102,13 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     if law == "table":
         return LawOfFile(_table(given["table"], contact, folder), {})
     if not given:
-        return LawOfFile(NAMED_LAWS[law], {})
+        return LawOfFile(named_law(law), {})
     (name,) = given
+    if name == "asperities" and not hasattr(NAMED_LAWS[law], "coefficients"):  # numbers of the law, not of the surface
+        try:
+            return LawOfFile(named_law(law, **given[name]), {})
+        except InputError as problem:
+            raise InputError(f"[{name}] {problem}") from None
     shape_only = given[name].pop("shape_only", False)
     if not isinstance(shape_only, bool):
         raise InputError(f"[{name}] shape_only = {show(shape_only)} must be true or false, without quotes.")
@@ -200,11 +207,10 @@ def _lists(table: str, entries: dict[str, Any]) -> list[Array]:
 
 def _of_asperities(law: Law, entries: dict[str, Any]) -> LawOfFile:
     examples = {"density": "1e10 m^-2", "radius": "10 um", "deviation": "1 um"}
-    for name in ASPERITY_KEYS:
+    for name in COEFFICIENT_KEYS:
         if name not in entries:
             raise InputError(f"{name} is missing; add {name} = {show(examples[name])}.")
-    shape = GreenwoodWilliamson() if law == "greenwood-williamson" else GreenwoodTripp()
-    return LawOfFile(shape, shape.coefficients(**entries))
+    return LawOfFile(named_law(law), NAMED_LAWS[law].coefficients(**entries))
 
 
 def _table(entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> TableLaw:

@@ -6,80 +6,47 @@ Each becomes one or two arguments of the contact; what a number may be is checke
 from __future__ import annotations
 
 import difflib
+import inspect
+import json
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
+from stribeck.contacts.part_inputs import KINDS, PART_LETTERS, Kind
 from stribeck.fluids.description import Fluid
-from stribeck.fluids.effective_medium import EffectiveMedium
-from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.presets import PRESETS, Liquid
-from stribeck.fluids.rheology.eyring import Eyring
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
-from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
-from stribeck.solids.layer import Layer
-from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
 __all__ = ["KEYS", "in_file", "preset_facts", "preset_source_text", "take_parts"]
 
 
-class Part(NamedTuple):
-    """A law that a case may name."""
-
-    law: Callable[..., Any] | None = None  # `law(*needed, **optional)`; None for the one that does nothing
-    needed: dict[str, str] = {}  # Key that it must have -> an example
-    optional: tuple[str, ...] = ()  # Keys that it may have
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """All keys."""
-        return (*self.needed, *self.optional)
-
-
-RELAXATION = {"relaxation_time": '"1 ms"', "exponent": "0.5"}
-PRESSURE = {"pressure_viscosity": '"15 1/GPa"'}
-
-RHEOLOGIES = {
-    "newtonian": Part(),
-    "carreau": Part(Carreau, RELAXATION, ("infinite_viscosity",)),
-    "cross": Part(Cross, RELAXATION, ("infinite_viscosity",)),
-    "eyring": Part(Eyring, {"stress": '"5 MPa"'}),
-    "power-law": Part(PowerLaw, RELAXATION),
-}
-VISCOSITY_LAWS = {
-    "constant": Part(),
-    "barus": Part(Barus, PRESSURE),
-    "roelands": Part(Roelands, PRESSURE, ("reference_pressure", "reference_viscosity")),
-}
-DENSITIES = {"incompressible": Part(), "dowson-higginson": Part(DowsonHigginson)}
-# Key of ``[fluid]`` -> the laws that the key names; the first law does nothing.
-FLUID_LAWS = {"model": RHEOLOGIES, "viscosity_law": VISCOSITY_LAWS, "density": DENSITIES}
-
-# What ``[flow_factors]`` may name.
-FLOW_FACTORS: dict[str, Callable[..., Any] | None] = {
-    "none": None,
-    "patir-cheng": PatirCheng,
-    "effective-medium": EffectiveMedium,
-}
+# Argument of the fluid -> the laws that a key of ``[fluid]`` names.
+FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
 
 CONDITIONS = ("weight_fraction", "temperature", "grade")
 KEYS_OF_NAME = ("name", "type", "kind", "law", "fluid", "liquid")  # Keys that people write for the one that says which
 
+
+def keywords_of(law: Any) -> tuple[str, ...]:
+    """Return the arguments of a law in the table that names it; none of what does nothing."""
+    return () if law is None else tuple(inspect.signature(law).parameters)
+
+
 # Table -> its keys.
 KEYS = {
     "fluid": (
-        *FLUID_LAWS,
-        *dict.fromkeys(key for laws in FLUID_LAWS.values() for part in laws.values() for key in part.keys),
+        *(kind.key for kind in FLUID_KINDS.values()),
+        *dict.fromkeys(key for kind in FLUID_KINDS.values() for law in kind.laws.values() for key in numbers_of(law)),
         "preset",
         *CONDITIONS,
     ),
-    "cavitation": ("model", "pressure"),
+    "cavitation": ("model", "cavity_pressure"),
     "motion": ("slide_to_roll",),
-    "flow_factors": ("model", "gamma", "substrate_share", "friction_factors", "argument"),
-    "solid": ("layer_thickness", "poisson_ratio", "retardation_time", "modulus_ratio", "relaxation_times", "moduli"),
+    "flow_factors": ("model", *dict.fromkeys(key for law in KINDS["flow_factors"].laws.values() for key in keywords_of(law))),
+    "solid": ("model", *dict.fromkeys(key for law in KINDS["solid"].laws.values() for key in numbers_of(law))),
 }
 
 
@@ -87,26 +54,18 @@ KEYS = {
 CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
 
 
-# Argument in Python, with which the sentence of a problem may begin -> table and key of a case.
-ARGUMENTS = {
-    "cavitation": ("cavitation", "model"),
-    "cavity_pressure": ("cavitation", "pressure"),
-    "eyring_stress": ("fluid", "stress"),
-    "infinite_viscosity": ("fluid", "infinite_viscosity"),
-    "pressure_coefficient": ("fluid", "pressure_viscosity"),
-    "ratio": ("solid", "modulus_ratio"),
-    "reference_viscosity": ("fluid", "reference_viscosity"),
-    "thickness": ("solid", "layer_thickness"),
-    "time": ("solid", "retardation_time"),
-    "times": ("solid", "relaxation_times"),
-}
+# Other keys of a table, as they stood in former files -> the key.
+LETTERS = {"pressure": "cavity_pressure", **PART_LETTERS}
+
+# Argument with which the sentence of a problem may begin -> its table of a case, where no table is being read.
+TABLE_OF = {key: table for table, keys in KEYS.items() for key in keys if key != "model"} | {"cavitation": "cavitation"}
 
 
 def in_file(problem: str, table: str) -> str:
     """Return a sentence on a problem with its place in a case: ``table``, or that of the argument it begins with."""
     name, space, rest = problem.partition(" ")
-    place, key = ARGUMENTS.get(name, (table, name))
-    return f"[{place}] {key}{space}{rest}"
+    key = "model" if name == "cavitation" else name
+    return f"[{TABLE_OF.get(name, table)}] {key}{space}{rest}"
 
 
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
@@ -119,19 +78,28 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
     for name, read in READERS.items():
         if name not in tables:
             continue
-        table = tables[name]
+        table, letters = tables[name], dict[str, str]()
         try:
             if not isinstance(table, dict):
                 raise InputError(f"{name} = {show(table)} must be a table, [{name}].")
+            letters = {LETTERS[key]: key for key in table if LETTERS.get(key) in KEYS[name]}
+            table = {LETTERS[key] if key in letters.values() else key: value for key, value in table.items()}
             unknown = [f"[{name}] {_unknown(key, table[key], KEYS[name])}" for key in table if key not in KEYS[name]]
             if unknown:
                 problems += unknown
                 continue
             parts |= read(table, rest.get("contact"))
         except InputError as problem:
-            problems += [in_file(line, name) for line in str(problem).split("\n")]
+            problems += [_as_written(in_file(line, name), letters) for line in str(problem).split("\n")]
     problems += _slide_to_roll(rest.get("contact"), parts, geometry)
     return rest, parts, problems
+
+
+def _as_written(problem: str, letters: dict[str, str]) -> str:
+    """Return a sentence with the keys that a table has for those that it stands for."""
+    for key, written in letters.items():
+        problem = problem.replace(f"] {key} ", f"] {written} ")
+    return problem
 
 
 def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[str]:
@@ -148,8 +116,7 @@ def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[s
 
 
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
-    named = ARGUMENTS.get(key, ("", ""))[1]  # as in Python
-    near = [named] if named in known else difflib.get_close_matches(key, known, n=1, cutoff=0.8)
+    near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
     meant = near or [each for each in ("preset", "model") if key in KEYS_OF_NAME and each in known]
     advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
     if key in CONTACT_KEYS:
@@ -175,25 +142,23 @@ def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if "preset" in table:
         return _preset(table, contact)
     _refuse_other_keys(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
-    given = {"viscosity_law": "barus"} | table if PRESSURE.keys() & table.keys() else table
-    return {"fluid": Fluid(*(_law(given, key) for key in FLUID_LAWS))}
+    given = {"viscosity_law": "barus"} | table if "pressure_coefficient" in table else table
+    return {"fluid": Fluid(**{name: _law(given, kind) for name, kind in FLUID_KINDS.items()})}
 
 
-def _law(table: dict[str, Any], kind: str) -> Any:
+def _law(table: dict[str, Any], kind: Kind) -> Any:
     """Return the law that a table names, with its numbers; None for the one that does nothing."""
-    laws = FLUID_LAWS[kind]
-    name = _one_of(table, kind, tuple(laws), next(iter(laws)))
-    part = laws[name]
-    for key in dict.fromkeys(key for other in laws.values() for key in other.keys):
-        if key in table and key not in part.keys:
-            instead = f"it has {', '.join(part.keys)}" if part.keys else "remove it"
-            raise InputError(f"{key} = {show(table[key])} is given, but {kind} = {name!r} has no such key; {instead}.")
-    for key, example in part.needed.items():
-        if key not in table:
-            raise InputError(f"{key} is missing, which {kind} = {name!r} needs; add {key} = {example}.")
-    if part.law is None:
-        return None
-    return part.law(*(table[key] for key in part.needed), **{key: table[key] for key in part.optional if key in table})
+    laws, key = kind.laws, kind.key
+    name = _one_of(table, key, tuple(laws), kind.nothing)
+    numbers = numbers_of(laws[name])
+    for other in dict.fromkeys(each for law in laws.values() for each in numbers_of(law)):
+        if other in table and other not in numbers:
+            instead = f"it has {', '.join(numbers)}" if numbers else "remove it"
+            raise InputError(f"{other} = {show(table[other])} is given, but {key} = {name!r} has no such key; {instead}.")
+    for row in numbers.values():
+        if row.name not in table and row.default is None:
+            raise InputError(f"{row.name} is missing, which {key} = {name!r} needs; add {row.name} = {row.example}.")
+    return None if laws[name] is None else laws[name](**{each: table[each] for each in numbers if each in table})
 
 
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
@@ -237,8 +202,7 @@ def preset_source_text(tables: dict[str, Any], viscosity: float) -> tuple[str, .
 def _cavitation(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if "model" not in table:
         raise InputError('model is missing; add model = "exit", "reform" or "none".')
-    found = {"cavitation": table["model"]}
-    return found | ({"cavity_pressure": table["pressure"]} if "pressure" in table else {})
+    return {"cavitation" if key == "model" else key: value for key, value in table.items()}
 
 
 def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
@@ -248,50 +212,50 @@ def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
 
 
 def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    laws = KINDS["flow_factors"].laws
     if "model" not in table:
-        raise InputError('model is missing; add model = "patir-cheng", "effective-medium" or "none".')
-    model = _one_of(table, "model", tuple(FLOW_FACTORS), "")
-    made, rest = FLOW_FACTORS[model], {key: value for key, value in table.items() if key != "model"}
-    if made is not PatirCheng:
-        _refuse_other_keys(rest, (), f"model = {model!r}")
+        raise InputError(f"model is missing; add model = {' or '.join(map(json.dumps, laws))}.")
+    name = _one_of(table, "model", tuple(laws), "")
+    made, rest = laws[name], {key: value for key, value in table.items() if key != "model"}
+    _refuse_other_keys(rest, keywords_of(made), f"model = {name!r}")
     return {"flow_factors": None if made is None else made(**rest)}
 
 
-# Viscoelastic bodies, and their keys with examples.
-MEMORIES: tuple[tuple[type[Any], dict[str, str]], ...] = (
-    (StandardLinearSolid, {"retardation_time": '"10 ms"', "modulus_ratio": "3.0"}),
-    (Prony, {"relaxation_times": '["1 ms", "10 ms"]', "moduli": "[1.0, 0.5]"}),
-)
-
-
 def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    base = _layer(table)
-    given = [(kind, keys) for kind, keys in MEMORIES if keys.keys() & table.keys()]
+    laws = {name: law for name, law in KINDS["solid"].laws.items() if law is not None}
+    numbers = {name: {key: row for key, row in numbers_of(law).items()} for name, law in laws.items()}
+    own = {name: [key for key, row in rows.items() if row.default is None] for name, rows in numbers.items()}
+    given = [name for name, keys in own.items() if set(keys) & table.keys()]
+    if "model" in table:
+        given = list(dict.fromkeys([*given, _one_of(table, "model", tuple(KINDS["solid"].laws), "")]))
+        given = [name for name in given if name in laws]
     if not given:
-        if base is None:
-            raise InputError(
-                'layer_thickness is missing; add it as "2 mm", or retardation_time and modulus_ratio of a viscoelastic body, '
-                "or leave the table out for a half-space."
-            )
-        return {"solid": base}
-    if len(given) > 1:
-        raise InputError("retardation_time and relaxation_times are two descriptions of the same; give one of them.")
-    [(kind, keys)] = given
-    there = next(key for key in keys if key in table)
-    for key, example in keys.items():
-        if key not in table:
-            raise InputError(f"{key} is missing beside {there}; add {key} = {example}.")
-    return {"solid": kind(*(table[key] for key in keys), base)}
-
-
-def _layer(table: dict[str, Any]) -> Layer | None:
-    """Return the layer that a table has; None where the body is a half-space."""
-    if "layer_thickness" not in table:
-        if "poisson_ratio" in table:
-            raise InputError('layer_thickness is missing beside poisson_ratio; add it as "2 mm".')
-        return None
-    ratio = {"poisson_ratio": table["poisson_ratio"]} if "poisson_ratio" in table else {}
-    return Layer(table["layer_thickness"], **ratio)
+        given = [name for name, rows in numbers.items() if rows.keys() & table.keys()][:1]
+    if not given:
+        first, *others = own.values()
+        raise InputError(
+            f"{first[0]} is missing; add {first[0]} = {numbers[next(iter(own))][first[0]].example}, or "
+            f"{', or '.join(' and '.join(keys) for keys in others)} of a viscoelastic body, or leave the table out for a "
+            "half-space."
+        )
+    bases = [name for name in given if not hasattr(laws[name], "base")]
+    memories = [name for name in given if hasattr(laws[name], "base")]
+    for several in (bases, memories):
+        if len(several) > 1:
+            keys = " and ".join(own[name][0] for name in several)
+            raise InputError(f"{keys} are two descriptions of the same; give one of them.")
+    for name in given:
+        for key in own[name]:
+            if key not in table:
+                there = next((each for each in numbers[name] if each in table), f"model = {name!r}")
+                raise InputError(f"{key} is missing beside {there}; add {key} = {numbers[name][key].example}.")
+    known = {key for name in given for key in numbers[name]}
+    _refuse_other_keys({key: table[key] for key in table if key != "model"}, tuple(known), f"model = {given[0]!r}")
+    body = None
+    for name in (*bases, *memories):
+        values = {key: table[key] for key in numbers[name] if key in table}
+        body = laws[name](**values) if body is None else laws[name](**values, base=body)
+    return {"solid": body}
 
 
 # Table -> what makes arguments of a contact of it.

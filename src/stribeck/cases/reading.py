@@ -14,15 +14,16 @@ from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import INPUTS_OF_SURFACES, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, preset_source_text, take_parts
 from stribeck.cases.tables import error_sentence, example_of, file_model
+from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.part_inputs import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.contact_values import check_alternatives
 from stribeck.quantities.conversions import read_given
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
@@ -147,13 +148,13 @@ def _split_part_errors(table: dict[str, Any], problems: list[str]) -> dict[str, 
     errors: dict[str, float] = {}
     for name, row in PART_INPUTS.items():
         numbers = table.get(row.table)
-        if isinstance(numbers, dict) and has_error(numbers.get(row.key)):
+        if isinstance(numbers, dict) and has_error(numbers.get(name)):
             try:
-                value, error = split_error(row.key, numbers[row.key], row.dimension, row.typical)
+                value, error = split_error(name, numbers[name], row.dimension, row.typical)
             except InputError as problem:
                 problems.append(f"[{row.table}] {problem}")
                 value, error = row.typical if DIMENSIONS[row.dimension].unit else float(row.typical), None
-            table[row.table] = numbers | {row.key: value}
+            table[row.table] = numbers | {name: value}
             errors |= {} if error is None else {name: error}
     return errors
 
@@ -215,6 +216,7 @@ def _missing_from_surface(table: dict[str, Any]) -> list[str]:
         return []
     surface = table.get("surface")
     shape_only = isinstance(surface, dict) and surface.get("shape_only") is True
-    if not shape_only and ("surface" in table or "asperities" in table or contact.get("law") == "persson"):
+    of_asperities = "asperities" in table and hasattr(NAMED_LAWS.get(str(contact.get("law"))), "coefficients")
+    if not shape_only and ("surface" in table or of_asperities or contact.get("law") == "persson"):
         return []
     return [f"[contact] {key} is missing; {example_of(key)}." for key in INPUTS_OF_SURFACES if key not in contact]

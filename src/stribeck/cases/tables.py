@@ -2,10 +2,10 @@
 
 import functools
 from types import SimpleNamespace
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
-from stribeck.cases.law import ASPERITY_KEYS, INPUTS_OF_SURFACES, LAWS, SURFACE_KEYS, TABLE_KEYS, Law
+from stribeck.cases.law import ASPERITY_KEYS, INPUTS_OF_SURFACES, LAWS, SURFACE_KEYS, TABLE_KEYS
 from stribeck.contacts.friction import Definition
 from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.facts import FACTS
@@ -37,9 +37,10 @@ def shared_types() -> SimpleNamespace:
     # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
     tolerance = Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes")
     text = Annotated[str, Field(strict=True, description="text in quotes")]
+    named: Any = Literal[LAWS]
     return SimpleNamespace(
         Table=Table,
-        law=(Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law),
+        law=(Annotated[named, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law),
         rtol=(Annotated[float, tolerance], Case.rtol),
         ends={
             "table": optional_table("table", TABLE_KEYS),

@@ -205,7 +205,7 @@ LAYER_ADVICE = " Give layer_thickness in [solid]: the layer is then solved."
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
     thickness = subject.fact("layer_thickness")
-    modelled = getattr(getattr(subject.contact, "solid", None), "thickness", None) if subject.models("solid") else None
+    modelled = getattr(getattr(subject.contact, "solid", None), "layer_thickness", None) if subject.models("solid") else None
     thickness = thickness if modelled is None else modelled
     if thickness is None or thickness == 0:
         return None

@@ -24,6 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.quantities.units import InputError, show, to_si
 
 MIN_KNOT = -12.0  # Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*.
@@ -84,7 +85,7 @@ def log_moment_slope(order: float, separation: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class _GaussianHeights:
+class _GaussianHeights(AsperityLaw):
     """What the two laws share."""
 
     order: ClassVar[float]

@@ -12,6 +12,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.exponential import SpectralExponential
+from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
 
 
@@ -28,11 +29,13 @@ class AsperityLaw(Protocol):
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Parameters that distinguish this law from others of its name, for outputs."""
+        """Parameters that distinguish this law from others of its name, for outputs: its numbers."""
+        return {name: getattr(self, name) for name in numbers_of(type(self))}
 
     @property
     def lowest(self) -> float:
         """Separation s below which the law has no value: 0 where it diverges towards full contact, else minus infinity."""
+        return -math.inf
 
     def log_pressure(self, separation: Array) -> Array:
         """Return ln(Phi) at the separation s, finite where Phi itself underflows."""
@@ -42,6 +45,7 @@ class AsperityLaw(Protocol):
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return notes on a state with this minimum separation, one sentence each."""
+        return ()
 
 
 @runtime_checkable

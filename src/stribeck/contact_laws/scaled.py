@@ -13,16 +13,13 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw, as_asperity_law
+from stribeck.quantities.registry import laws_of
+from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
 
-# Laws without parameters beside alpha, beta and h_rms; None is the exponential law.
-NAMED_LAWS: dict[str, AsperityLaw | None] = {
-    "exponential": None,
-    "greenwood-williamson": GreenwoodWilliamson(),
-    "greenwood-tripp": GreenwoodTripp(),
-}
+# Laws by their names; None is the exponential law.
+NAMED_LAWS: dict[str, Any] = {"exponential": None, **laws_of("stribeck.contact_laws", AsperityLaw)}
 
 
 @dataclass(frozen=True)
@@ -146,9 +143,16 @@ def law_of(law: Any) -> AsperityLaw | None:
     return named_law(law) if isinstance(law, str) else as_asperity_law(law)
 
 
-def named_law(name: str) -> AsperityLaw | None:
-    """Return the law of a name; refuse unknown names, and laws that need more than a name."""
+def named_law(name: str, **numbers: str | float) -> AsperityLaw | None:
+    """Return the law of a name and of its numbers; refuse unknown names, and laws that need more than that."""
     if name not in NAMED_LAWS:
         known = ", ".join(map(repr, NAMED_LAWS))
         raise InputError(f"law = {show(name)}; names are {known}. A law of a surface or table needs a case file or an object.")
-    return NAMED_LAWS[name]
+    law, rows = NAMED_LAWS[name], numbers_of(NAMED_LAWS[name])
+    for key in numbers:
+        if key not in rows:
+            raise InputError(f"{key} = {show(numbers[key])} is given, but law = {name!r} has no such number; remove it.")
+    for row in rows.values():
+        if row.name not in numbers and row.default is None:
+            raise InputError(f"{row.name} is missing, which law = {name!r} needs; add {row.name} = {row.example}.")
+    return None if law is None else as_asperity_law(law(**numbers))

@@ -6,6 +6,7 @@ A geometry adds its table of inputs, its groups and its Hertz scales.
 from __future__ import annotations
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -18,6 +19,7 @@ from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.part_inputs import LAW_NUMBERS, PART_INPUTS, PART_LETTERS, part_value, with_part_value
 from stribeck.contacts.parts import BASE_PARTS, PART_KEYWORDS, PURE_SLIDING, Parts
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid
@@ -27,7 +29,6 @@ from stribeck.quantities.conversions import convert_inputs
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import InputTable, si_text
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, part_value, with_part_value
 from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.solid import Solid
@@ -35,15 +36,8 @@ from stribeck.solids.solid import Solid
 __all__ = ["Contact", "HertzScales", "in_words", "input_texts", "model_words", "part_attributes"]
 
 
-# Dimensions of the numbers of fluids and solids, by the last word of their names.
-UNITS_BY_LAST_WORD = {
-    "time": "time",
-    "pressure": "pressure",
-    "stress": "pressure",
-    "viscosity": "viscosity",
-    "thickness": "length",
-    "coefficient": "pressure coefficient",
-}
+# Dimensions of what outputs say of the parts of a contact beside the numbers of laws.
+PART_DIMENSIONS = {"cavity_pressure": "pressure"}
 
 
 @dataclass(frozen=True)
@@ -333,7 +327,8 @@ def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
     """Return names and values in words, in SI units with these."""
     said = []
     for name, value in parameters.items():
-        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
+        row = LAW_NUMBERS.get(re.sub("^(first|second)_", "", name))
+        kind = (PART_DIMENSIONS.get(name) if row is None else row.dimension) if si else None
         text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
         said.append(f"{name.replace('_', ' ')} {text}")
     return ", ".join(said)

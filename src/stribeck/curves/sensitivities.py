@@ -14,12 +14,12 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
 from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.part_inputs import PART_INPUTS, part_names
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import LINE
-from stribeck.quantities.part_inputs import PART_INPUTS, part_names
 from stribeck.quantities.units import InputError
 from stribeck.solver.path.line_path import with_ending_of
 from stribeck.solver.solution import Solution

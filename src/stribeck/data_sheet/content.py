@@ -17,12 +17,12 @@ from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import model_words
+from stribeck.contacts.part_inputs import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margin_limits import scanned_rtol
 from stribeck.regimes.margins import regime_margins

@@ -6,16 +6,17 @@ import math
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
-from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
+from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contacts.geometries import check_geometry
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.part_inputs import KINDS
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import DIMENSIONS
 
 __all__ = ["new_case"]
@@ -30,9 +31,7 @@ MODEL_TEXT = """
 # [flow_factors]
 # model = {flow_factors}
 # [solid]
-# layer_thickness = "2 mm"
-# poisson_ratio = 0.49
-# # A viscoelastic body has {memories}.
+{bodies}
 """
 
 OPTIONS_TEXT = """
@@ -144,21 +143,27 @@ def _law(name: Law) -> str:
 
 
 def _parts() -> str:
-    """Return the optional tables, with all laws that the readers of cases know."""
-    laws = []
-    for key, parts in FLUID_LAWS.items():
-        first, *others = (name for name, part in parts.items() if part.law)
+    """Return the optional tables, with all laws that there are."""
+    lines = []
+    for kind in FLUID_KINDS.values():
+        first, *others = (name for name, law in kind.laws.items() if law is not None)
         for name in (first, *others):
-            needed = "; ".join(f"{each} = {example}" for each, example in parts[name].needed.items())
+            needed = _needed(kind.laws[name])
             with_them = f"   # with {needed}" if needed else ""
-            laws.append(f'# {"" if name == first else "# or "}{key} = "{name}"{with_them}')
-    factors = [f'"{name}"' for name, made in FLOW_FACTORS.items() if made]
+            lines.append(f'# {"" if name == first else "# or "}{kind.key} = "{name}"{with_them}')
+    factors = [f'"{name}"' for name, law in KINDS["flow_factors"].laws.items() if law is not None]
+    bodies = [law for law in KINDS["solid"].laws.values() if law is not None]
     return MODEL_TEXT.format(
         presets=", ".join(name for name in PRESETS if name != "water"),
-        laws="\n".join(laws),
+        laws="\n".join(lines),
         flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",
-        memories=", or ".join("; ".join(f"{key} = {example}" for key, example in keys.items()) for _, keys in MEMORIES),
+        bodies="\n".join(f"# # {getattr(law, 'label', law.name)}: {_needed(law)}" for law in bodies),
     )
+
+
+def _needed(law: type) -> str:
+    """Return the numbers that a law needs, with examples."""
+    return "; ".join(f"{row.name} = {row.example}" for row in numbers_of(law).values() if row.default is None)
 
 
 def _about(row: Input) -> list[str]:

@@ -18,13 +18,13 @@ from stribeck.cases.law import INPUTS_OF_SURFACES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import ALTERNATIVES
-from stribeck.quantities.part_inputs import PART_INPUTS, all_input_rows
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError
 
@@ -181,7 +181,7 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
             lines.append(f"# before the fit: {line.strip()}")
             continue
         key = re.match(r"\s*(\w+)\s*=", line)
-        new = edits.at.get((table, key[1])) if key else None
+        new = edits.at.get((table, PART_LETTERS.get(key[1], key[1]))) if key else None
         if new is not None:
             lines += [f"# before the fit: {line.strip()}", *new]
         elif key and key[1] in ("file", "spectrum") and table in ("table", "surface"):
@@ -233,7 +233,7 @@ def _entry(key: str, value: float, dimension: str) -> str:
 def _place(name: str) -> tuple[str, str]:
     """Return the table and the key under which a case file has an input."""
     row = PART_INPUTS.get(name)
-    return ("contact", name) if row is None else (row.table, row.key)
+    return ("contact", name) if row is None else (row.table, row.name)
 
 
 def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:

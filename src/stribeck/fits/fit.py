@@ -22,6 +22,7 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.identifiability import undetermined
@@ -37,7 +38,6 @@ from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import PartsOf
 from stribeck.fits.states.sources import in_atlas, ways_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["fit"]

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.part_inputs import PART_INPUTS, all_input_rows
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.part_inputs import PART_INPUTS, all_input_rows
 from stribeck.quantities.units import InputError
 
 __all__ = ["FreeInput", "free_inputs"]

@@ -13,6 +13,7 @@ from stribeck.cases.fit_settings import FREE_INPUTS
 from stribeck.checks.check import Checks
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.fits.identifiability import Unidentifiable
@@ -20,7 +21,6 @@ from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.fits.states.interpolation import Between
 from stribeck.quantities.inputs import LINE, InputTable
-from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import DIMENSIONS
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 import scipy
@@ -76,17 +76,15 @@ class EffectiveMedium(FlowFactors):
     that between smooth surfaces.  Sliding carries nothing, and the drag has no factors.
     """
 
+    name: ClassVar[str] = "effective-medium"
+    label: ClassVar[str] = "effective medium"
+
     alpha: float | None
     sigma: float | None
 
     def __init__(self, alpha: float | None = None) -> None:
         object.__setattr__(self, "alpha", check_alpha(alpha))
         object.__setattr__(self, "sigma", None)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "effective-medium"
 
     @property
     def parameters(self) -> dict[str, float | str]:

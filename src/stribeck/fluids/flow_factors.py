@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal, Self, TypeVar
+from typing import ClassVar, Literal, Self, TypeVar
 
 import numpy as np
 import scipy
@@ -108,6 +108,9 @@ class PatirCheng(FlowFactors):
     Source: [Patir & Cheng 1978] Eq. (15), [Patir & Cheng 1979].
     """
 
+    name: ClassVar[str] = "patir-cheng"
+    label: ClassVar[str] = "Patir and Cheng"
+
     alpha: float | None
     gamma: float
     substrate_share: float
@@ -139,11 +142,6 @@ class PatirCheng(FlowFactors):
         values = {"alpha": check_alpha(alpha), "gamma": known, "substrate_share": share, "friction_factors": friction_factors}
         for name, value in {**values, "argument": argument, "sigma": None}.items():
             object.__setattr__(self, name, value)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "patir-cheng"
 
     @property
     def parameters(self) -> dict[str, float | str]:

@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol, Self, runtime_checkable
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.quantities.schema import numbers_of
 
 
 class FilmUnits(NamedTuple):
@@ -39,13 +40,13 @@ class Law(Protocol):
 
     @property
     def name(self) -> str:
-        """Name that outputs print; empty for what does nothing."""
+        """Name that outputs print and case files have; empty for what does nothing."""
         return ""
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """What distinguishes this law from others of its name, for outputs."""
-        return {}
+        """What distinguishes this law from others of its name, for outputs: its numbers."""
+        return {name: getattr(self, name) for name in numbers_of(type(self))}
 
     @abstractmethod
     def scaled(self, units: FilmUnits) -> Self:

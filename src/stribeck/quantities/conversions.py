@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import LINE, InputTable
+from stribeck.quantities.schema import Input
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError, show, to_si
 

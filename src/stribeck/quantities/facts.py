@@ -25,7 +25,7 @@ class Fact:
     dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
     typical: str  # A value, and of what it is
     source: str  # A value, and of what it is
-    models: tuple[str, ...] = ()  # Where a contact may hold it already, such as `"solid.thickness"`
+    models: tuple[str, ...] = ()  # Where a contact may hold it already, such as `"solid.layer_thickness"`
 
 
 # The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
@@ -38,7 +38,7 @@ ROWS = (
         "mineral oil 15 to 25, water below 1",
         ("fluid.viscosity.pressure_coefficient",),
     ),
-    Fact("layer_thickness", "thickness of the soft layer", "length", "2 mm", "rubber of a seal", ("solid.thickness",)),
+    Fact("layer_thickness", "thickness of the soft layer", "length", "2 mm", "rubber of a seal", ("solid.layer_thickness",)),
     Fact("loss_tangent", "loss tangent at the frequency U/a", "number", "0.1", "filled rubber", ("solid.loss_tangent",)),
     Fact("supply_film", "film that arrives at the inlet", "length", "10 um", "a wiped rod"),
     Fact("thinning_rate", "shear rate at which the fluid begins to thin", "rate", "1e6 1/s", "multigrade oil"),

@@ -1,40 +1,16 @@
-"""The inputs of contacts, a row each: name, label, symbol, unit, bounds and group exponents.
+"""The inputs of contacts, a row each.
 
 Contacts, case files, the command line, sweeps, fits, pictures and the explorer read them: one row is one input everywhere.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
-__all__ = ["OTHER_BODY", "POINT_ROWS", "ROWS", "Input"]
+from stribeck.quantities.schema import Input
 
-
-@dataclass(frozen=True)
-class Input:
-    """One input of a contact: all that any part of the package needs to know of it."""
-
-    name: str  # Name in Python, case files, on the command line, in fits, sweeps and files
-    label: str  # Name in sentences
-    symbol: str  # TeX
-    dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
-    typical: str  # A value of a laboratory's contact, and where that is from
-    source: str  # A value of a laboratory's contact, and where that is from
-    exponents: tuple[float, float, float] = (0, 0, 0)  # Exponents with which it enters the groups of speed, load and roughness
-    usual: tuple[float, float] = (0.0, math.inf)  # Range that contacts have, in SI units: the ends of its slider
-    implausible: float = math.inf
-    units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
-    letters: tuple[str, ...] = ()  # Symbols and names that users type for it
-    headers: tuple[str, ...] = ()  # Words at the head of a column of measurements that mean it, in lower case
-    zero: bool = False  # Whether zero is allowed
-    highest: float = math.inf  # Largest value allowed
-    follows_surface: bool = False  # Whether it follows from the roughness of the surface, and no hand can turn it alone
-    derived: bool = False  # Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`
-    optional: bool = False  # Whether a contact does without it
-    default: float | None = None  # Value of an optional input that is not given
-    known: int = 9  # Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs
+__all__ = ["OTHER_BODY", "POINT_ROWS", "ROWS"]
 
 
 _PDMS = "as in examples/pdms_cylinder.toml"

@@ -6,15 +6,15 @@ differs.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.input_rows import OTHER_BODY, POINT_ROWS, ROWS, Input
+from stribeck.quantities.input_rows import OTHER_BODY, POINT_ROWS, ROWS
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import DIMENSIONS
 
 __all__ = [
     "ALTERNATIVES",
@@ -106,14 +106,7 @@ LETTERS = {letter: row.name for table in (POINT, LINE) for row in table.rows for
 
 def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
     """Return one input of a contact in SI units, checked."""
-    wanted = table.quantities[name]
-    result = to_si(value, wanted.dimension, name, wanted.typical)
-    if wanted.highest < math.inf and not 0 <= result <= wanted.highest:
-        raise InputError(f"{name} = {show(value)} must be between 0 and {wanted.highest:g}.")
-    if result < 0 or (result == 0 and not wanted.zero):
-        allowed = "zero or positive" if wanted.zero else "positive"
-        raise InputError(f"{name} = {show(value)} must be {allowed}.")
-    return result
+    return table.quantities[name].checked(value)
 
 
 def unit_of(name: str, table: InputTable = LINE) -> str:

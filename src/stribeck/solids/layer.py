@@ -25,6 +25,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -32,9 +33,9 @@ from numpy.polynomial import chebyshev
 from stribeck._types import Array, Flags
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.solids.half_plane import nodal_deflection
-from stribeck.solids.solid import Lengths
+from stribeck.solids.solid import Lengths, Solid
 
 __all__ = ["Layer"]
 
@@ -64,13 +65,13 @@ FAR_TARGETS = 40  # Chebyshev targets of that interpolation.
 FAR_NODES = 32  # Evenly spread nodes over the kernel's radius for FAR_TARGETS.
 
 
-@dataclass(frozen=True, init=False)
-class Layer:
+@dataclass(frozen=True)
+class Layer(Solid):
     """An elastic layer bonded to a rigid base: it neither slides on the base nor lifts off.
 
     Parameters
     ----------
-    thickness : str or float
+    layer_thickness : str or float
         Its thickness, > 0 [m]; with groups in Hertz half-widths a of the half-plane.
     poisson_ratio : float
         Poisson's ratio, 0 to 0.5; 0.5 is incompressible.
@@ -81,43 +82,50 @@ class Layer:
         If an argument is outside its range.
     """
 
-    thickness: float
-    poisson_ratio: float
+    kind: ClassVar[str] = "layer"
+    name: ClassVar[str] = "bonded layer"
+    label: ClassVar[str] = "bonded layer"
 
-    def __init__(self, thickness: str | float, poisson_ratio: float = 0.5) -> None:
-        d, nu = to_si(thickness, "length", "thickness", "2 mm"), to_si(poisson_ratio, "number", "poisson_ratio")
-        if not d > 0:
-            raise InputError(f"thickness = {show(thickness)}; it must be above zero, such as '2 mm'.")
-        if not 0 <= nu <= 0.5:
-            raise InputError(f"poisson_ratio = {show(poisson_ratio)}; it must lie between 0 and 0.5.")
-        object.__setattr__(self, "thickness", d)
-        object.__setattr__(self, "poisson_ratio", nu)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "bonded layer"
+    layer_thickness: Input = Input(
+        label="thickness of the layer",
+        symbol="$d$",
+        dimension="length",
+        typical="2 mm",
+        source="a pad of rubber",
+        letters=("thickness",),
+    )
+    poisson_ratio: Input = Input(
+        label="Poisson's ratio",
+        symbol=r"$\nu$",
+        dimension="number",
+        typical="0.5",
+        source="rubber and gels",
+        zero=True,
+        highest=0.5,
+        default=0.5,
+        is_free=False,
+    )
 
     @property
     def parameters(self) -> dict[str, float | str]:
         """Thickness and Poisson's ratio."""
-        return {"thickness": self.thickness, "poisson_ratio": self.poisson_ratio}
+        return {name: getattr(self, name) for name in numbers_of(type(self))}
 
     @property
     def lengths(self) -> Lengths:
         """Its thickness, for meshes."""
-        return Lengths(self.thickness)
+        return Lengths(self.layer_thickness)
 
     def scaled(self, length: float, speed: float = 1.0) -> Layer:
         """Return the layer with its thickness over a length, the Hertz half-width."""
-        return Layer(self.thickness / length, self.poisson_ratio)
+        return Layer(self.layer_thickness / length, self.poisson_ratio)
 
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
 
         Pressures on the panel through infinity deflect nothing: beyond 24 thicknesses nothing is felt, and there they vanish.
         """
-        d = self.thickness
+        d = self.layer_thickness
         x = mesh.nodes.reshape(mesh.panels, mesh.order)
         kernel = nodal_deflection(mesh, beyond=False)
         # Each pair of panels once: the smooth part is symmetric but for the weights, and the kernel is in Fortran order.
@@ -146,15 +154,15 @@ class Layer:
     def _smooth_part(self, x: Array, y: Array) -> Array:
         """Return the smooth part of the kernel between places, the logarithm of the thickness included."""
         distance = np.abs(x - y)
-        distance *= 1 / self.thickness
+        distance *= 1 / self.layer_thickness
         np.minimum(distance, KERNEL_RADIUS, out=distance)
         found = smooth_kernel(distance, self.poisson_ratio)
-        found += math.log(self.thickness) / math.pi
+        found += math.log(self.layer_thickness) / math.pi
         return found
 
     def _of_wide_panel(self, mesh: Mesh, k: int, x: Array) -> Array:
         """Return what pressures at the nodes of a panel deflect at places ``x`` by the smooth part, shape (order, len(x))."""
-        half, d = float(mesh.half_widths[k]), self.thickness
+        half, d = float(mesh.half_widths[k]), self.layer_thickness
         nodes, weights = _finer_rule(mesh.order, _nodes_for(half / d, mesh.order))
         y = (float(mesh.centres[k]) + half * nodes)[:, None]
         smooth = self._smooth_part(x, y)
@@ -164,7 +172,7 @@ class Layer:
 
     def _by_whole_kernel(self, mesh: Mesh, k: int, x: Array) -> Array:
         """Return what pressures at the nodes of a panel deflect at places ``x`` by the whole kernel, shape (len(x), order)."""
-        half, place = float(mesh.half_widths[k]) / self.thickness, (x - mesh.centres[k]) / self.thickness
+        half, place = float(mesh.half_widths[k]) / self.layer_thickness, (x - mesh.centres[k]) / self.layer_thickness
         panel = reference(mesh.order)
 
         def ahead(place: Array, steps: int, grading: int) -> Array:
@@ -191,7 +199,7 @@ class Layer:
             return found
 
         both_sides = ahead(np.concatenate([place, -place]), NEAR_NODES, NEAR_CLUSTER_POWER)
-        to_right, to_left = self.thickness * both_sides.reshape(2, len(x), -1)
+        to_right, to_left = self.layer_thickness * both_sides.reshape(2, len(x), -1)
         return np.asarray(to_right + to_left[:, ::-1])
 
     def far_gap(self, x: Array) -> Array:

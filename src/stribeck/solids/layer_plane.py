@@ -49,7 +49,7 @@ def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
 def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
     """Return the matrices from the nodal pressures of each angular mode to its deflection, shape (modes, rings, rings)."""
     # On panels wider than twelve thicknesses, far out, the layer acts as springs, 4/pi d (1 - 2 nu)/(2 (1 - nu)^2).
-    d, nu, r = layer.thickness, layer.poisson_ratio, mesh.radii
+    d, nu, r = layer.layer_thickness, layer.poisson_ratio, mesh.radii
     found = deflection_by_mode(mesh)
     half_widths = 0.5 * np.diff(mesh.edges)
     wide = half_widths > LOCAL_ABOVE * d

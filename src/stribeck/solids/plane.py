@@ -35,7 +35,7 @@ def _any(solid: HalfPlane) -> float:
 
 
 def _thickness(solid: Layer) -> float:
-    return solid.thickness
+    return solid.layer_thickness
 
 
 # Body on the plane by the kind of solid of the model; the half-plane becomes the half-space.

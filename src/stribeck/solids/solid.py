@@ -37,7 +37,7 @@ def lengths_of(solid: Solid) -> Lengths:
 
 
 class Solid(Protocol):
-    """An elastic body: frozen, hashable, in Hertz units."""
+    """An elastic body: frozen, hashable as operators are kept by it, in Hertz units."""
 
     @property
     def name(self) -> str:
@@ -55,6 +55,7 @@ class Solid(Protocol):
 
     def __hash__(self) -> int:
         """Return the same for the same body: operators are kept by it."""
+        return object.__hash__(self)
 
     def far_gap(self, x: Array) -> Array:
         """Return the gap far away but for the offset and a smooth function of ``1/x`` [u_Hz]."""

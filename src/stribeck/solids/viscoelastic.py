@@ -30,8 +30,9 @@ from numpy.polynomial.legendre import leggauss
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.units import InputError, checked_kind, show, to_si
-from stribeck.solids.half_plane import as_solid
+from stribeck.quantities.schema import Input, Series
+from stribeck.quantities.units import InputError, checked_kind, show
+from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
 
 __all__ = ["Memory", "Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction"]
@@ -45,7 +46,7 @@ AGES = AGES + 0.5
 """Rule on [0, 1] for an exponential that falls to rounding, times what is smooth."""
 
 
-class _Viscoelastic:
+class _Viscoelastic(Solid):
     """What bodies with a creep compliance have in common."""
 
     uses_speed: ClassVar[bool] = True
@@ -81,7 +82,7 @@ class _Viscoelastic:
         return self.base.far_gap(x)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class StandardLinearSolid(_Viscoelastic):
     r"""The body with one retardation time: a spring in series with a spring and a damper side by side.
 
@@ -89,10 +90,10 @@ class StandardLinearSolid(_Viscoelastic):
 
     Parameters
     ----------
-    time : str or float
+    retardation_time : str or float
         Retardation time :math:`\tau > 0` of creep [s]; the relaxation time is :math:`\tau/r`.  With groups the Deborah number
         :math:`u_1 \tau/a` of the state.
-    ratio : float
+    modulus_ratio : float
         :math:`r > 1`, the modulus at once over that of the relaxed body, which is the contact's [-].
     base : solid of sb.solids, optional
         The shape of the body; a half-space without it.
@@ -103,16 +104,29 @@ class StandardLinearSolid(_Viscoelastic):
         Where a value is impossible or a unit is wrong.
     """
 
-    time: float
-    ratio: float
-    base: Solid
+    kind: ClassVar[str] = "standard-linear-solid"
+    label: ClassVar[str] = "viscoelastic, one time"
 
-    def __init__(self, time: str | float, ratio: float, base: Solid | None = None) -> None:
-        values = {"time": _positive("time", time), "ratio": to_si(ratio, "number", "ratio", "3")}
-        if not values["ratio"] > 1:
-            raise InputError(f"ratio = {show(ratio)} must be above 1: the modulus at once over that of the relaxed body.")
-        for name, value in {**values, "base": as_solid("base", base)}.items():
-            object.__setattr__(self, name, value)
+    retardation_time: Input = Input(
+        label="retardation time of the body",
+        symbol=r"$\tau$",
+        dimension="time",
+        typical="10 ms",
+        source="creep of the rubber under a constant load",
+    )
+    modulus_ratio: Input = Input(
+        label="glassy over relaxed modulus of the body",
+        symbol="$r$",
+        dimension="number",
+        typical="3.0",
+        source="storage moduli at high and low frequencies",
+        lowest=1.0,
+    )
+    base: Solid = HalfPlane()
+
+    def __post_init__(self) -> None:
+        """Take a half-space in the place of no base."""
+        object.__setattr__(self, "base", as_solid("base", self.base))
 
     @property
     def name(self) -> str:
@@ -122,18 +136,18 @@ class StandardLinearSolid(_Viscoelastic):
     @property
     def parameters(self) -> dict[str, float | str]:
         """Time, ratio and those of the base."""
-        return {"retardation_time": self.time, "modulus_ratio": self.ratio, **self.base.parameters}
+        return {"retardation_time": self.retardation_time, "modulus_ratio": self.modulus_ratio, **self.base.parameters}
 
     def scaled(self, length: float, speed: float = 1.0) -> Solid:
         """Return the body in Hertz units; at rest it is relaxed."""
         base = self.base.scaled(length, speed)
-        return base if speed == 0 else StandardLinearSolid(self.time * speed / length, self.ratio, base)
+        return base if speed == 0 else StandardLinearSolid(self.retardation_time * speed / length, self.modulus_ratio, base)
 
     def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
-        return 1 / self.ratio, ((1 - 1 / self.ratio, self.time),)
+        return 1 / self.modulus_ratio, ((1 - 1 / self.modulus_ratio, self.retardation_time),)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Prony(_Viscoelastic):
     r"""The body with a Prony series of its relaxation.
 
@@ -141,7 +155,7 @@ class Prony(_Viscoelastic):
 
     Parameters
     ----------
-    times : sequence of str or float
+    relaxation_times : sequence of str or float
         Relaxation times :math:`\tau_i > 0` [s]; with groups :math:`u_1 \tau_i/a` of the state.
     moduli : sequence of float
         :math:`g_i > 0`, over the relaxed modulus, which is the contact's [-].
@@ -158,21 +172,35 @@ class Prony(_Viscoelastic):
     Poisson's ratio does not relax.  The series is turned into that of creep by the roots of a polynomial, to 1e-12.
     """
 
-    times: tuple[float, ...]
-    moduli: tuple[float, ...]
-    base: Solid
+    kind: ClassVar[str] = "prony"
+    label: ClassVar[str] = "viscoelastic, Prony series"
 
-    def __init__(self, times: Any, moduli: Any, base: Solid | None = None) -> None:
-        if isinstance(times, str) or not all(hasattr(each, "__len__") and np.shape(each) for each in (times, moduli)):
-            raise InputError(f"times = {show(times)} and moduli = {show(moduli)} must be lists, of the same length.")
-        if not 0 < len(times) == len(moduli) <= MAX_TERMS:
-            raise InputError(f"times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MAX_TERMS}.")
-        tau = tuple(_positive("times", each) for each in times)
-        g = tuple(to_si(each, "number", "moduli") for each in moduli)
-        if min(g) <= 0 or len(set(tau)) < len(tau):
-            raise InputError(f"moduli = {show(moduli)} must be above zero, and the times differ from each other.")
-        for name, value in {"times": tau, "moduli": g, "base": as_solid("base", base)}.items():
-            object.__setattr__(self, name, value)
+    relaxation_times: Series = Series(
+        label="relaxation times of the body",
+        symbol=r"$\tau_i$",
+        dimension="time",
+        typical='["1 ms", "10 ms"]',
+        source="a master curve of the relaxation",
+    )
+    moduli: Series = Series(
+        label="moduli that relax, over the relaxed one",
+        symbol="$g_i$",
+        dimension="number",
+        typical="[1.0, 0.5]",
+        source="a master curve of the relaxation",
+    )
+    base: Solid = HalfPlane()
+
+    def __post_init__(self) -> None:
+        """Refuse lists of other lengths, and take a half-space in the place of no base."""
+        times, moduli = self.relaxation_times, self.moduli
+        if not len(times) == len(moduli) <= MAX_TERMS:
+            raise InputError(
+                f"relaxation_times has {len(times)} and moduli {len(moduli)}; give as many of both, 1 to {MAX_TERMS}."
+            )
+        if len(set(times)) < len(times):
+            raise InputError(f"relaxation_times = {show(list(times))} must differ from each other.")
+        object.__setattr__(self, "base", as_solid("base", self.base))
 
     @property
     def name(self) -> str:
@@ -182,16 +210,16 @@ class Prony(_Viscoelastic):
     @property
     def parameters(self) -> dict[str, float | str]:
         """Times and moduli as text, and those of the base."""
-        texts = (" ".join(f"{each:g}" for each in values) for values in (self.times, self.moduli))
+        texts = (" ".join(f"{each:g}" for each in values) for values in (self.relaxation_times, self.moduli))
         return {**dict(zip(("relaxation_times", "moduli"), texts, strict=True)), **self.base.parameters}
 
     def scaled(self, length: float, speed: float = 1.0) -> Solid:
         """Return the body in Hertz units; at rest it is relaxed."""
         base = self.base.scaled(length, speed)
-        return base if speed == 0 else Prony([each * speed / length for each in self.times], self.moduli, base)
+        return base if speed == 0 else Prony([each * speed / length for each in self.relaxation_times], self.moduli, base)
 
     def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
-        return creep_of_relaxation(self.times, self.moduli)
+        return creep_of_relaxation(self.relaxation_times, self.moduli)
 
 
 def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> tuple[float, tuple[tuple[float, float], ...]]:
@@ -304,10 +332,3 @@ def _nodal_derivative(order: int) -> Array:
     rule = reference(order)
     degrees = np.polynomial.legendre.legvander(rule.nodes, order - 1)
     return np.asarray(degrees @ rule.derivative @ rule.to_legendre)
-
-
-def _positive(name: str, value: str | float) -> float:
-    time = to_si(value, "time", name, "10 ms")
-    if time <= 0:
-        raise InputError(f"{name} = {show(value)} must be above zero, such as '10 ms'.")
-    return time

@@ -99,7 +99,7 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
     slope = contact.slope
     if not slope > MAX_CONTACT_SLOPE:
         return ()
-    layered = getattr(getattr(contact, "solid", None), "thickness", None) is not None
+    layered = getattr(getattr(contact, "solid", None), "layer_thickness", None) is not None
     advice = "" if layered else " If the soft body is a thin layer on a stiff base, give its layer_thickness in [solid]."
     return (
         f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a half-space is accurate up "

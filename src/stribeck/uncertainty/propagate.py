@@ -15,6 +15,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
 from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, all_input_rows
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
@@ -23,7 +24,6 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, all_input_rows
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column, listed, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.formats import format_percent, format_share, format_si
-from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.quantities.units import DIMENSIONS
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from stribeck.cli.exits import say
 from stribeck.cli.reports.printing import print_first
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.part_inputs import all_input_rows
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -16,10 +16,10 @@ from stribeck.cli.reports.printing import (
     table_of,
 )
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_si
-from stribeck.quantities.part_inputs import all_input_rows
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import regime_sentence, ways_to
 from stribeck.solver.base_solution import BaseSolution

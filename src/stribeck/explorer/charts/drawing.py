@@ -40,7 +40,7 @@ def drawing(answer: Answer) -> str:
         flat.append((CENTRE_X + i, SURFACE_Y + dent))
     wet = [k for k, (x, y) in enumerate(body) if abs(x - CENTRE_X) < 1.7 * a + 12 and y > CLIP_Y]
     film_of = body[wet[0] : wet[-1] + 1] + flat[wet[0] : wet[-1] + 1][::-1]
-    layer = getattr(contact.solid, "thickness", None)
+    layer = getattr(contact.solid, "layer_thickness", None)
     deep = HEIGHT - 4.0
     if layer is not None:
         deep = min(SURFACE_Y + bottom + 6 + 9 * math.log10(1 + layer / scales.half_width), HEIGHT - 8.0)

@@ -10,20 +10,22 @@ import functools
 import json
 import re
 from collections.abc import Mapping
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import LAWS, self_contained
-from stribeck.cases.model_parts import FLUID_LAWS, KEYS, preset_facts, take_parts
+from stribeck.cases.model_parts import FLUID_KINDS, KEYS, preset_facts, take_parts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.fluids.description import Fluid
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
@@ -64,11 +66,17 @@ def model_of_case(case: Case) -> str:
     for name in KEYS:
         # Of a ball the motion is one of its inputs.
         if name in case.tables and (name, case.contact.groups.geometry) != ("motion", "point"):
-            given = case.tables[name]
+            given = {key: _without_error(key, value) for key, value in case.tables[name].items()}
             found[name] = fluid_table(case.contact.fluid) if "preset" in given else given
     if case.contact.groups.geometry == "line" and "slide_to_roll" in case.tables["contact"]:
         found["motion"] = {"slide_to_roll": case.tables["contact"]["slide_to_roll"]}
     return json_text({name: value for name, value in found.items() if value != {}})
+
+
+def _without_error(key: str, value: Any) -> Any:
+    """Return a number of a law without the error that a case gives it."""
+    row = PART_INPUTS.get(PART_LETTERS.get(key, key))
+    return value if row is None or not has_error(value) else split_error(key, value, row.dimension, row.typical)[0]
 
 
 def tables_of(model: str) -> dict[str, Any]:
@@ -84,11 +92,10 @@ def geometry_of(model: str) -> Any:
 def fluid_table(fluid: Fluid) -> dict[str, Any]:
     """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
     found: dict[str, Any] = {}
-    for key, laws, kept in zip(FLUID_LAWS, FLUID_LAWS.values(), (fluid.rheology, fluid.viscosity, fluid.density), strict=True):
-        for name, part in laws.items():
-            if part.law is not None and type(kept) is part.law:
-                own = dict(zip(part.needed, signature(part.law).parameters, strict=False))  # it takes what it needs in order
-                found |= {key: name} | {each: getattr(kept, own.get(each, each)) for each in part.keys}
+    for name, kind in FLUID_KINDS.items():
+        law = getattr(fluid, name)
+        if law is not None:
+            found |= {kind.key: law.name} | {each: getattr(law, each) for each in numbers_of(type(law))}
     return found
 
 

@@ -17,16 +17,19 @@ import numpy as np
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.law import LAWS, law_of_file
-from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
+from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA
-from stribeck.contact_laws.scaled import NAMED_LAWS
+from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.model import Model
+from stribeck.contacts.part_inputs import KINDS
 from stribeck.explorer.inputs.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.inputs import INPUT_TABLES, quantity
+from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError
 from stribeck.solver.point.solve import check_model
 
@@ -42,14 +45,12 @@ RTOL_BY_GEOMETRY = {geometry: rtol for geometry, (_, rtol) in DEFAULT_POINTS_AND
 CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
 """What refuses models that the equations of a geometry do not have."""
 
+ROWS = {key: row for kind in KINDS.values() for law in kind.laws.values() for key, row in numbers_of(law).items()}
+"""The numbers of all laws."""
+
 TYPICAL: dict[str, Any] = {
-    **{
-        key: tomllib.loads(f"value = {example}")["value"]
-        for needed in (*(part.needed for laws in FLUID_LAWS.values() for part in laws.values()), *dict(MEMORIES).values())
-        for key, example in needed.items()
-    },
+    **{key: tomllib.loads(f"value = {row.example}")["value"] for key, row in ROWS.items()},
     "slide_to_roll": 0.5,
-    "layer_thickness": "2 mm",
     "hurst": 0.8,
     "longest_wavelength": "150 um",
     "shortest_wavelength": "1.5 um",
@@ -57,47 +58,30 @@ TYPICAL: dict[str, Any] = {
 """First value of a key that is needed."""
 
 # Labels of keys and names that differ from the key.
-LABELS = {
+LABELS: dict[str, str] = {
+    **{key: row.label for key, row in ROWS.items()},
+    **{name: law.label for kind in KINDS.values() for name, law in kind.laws.items() if hasattr(law, "label")},
     "slide_to_roll": "slide-to-roll ratio",
-    "poisson_ratio": "Poisson's ratio",
-    "pressure": "cavity pressure, gauge",
+    "cavity_pressure": "cavity pressure, gauge",
     "hurst": "Hurst exponent",
-    "pressure_viscosity": "pressure coefficient",
-    "infinite_viscosity": "viscosity at high rates",
-    "stress": "Eyring stress",
     "gamma": "coefficient γ",
     "roll_off_wavelength": "roll-off wavelength",
     "roll_off": "roll-off wave number",
     "q0": "wave number q₀",
     "q1": "wave number q₁",
     "newtonian": "Newtonian",
-    "carreau": "Carreau",
-    "cross": "Cross",
-    "eyring": "Eyring",
-    "power-law": "power law",
-    "barus": "Barus",
-    "roelands": "Roelands",
-    "dowson-higginson": "Dowson, Higginson",
     "exit": "film ends at the exit",
     "reform": "cavity, film re-forms",
-    "patir-cheng": "Patir and Cheng",
-    "StandardLinearSolid": "viscoelastic, one time",
-    "Prony": "viscoelastic, Prony series",
 }
 
 IF_EMPTY = {
-    "infinite_viscosity": "0",
-    "reference_pressure": "196 MPa",
-    "reference_viscosity": "63.1 µPa·s",
-    "pressure": "0",
+    **{key: format_si(row.default, row.dimension) for key, row in ROWS.items() if row.default is not None},
+    "cavity_pressure": "0",
     "layer_thickness": "half-space",
-    "poisson_ratio": "0.5",
     "roll_off_wavelength": "no roll-off",
     "gamma": str(GAMMA),
 }
 """What stands for an optional key that is not given."""
-
-LAYER_KEYS: Keys = (("layer_thickness",), ("poisson_ratio",))
 
 
 def _label(name: str) -> str:
@@ -120,12 +104,23 @@ class Choice:
         return next(iter(self.options))
 
 
-LAW_OF_FLUID = (
-    ("fluid", "Fluid", "model"),
-    ("viscosity_law", "Viscosity under pressure", "viscosity_law"),
-    ("density", "Density", "density"),
-)
-"""Name of a choice, its label, and its key in the table ``[fluid]``."""
+def _keys(law: type | None) -> Keys:
+    """Return the numbers that a law needs, and those that it may have."""
+    rows = numbers_of(law)
+    needed = tuple(key for key, row in rows.items() if row.default is None)
+    return needed, tuple(key for key in rows if key not in needed)
+
+
+def _bodies() -> dict[str, tuple[str, Keys]]:
+    """Return the bodies; one with a memory may be a layer too."""
+    laws = {name: law for name, law in KINDS["solid"].laws.items() if law is not None}
+    shapes = tuple(key for law in laws.values() if not hasattr(law, "base") for key in numbers_of(law))
+    found = {KINDS["solid"].nothing: (KINDS["solid"].nothing, NO_KEYS)}
+    for name, law in sorted(laws.items(), key=lambda each: hasattr(each[1], "base")):
+        needed, optional = _keys(law)
+        found[name] = _label(name), (needed, (*optional, *shapes) if hasattr(law, "base") else optional)
+    return found
+
 
 SURFACE_KEYS: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
 
@@ -151,20 +146,20 @@ CHOICES = {
         ),
         *(
             Choice(
-                name,
-                label,
+                kind.key if kind.key != "model" else "fluid",
+                kind.label,
                 "fluid",
-                key,
-                {law: (_label(law), (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
+                kind.key,
+                {name: (_label(name), _keys(law)) for name, law in kind.laws.items()},
             )
-            for name, label, key in LAW_OF_FLUID
+            for kind in FLUID_KINDS.values()
         ),
         Choice(
             "cavitation",
             "Cavitation",
             "cavitation",
             "model",
-            {str(each): (_label(each), ((), ("pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
+            {str(each): (_label(each), ((), ("cavity_pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
         ),
         Choice(
             "motion",
@@ -178,16 +173,9 @@ CHOICES = {
             "Flow factors",
             "flow_factors",
             "model",
-            {name: (_label(name), NO_KEYS) for name in FLOW_FACTORS},
+            {name: (_label(name), NO_KEYS) for name in KINDS["flow_factors"].laws},
         ),
-        Choice(
-            "solid",
-            "Soft body",
-            "solid",
-            "",
-            {"half-space": ("half-space", NO_KEYS), "layer": ("bonded layer", LAYER_KEYS)}
-            | {each.__name__: (_label(each.__name__), (tuple(keys), sum(LAYER_KEYS, ()))) for each, keys in MEMORIES},
-        ),
+        Choice("solid", KINDS["solid"].label, "solid", "", _bodies()),
     )
 }
 """The rows, in the order of the page."""
@@ -207,7 +195,7 @@ def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
         fits = [name for name, (_, (needed, _)) in choice.options.items() if set(needed) <= given.keys()]
         return fits[-1]
     given = tables.get(choice.table, {}) if choice.table else tables
-    if choice.name == "viscosity_law" and "pressure_viscosity" in given:
+    if choice.name == "viscosity_law" and "pressure_coefficient" in given:
         return str(given.get(choice.key, "barus"))
     return str(given.get(choice.key, choice.first))
 
@@ -271,7 +259,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         if value == "persson":
             tables["surface"] = {key: TYPICAL[key] for key in SURFACE_KEYS[0]}
             return _of_surface(now, tables | {"law": value})
-        return _with(now, {**tables, "law": value}, **_same_pressure(now, NAMED_LAWS[value]))
+        return _with(now, {**tables, "law": value}, **_same_pressure(now, named_law(value)))
     if name == "geometry":
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         motion = tables.pop("motion", {})

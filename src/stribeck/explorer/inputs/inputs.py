@@ -21,8 +21,8 @@ from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry
 from stribeck.explorer.inputs.carried import contact_of, model_of_case, rest_of_case, tables_of
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.input_rows import Input
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
+from stribeck.quantities.schema import Input
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
 __all__ = [

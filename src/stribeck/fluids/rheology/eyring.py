@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, Profile, RateLaw
-from stribeck.fluids.rheology.tabulated import parameters_of, set_numbers
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
 
 __all__ = ["Eyring"]
 
@@ -35,7 +34,7 @@ MAX_STEPS = 80  # Newton steps of a column before its flow counts as not found.
 SECOND_MOMENT_SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Eyring(RateLaw):
     r"""The fluid whose stress grows as the logarithm of the rate, as that of oils does at high pressure.
 
@@ -43,7 +42,7 @@ class Eyring(RateLaw):
 
     Parameters
     ----------
-    stress : str or float
+    eyring_stress : str or float
         Eyring's stress :math:`\tau_0 > 0` [Pa]; with groups :math:`\tau_0 u_\mathrm{Hz}/(\eta_0 U)` at their speed.
 
     Raises
@@ -58,23 +57,17 @@ class Eyring(RateLaw):
     Source: [Eyring 1936].
     """
 
-    eyring_stress: float
+    name: ClassVar[str] = "eyring"
+    label: ClassVar[str] = "Eyring"
 
-    def __init__(self, stress: str | float) -> None:
-        value = to_si(stress, "pressure", "stress", "5 MPa")
-        if value <= 0:
-            raise InputError(f"stress = {show(stress)} must be above zero; oils have about '5 MPa'.")
-        set_numbers(self, eyring_stress=value)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "eyring"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The stress."""
-        return parameters_of(self, "eyring_stress")
+    eyring_stress: Input = Input(
+        label="Eyring's stress",
+        symbol=r"$\tau_0$",
+        dimension="pressure",
+        typical="5 MPa",
+        source="oils",
+        letters=("stress",),
+    )
 
     @property
     def time(self) -> float:

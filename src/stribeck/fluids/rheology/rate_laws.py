@@ -17,24 +17,23 @@ Source: [Carreau 1972], [Cross 1965].
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import cleandoc
-from typing import Self, TypeVar
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, RateLaw
 from stribeck.fluids.rheology.tabulated import (
+    EXPONENT,
     MIN_EXPONENT,
+    RELAXATION_TIME,
     TabulatedLaw,
-    checked_exponent,
-    checked_time,
-    parameters_of,
-    set_numbers,
     table_of,
 )
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError
 
 __all__ = ["Carreau", "Cross", "PowerLaw"]
 
@@ -46,10 +45,20 @@ PLATEAU_RATE = 1e-8
 # Exponent below which the drag grows by 1e-3 or more if the plateau begins at a rate 1e4 times lower.
 FAR_DRAG_EXPONENT = 0.75
 
+INFINITE_VISCOSITY = Input(
+    label="viscosity at high rates",
+    symbol=r"$\eta_\infty$",
+    dimension="viscosity",
+    typical="1 mPa*s",
+    source="the solvent of a polymer solution",
+    zero=True,
+    default=0.0,
+)
+
 PLATEAU_RATIO_AT_START = 1e-3  # Factor between the plateaus at both ends of the homotopy from a nearly Newtonian fluid.
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class _BetweenPlateaus(TabulatedLaw):
     r"""A law with a plateau of the viscosity at low and one at high rates.
 
@@ -76,23 +85,9 @@ class _BetweenPlateaus(TabulatedLaw):
     Source: [law].
     """
 
-    relaxation_time: float
-    exponent: float
-    infinite_viscosity: float
-
-    def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
-        set_numbers(self, relaxation_time=checked_time(relaxation_time), exponent=self._checked(exponent))
-        set_numbers(self, infinite_viscosity=_infinite(infinite_viscosity))
-
-    @staticmethod
-    def _checked(exponent: float) -> float:
-        """Return the exponent, if it is one of the law."""
-        return checked_exponent(exponent)
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """All three."""
-        return parameters_of(self, "relaxation_time", "exponent", "infinite_viscosity")
+    relaxation_time: Input = RELAXATION_TIME
+    exponent: Input = EXPONENT
+    infinite_viscosity: Input = INFINITE_VISCOSITY
 
     @property
     def time(self) -> float:
@@ -126,7 +121,8 @@ class Carreau(_BetweenPlateaus):
     .. math:: \eta = \eta_\infty + (\eta_0 - \eta_\infty) \, [1 + (t \dot\gamma)^2]^{(n-1)/2}
     """
 
-    name = "carreau"
+    name: ClassVar[str] = "carreau"
+    label: ClassVar[str] = "Carreau"
 
     def milder(self, part: float) -> Self:
         """Return the fluid whose viscosity is that to the power of the part, nearly."""
@@ -152,19 +148,16 @@ class Cross(_BetweenPlateaus):
     .. math:: \eta = \eta_\infty + \frac{\eta_0 - \eta_\infty}{1 + (t \dot\gamma)^m}
     """
 
-    name = "cross"
+    name: ClassVar[str] = "cross"
+    label: ClassVar[str] = "Cross"
     plateau = 0.0
 
-    @staticmethod
-    def _checked(exponent: float) -> float:
-        """Return the exponent, if it is one of the law."""
-        m = to_si(exponent, "number", "exponent")
-        if not 0.1 <= m <= 1 - MIN_EXPONENT:
-            raise InputError(
-                f"exponent = {show(exponent)} of a Cross fluid must lie between 0.1 and {1 - MIN_EXPONENT:g}: its "
-                "viscosity falls as the rate to the power -exponent. Of a Carreau fluid it is 1 - n."
-            )
-        return m
+    exponent: Input = replace(
+        EXPONENT,
+        lowest=0.1,
+        highest=1 - MIN_EXPONENT,
+        reason="the viscosity of a Cross fluid falls as the rate to the power -exponent, which of a Carreau fluid is 1 - n",
+    )
 
     def milder(self, part: float) -> Self:
         """Return the fluid with a higher plateau at high rates."""
@@ -181,7 +174,7 @@ class Cross(_BetweenPlateaus):
         return -38.0 / self.exponent
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class PowerLaw(RateLaw):
     r"""The fluid whose viscosity falls as a power of the rate, above a rate far below those of films.
 
@@ -212,21 +205,11 @@ class PowerLaw(RateLaw):
     the viscosity grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
     """
 
-    relaxation_time: float
-    exponent: float
+    name: ClassVar[str] = "power-law"
+    label: ClassVar[str] = "power law"
 
-    def __init__(self, relaxation_time: str | float, exponent: float) -> None:
-        set_numbers(self, relaxation_time=checked_time(relaxation_time), exponent=checked_exponent(exponent))
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "power-law"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """Both."""
-        return parameters_of(self, "relaxation_time", "exponent")
+    relaxation_time: Input = RELAXATION_TIME
+    exponent: Input = EXPONENT
 
     @property
     def time(self) -> float:
@@ -271,13 +254,6 @@ class PowerLaw(RateLaw):
         n, unit = self.exponent, PLATEAU_RATE**self.exponent
         first, second = table_of(Carreau, n).moments(rate / PLATEAU_RATE, stress / unit)
         return PLATEAU_RATE * unit * first, PLATEAU_RATE * unit**2 * second
-
-
-def _infinite(value: str | float) -> float:
-    viscosity = to_si(value, "viscosity", "infinite_viscosity", "1 mPa*s")
-    if viscosity < 0:
-        raise InputError(f"infinite_viscosity = {show(value)} must be zero or positive: the viscosity at high rates.")
-    return viscosity
 
 
 def _homotopy_plateau(ratio: float, part: float) -> float:

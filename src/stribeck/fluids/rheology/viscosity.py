@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import DensityLaw, FilmUnits, ViscosityLaw
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError
 
 __all__ = ["MAX_PRESSURE_EXPONENT", "Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands", "check_range"]
 
@@ -28,6 +29,16 @@ REFERENCE_PRESSURE = 1.96e8  # p_r of Roelands' law [Pa].
 
 REFERENCE_VISCOSITY = 6.31e-5  # eta_r of Roelands' law [Pa s]: ln(eta_r) = -9.67.
 
+
+PRESSURE_COEFFICIENT = Input(
+    label="pressure coefficient of the viscosity",
+    symbol=r"$\alpha_p$",
+    dimension="pressure coefficient",
+    typical="15 1/GPa",
+    source="mineral oils, 10 to 30 1/GPa",
+    letters=("pressure_viscosity", "alpha_p"),
+    zero=True,
+)
 
 MAX_SUCTION_RATIO = 0.1  # Suction over the pressure of the density law that draws a note; no liquid is stretched so far.
 
@@ -49,7 +60,7 @@ class Constant(ViscosityLaw):
         return np.zeros_like(pressure), np.zeros_like(pressure)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Barus(ViscosityLaw):
     r"""The viscosity that grows exponentially with the pressure, :math:`\eta = \eta_0 e^{\alpha_p p}`.
 
@@ -69,20 +80,10 @@ class Barus(ViscosityLaw):
     Source: [Barus 1893].  Above about 0.1 GPa :class:`Roelands` is nearer to measurements.
     """
 
-    pressure_coefficient: float
+    name: ClassVar[str] = "barus"
+    label: ClassVar[str] = "Barus"
 
-    def __init__(self, pressure_coefficient: str | float) -> None:
-        object.__setattr__(self, "pressure_coefficient", _coefficient(pressure_coefficient))
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "barus"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The coefficient."""
-        return {"pressure_coefficient": self.pressure_coefficient}
+    pressure_coefficient: Input = PRESSURE_COEFFICIENT
 
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
@@ -97,7 +98,7 @@ class Barus(ViscosityLaw):
         return self.pressure_coefficient * pressure, np.full_like(pressure, self.pressure_coefficient)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Roelands(ViscosityLaw):
     r"""The viscosity that grows with a power of the pressure in its logarithm.
 
@@ -124,39 +125,28 @@ class Roelands(ViscosityLaw):
     Source: [Roelands 1966]; a fit to oils up to about 0.5 GPa.
     """
 
-    pressure_coefficient: float
-    reference_pressure: float
-    reference_viscosity: float
+    name: ClassVar[str] = "roelands"
+    label: ClassVar[str] = "Roelands"
 
-    def __init__(
-        self,
-        pressure_coefficient: str | float,
-        reference_pressure: str | float = REFERENCE_PRESSURE,
-        reference_viscosity: str | float = REFERENCE_VISCOSITY,
-    ) -> None:
-        object.__setattr__(self, "pressure_coefficient", _coefficient(pressure_coefficient))
-        for name, value, dimension, example in (
-            ("reference_pressure", reference_pressure, "pressure", "196 MPa"),
-            ("reference_viscosity", reference_viscosity, "viscosity", "63.1 uPa*s"),
-        ):
-            number = to_si(value, dimension, name, example)
-            if number <= 0:
-                raise InputError(f"{name} = {show(value)} must be above zero; Roelands' fit has {example}.")
-            object.__setattr__(self, name, number)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "roelands"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """All three."""
-        return {
-            "pressure_coefficient": self.pressure_coefficient,
-            "reference_pressure": self.reference_pressure,
-            "reference_viscosity": self.reference_viscosity,
-        }
+    pressure_coefficient: Input = PRESSURE_COEFFICIENT
+    reference_pressure: Input = Input(
+        label="reference pressure",
+        symbol="$p_r$",
+        dimension="pressure",
+        typical="196 MPa",
+        source="Roelands' fit to mineral oils",
+        default=REFERENCE_PRESSURE,
+        is_free=False,
+    )
+    reference_viscosity: Input = Input(
+        label="reference viscosity",
+        symbol=r"$\eta_r$",
+        dimension="viscosity",
+        typical="63.1 uPa*s",
+        source="Roelands' fit to mineral oils",
+        default=REFERENCE_VISCOSITY,
+        is_free=False,
+    )
 
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
@@ -205,7 +195,7 @@ class Incompressible(DensityLaw):
         return np.ones_like(pressure), np.zeros_like(pressure)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class DowsonHigginson(DensityLaw):
     r"""The density of a mineral oil, which a high pressure raises by a third at most.
 
@@ -213,9 +203,9 @@ class DowsonHigginson(DensityLaw):
 
     Parameters
     ----------
-    pressure : str or float
+    density_pressure : str or float
         :math:`c > 0` [Pa], with groups [p_Hz].
-    limit : float
+    density_limit : float
         :math:`k > 1`, the density ratio that no pressure exceeds [-].
 
     Raises
@@ -231,39 +221,40 @@ class DowsonHigginson(DensityLaw):
     Source: [Dowson & Higginson 1966].
     """
 
-    pressure: float
-    limit: float
+    name: ClassVar[str] = "dowson-higginson"
+    label: ClassVar[str] = "Dowson, Higginson"
 
-    def __init__(self, pressure: str | float = 0.59e9, limit: float = 1.34) -> None:
-        c, k = to_si(pressure, "pressure", "pressure", "0.59 GPa"), to_si(limit, "number", "limit", "1.34")
-        if c <= 0:
-            raise InputError(f"pressure = {show(pressure)} must be above zero; mineral oils have 0.59 GPa.")
-        if k <= 1:
-            raise InputError(f"limit = {show(limit)} must be above 1; mineral oils have 1.34.")
-        object.__setattr__(self, "pressure", c)
-        object.__setattr__(self, "limit", k)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "dowson-higginson"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """Both."""
-        return {"density_pressure": self.pressure, "density_limit": self.limit}
+    density_pressure: Input = Input(
+        label="pressure in the density",
+        symbol="$c$",
+        dimension="pressure",
+        typical="0.59 GPa",
+        source="mineral oils",
+        default=0.59e9,
+        is_free=False,
+    )
+    density_limit: Input = Input(
+        label="largest density ratio",
+        symbol="$k$",
+        dimension="number",
+        typical="1.34",
+        source="mineral oils",
+        lowest=1.0,
+        default=1.34,
+        is_free=False,
+    )
 
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
-        return type(self)(self.pressure / units.pressure, self.limit)
+        return type(self)(self.density_pressure / units.pressure, self.density_limit)
 
     def milder(self, part: float) -> Self:
         """Return the law with a part of the growth."""
-        return type(self)(self.pressure, 1 + max(part, 1e-9) * (self.limit - 1))
+        return type(self)(self.density_pressure, 1 + max(part, 1e-9) * (self.density_limit - 1))
 
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""
-        c, k = self.pressure, self.limit
+        c, k = self.density_pressure, self.density_limit
         held = np.maximum(pressure, -MAX_SUCTION_RATIO * c)
         beyond, above = held - pressure, c + k * held
         falls = (k - 1) * c / above**2
@@ -273,7 +264,7 @@ class DowsonHigginson(DensityLaw):
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether suction stretches the fluid farther than the law can mean."""
-        if pressure is None or float(pressure.min(initial=0.0)) > -MAX_SUCTION_RATIO * self.pressure:
+        if pressure is None or float(pressure.min(initial=0.0)) > -MAX_SUCTION_RATIO * self.density_pressure:
             return ()
         return (
             f"the suction exceeds {MAX_SUCTION_RATIO:g} of the pressure in the Dowson-Higginson density: no liquid is "
@@ -290,10 +281,3 @@ def check_range(law: ViscosityLaw) -> None:
             "Beyond, the contact is one of hard elastohydrodynamics, which needs a solver that follows the pressure spike; "
             "for film thickness there are the formulas of Hamrock and Dowson, or of Moes for lines."
         )
-
-
-def _coefficient(value: str | float) -> float:
-    coefficient = to_si(value, "pressure coefficient", "pressure_coefficient")
-    if coefficient < 0:
-        raise InputError(f"pressure_coefficient = {show(value)} must be zero or positive, such as '15 1/GPa'.")
-    return coefficient

@@ -180,7 +180,7 @@ def check_model(model: Model) -> None:
             f"solid = {model.solid.name}: in the contact of a ball the soft body must be a half-space or a bonded layer. "
             "Other bodies are solved under a cylinder only."
         )
-    thickness = getattr(model.solid, "thickness", math.inf)
+    thickness = getattr(model.solid, "layer_thickness", math.inf)
     if thickness < MIN_LAYER_THICKNESS:
         raise InputError(
             f"solid = {model.solid.name}: its thickness is {thickness:.3g} of the Hertz radius on a half-space; under a ball "

@@ -1,0 +1,126 @@
+"""What any part of the package needs to know of one number: it stands once, where the number is declared.
+
+An :class:`Input` in the body of a frozen dataclass declares a field of it::
+
+    @dataclass(frozen=True)
+    class Carreau(RateLaw):
+        relaxation_time: Input = Input(label="relaxation time", symbol="$t$", dimension="time", typical="1 ms", ...)
+
+The field takes text with a unit or a number in SI units, and holds a number in SI units within its range.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
+
+__all__ = ["Input", "Series", "numbers_of"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """A number that users give: an input of a contact, or a field of a law."""
+
+    name: str = ""  # Name in Python, case files, on the command line, in fits, sweeps and files
+    label: str  # Name in sentences
+    symbol: str  # TeX
+    dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
+    typical: str  # A value of a laboratory's contact, and where that is from
+    source: str  # A value of a laboratory's contact, and where that is from
+    exponents: tuple[float, float, float] = (0, 0, 0)  # Exponents with which it enters the groups of speed, load and roughness
+    usual: tuple[float, float] = (0.0, math.inf)  # Range that contacts have, in SI units: the ends of its slider
+    implausible: float = math.inf
+    units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
+    letters: tuple[str, ...] = ()  # Symbols and names that users type for it
+    headers: tuple[str, ...] = ()  # Words at the head of a column of measurements that mean it, in lower case
+    lowest: float = 0.0  # Lower bound, in SI units
+    zero: bool = False  # Whether the lower bound itself is allowed
+    highest: float = math.inf  # Largest value allowed, in SI units
+    reason: str = ""  # What to say of a value out of bounds
+    follows_surface: bool = False  # Whether it follows from the roughness of the surface, and no hand can turn it alone
+    derived: bool = False  # Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`
+    optional: bool = False  # Whether a contact does without it
+    default: float | None = None  # Value that stands for one that is not given
+    is_free: bool = True  # Whether a fit may free it
+    known: int = 9  # Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Take the name of the field."""
+        object.__setattr__(self, "name", name)
+
+    def __get__(self, law: object | None, owner: type) -> float:
+        """Return the number of a law, or the default of the class."""
+        if law is not None:
+            return float(law.__dict__[self.name])
+        if self.default is None:
+            raise AttributeError(f"{owner.__name__}.{self.name} has no default")
+        return self.default
+
+    def __set__(self, law: object, value: str | float) -> None:
+        """Set the number of a law that is made."""
+        law.__dict__[self.name] = self.checked(value)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Lower and upper bound, in SI units."""
+        return self.lowest, self.highest
+
+    @property
+    def example(self) -> str:
+        """A value as a case file has it."""
+        return f'"{self.typical}"' if DIMENSIONS[self.dimension].unit else self.typical
+
+    def checked(self, value: Any) -> float:
+        """Return a value in SI units, or refuse one out of bounds."""
+        found = to_si(value, self.dimension, self.name, self.typical)
+        if found > self.highest or found < self.lowest or (found == self.lowest and not self.zero):
+            raise InputError(f"{self.name} = {show(value)} must {self._bounds}{f'; {self.reason}' if self.reason else ''}.")
+        return found
+
+    @property
+    def _bounds(self) -> str:
+        """What a value must be."""
+        if self.highest < math.inf:
+            return f"be between {self.lowest:g} and {self.highest:g}"
+        if self.lowest != 0:
+            return f"be {self.lowest:g} or more" if self.zero else f"be above {self.lowest:g}"
+        return "be zero or positive" if self.zero else "be positive"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series(Input):
+    """Several numbers of one kind, as a list in a case file."""
+
+    is_free: bool = False
+
+    def __get__(self, law: object | None, owner: type) -> tuple[float, ...]:  # type: ignore[override]
+        """Return the numbers of a law."""
+        if law is None:
+            raise AttributeError(f"{owner.__name__}.{self.name} has no default")
+        found: tuple[float, ...] = law.__dict__[self.name]
+        return found
+
+    def __set__(self, law: object, value: Sequence[str | float]) -> None:  # type: ignore[override]
+        """Set the numbers of a law that is made."""
+        if isinstance(value, str | bytes) or not np.shape(value):
+            raise InputError(f"{self.name} = {show(value)} must be a list, such as {self.typical}.")
+        law.__dict__[self.name] = tuple(map(self.checked, value))
+
+    @property
+    def example(self) -> str:
+        """A value as a case file has it."""
+        return self.typical
+
+
+def numbers_of(law: type | None) -> dict[str, Input]:
+    """Return the numbers that a class declares, by name, in the order of its arguments; none of no law."""
+    if law is None:
+        return {}
+    found = {name: each for kind in reversed(law.__mro__) for name, each in vars(kind).items() if isinstance(each, Input)}
+    return {name: found[name] for name in getattr(law, "__dataclass_fields__", {}) if name in found}
