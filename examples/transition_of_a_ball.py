@@ -34,7 +34,7 @@ def speeds(ball, ratios=(0.5, 16.0)):
 
 def film_ratio(solution):
     """Return the central film over the roughness."""
-    return solution.central_gap * solution.contact.hertz.indentation / solution.contact.roughness
+    return solution.central_film_thickness / solution.contact.roughness
 
 
 def plot(found):

@@ -203,7 +203,7 @@ class AtlasCurve(BaseCurve):
         }.get(mark, found.fluid_load_share)
         steepness = abs(after - before) / (2 * LOG_STEP)
         error = self.table.error * scale / steepness if steepness else math.inf
-        return Landmark(mark, found.value, found.friction, error=error)
+        return Landmark(mark, found.value, found.friction, error=error, over=self.over)
 
     def _inside(self, s: Array) -> Array:
         """Return values of coordinates, inside the curve but for rounding."""

@@ -61,6 +61,26 @@ class BaseCurve(Exported, Shown):
     def observable(self, name: str) -> Array:
         """Return an observable of every point."""
 
+    @property
+    def speed(self) -> Array:
+        """Speed of each point [m/s], or its group where the curve has no contact [-]."""
+        return self._input("speed")
+
+    @property
+    def load(self) -> Array:
+        """Load of each point [N/m], of a ball [N], or its group where the curve has no contact [-]."""
+        return self._input("load")
+
+    @property
+    def roughness(self) -> Array:
+        """Roughness of each point [m], or its group where the curve has no contact [-]."""
+        return self._input("roughness")
+
+    def _input(self, name: str) -> Array:
+        if name == self.over:
+            return self.values
+        return np.full(len(self.values), getattr(self.groups if self.contact is None else self.contact, name))
+
     @abstractmethod
     def _where(self, value: float) -> str:
         """Return a value in words."""

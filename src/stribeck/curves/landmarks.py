@@ -19,6 +19,7 @@ from stribeck.equations.observables import ROW
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.events import Event, first_zero, least_by_slope
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.path.line_path import POSITION
 from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
@@ -53,6 +54,8 @@ class Landmark:
         The state; None off the atlas.
     error : float
         Estimated relative error of ``value``, by the errors of the observables [-]; nan for a ball.
+    over : {"speed", "load", "roughness"}
+        What the curve runs over: ``value`` is also the attribute of that name, as ``curve.minimum.speed``.
     """
 
     name: str
@@ -60,6 +63,13 @@ class Landmark:
     friction: float
     solution: Any = field(default=None, repr=False)
     error: float = math.nan
+    over: str = field(default="speed", repr=False)
+
+    def __getattr__(self, name: str) -> float:
+        """Return the value by the name of what the curve runs over."""
+        if name in GROUPS and name == vars(self).get("over"):
+            return self.value
+        raise AttributeError(f"a landmark over {vars(self).get('over')} has no attribute {name!r}")
 
 
 class Place(NamedTuple):

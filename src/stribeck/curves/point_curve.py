@@ -156,7 +156,7 @@ class PointCurve(StribeckCurve):
         except SolveError:
             return None
         friction = solution.friction(self.boundary_friction, self.beta, self.definition)
-        return Landmark(mark, math.exp(event.place), friction_at(friction), solution)
+        return Landmark(mark, math.exp(event.place), friction_at(friction), solution, over=self.over)
 
 
 def _solutions(path: SolvedPath | HermitePath, coordinate: Coordinate, places: Array) -> Iterator[PointSolution]:

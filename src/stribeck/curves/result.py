@@ -238,7 +238,7 @@ class StribeckCurve(BaseCurve, ByValue):
         if place is None:
             return None
         friction = friction_at(place.solution.friction(self.boundary_friction, self.beta, self.definition))
-        return Landmark(mark, math.exp(place.coordinate), friction, place.solution, place.error)
+        return Landmark(mark, math.exp(place.coordinate), friction, place.solution, place.error, self.over)
 
     def to_si(self) -> dict[str, Array]:
         """Return films and Hertz scales of the points in SI units.

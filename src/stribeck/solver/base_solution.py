@@ -12,7 +12,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import WithArea
-from stribeck.contacts.contact import Contact, model_words, part_attributes
+from stribeck.contacts.contact import Contact, HertzScales, model_words, part_attributes
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
@@ -24,6 +24,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.units import InputError
 from stribeck.solver.notes import law_notes
 
 if TYPE_CHECKING:
@@ -144,6 +145,11 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     def nodes(self) -> int:
         """Unknown gaps in the final discretisation."""
 
+    @property
+    @abstractmethod
+    def x(self) -> Array:
+        """Positions of the nodes along the contact, ascending [a]."""
+
     @abstractmethod
     def profile(self, x: Array) -> Profile:
         """Return the fields at positions along the contact [a], in Hertz units."""
@@ -180,6 +186,30 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""
         return [*super().__dir__(), *self._own]
+
+    @property
+    def central_film_thickness(self) -> float:
+        """Film thickness in the middle of a contact in SI units [m]; of groups it is :attr:`central_gap` in u_Hz."""
+        return float(self.central_gap) * self._hertz("central_film_thickness").indentation
+
+    @property
+    def minimum_film_thickness(self) -> float:
+        """Smallest film thickness of a contact in SI units [m]; of groups it is :attr:`minimum_gap` in u_Hz."""
+        return float(self.minimum_gap) * self._hertz("minimum_film_thickness").indentation
+
+    @property
+    def maximum_pressure(self) -> float:
+        """Largest pressure of asperities and fluid together at the nodes along a contact in SI units [Pa]."""
+        scale = self._hertz("maximum_pressure").pressure
+        return float(self.profile(self.x).pressure.max()) * scale
+
+    def _hertz(self, name: str) -> HertzScales:
+        if self.contact is None:
+            raise InputError(
+                f"{name} is in SI units, but this state was solved from groups alone: it has gaps in Hertz indentations and "
+                "pressures in Hertz pressures, as central_gap. Solve a LineContact or PointContact for SI units."
+            )
+        return self.contact.hertz
 
     @property
     def central_separation(self) -> float:
