@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import stribeck as sb
-from stribeck.sweeps.store import create_or_open
+from stribeck.sweeps.store import claimed_store
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -173,7 +173,8 @@ def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
     groups = sb.sweep(tmp_path / "sweep.toml", tmp_path / "groups").to_dataset()
     (tmp_path / "sweep.toml").write_text((ROOT / "examples" / "sweep.toml").read_text().replace("26", "2"))
     design = sb.load_sweep(tmp_path / "sweep.toml")
-    contacts = sb.open_sweep(create_or_open(tmp_path / "contacts", design)).to_dataset()
+    with claimed_store(tmp_path / "contacts", design):
+        contacts = sb.open_sweep(tmp_path / "contacts").to_dataset(grid=False)
     assert {*groups.variables, *contacts.variables} - set(names_in_tables()) == set()
 
 

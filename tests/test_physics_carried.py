@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.batches.chain import Chain
 from stribeck.curves.coordinate import Coordinate
 from stribeck.regimes.phase_grid import Diagram
-from stribeck.sweeps.chain import Chain
+from stribeck.sweeps.columns import StateInputs
 
 BALL = sb.Groups(1e-2, 1e-3, 1e-4, law=sb.GreenwoodTripp(), geometry="point")
 
@@ -30,5 +31,6 @@ def test_groups_made_of_others_share_their_physics(made):
 def test_a_chain_of_a_sweep_travels_with_the_physics_of_its_states():
     import pickle
 
-    chain = Chain((0,), ((1e-2, 1e-3, 1e-4),), {}, si=False, rtol=1e-6, physics=BALL.physics)
+    inputs = StateInputs({}, False, BALL.physics)
+    chain = Chain(np.zeros(1, dtype=int), np.array([[1e-2, 1e-3, 1e-4]]), BALL.physics, 1e-6, inputs.contact, inputs.row)
     assert pickle.loads(pickle.dumps(chain)).physics == BALL.physics

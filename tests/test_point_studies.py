@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.batches.chain import solve_in_order
 from stribeck.cli.running import main
 from stribeck.curves.sensitivities import friction_sensitivities
 
@@ -22,22 +21,21 @@ def ball(**changes):
 
 def test_a_chain_of_balls_gives_the_states_that_are_solved_one_by_one():
     states = np.array([[1e-3, 1e-2, 2e-4], [1.3e-3, 1e-2, 2e-4], [0.0, 1e-2, 2e-4]])
-    found = {}
-    solve_in_order(states, ball().groups.physics, 1e-4, lambda i, ended: found.__setitem__(i, ended))
-    assert [ended.outcome.ok for ended in found.values()] == [True, True, True]
+    found = sb.solve_batch(sb.Groups(*states.T, geometry="point"), rtol=1e-4)
+    assert found.ok.all()
     alone = sb.solve(sb.Groups(*states[1], geometry="point"), rtol=1e-4)
-    assert found[1].solution.contact_load_share == pytest.approx(alone.contact_load_share, abs=2e-4)
-    assert found[2].solution.contact_load_share == pytest.approx(1, abs=1e-12)
+    assert found.contact_load_share[1] == pytest.approx(alone.contact_load_share, abs=2e-4)
+    assert found.contact_load_share[2] == pytest.approx(1, abs=1e-12)
 
 
 def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
-    pytest.importorskip("zarr")
+    pytest.importorskip("xarray")
     path = tmp_path / "sweep.toml"
     path.write_text(
         '[groups]\ngeometry = "point"\nload = 0.01\nroughness = 2e-4\nbeta = 0.1\n[vary]\nspeed = [1e-3, 2e-3]\n'
         "[solver]\nrtol = 1e-3\n"
     )
-    found = sb.sweep(path, tmp_path / "out.zarr").to_dataset()
+    found = sb.sweep(path, tmp_path / "out.sqlite").to_dataset()
     assert set(found["outcome"].values.ravel()) == {"CONVERGED"}
     alone = sb.solve(sb.Groups(2e-3, 0.01, 2e-4, geometry="point"), rtol=1e-3)
     assert float(found["minimum_radius"].values.ravel()[1]) == pytest.approx(alone.minimum_radius, abs=1e-2)
@@ -45,13 +43,13 @@ def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
 
 
 def test_two_processes_find_what_one_does(tmp_path):
-    pytest.importorskip("zarr")
+    pytest.importorskip("xarray")
     path = tmp_path / "sweep.toml"
     path.write_text(
         '[groups]\ngeometry = "point"\nroughness = 2e-4\nbeta = 0.1\n[vary]\nload = [0.001, 0.1]\nspeed = [1e-3, 2e-3]\n'
         "[solver]\nrtol = 1e-3\n"
     )
-    one, two = (sb.sweep(path, tmp_path / f"{count}.zarr", workers=count).to_dataset() for count in (1, 2))
+    one, two = (sb.sweep(path, tmp_path / f"{count}.sqlite", workers=count).to_dataset() for count in (1, 2))
     assert set(two["outcome"].values.ravel()) == {"CONVERGED"}
     for name in ("contact_load_share", "central_gap", "minimum_gap", "friction_balanced", "error_estimate"):
         np.testing.assert_array_equal(one[name].values, two[name].values, err_msg=name)

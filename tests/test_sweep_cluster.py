@@ -8,14 +8,12 @@ import time
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-import numpy as np
 import pytest
 from command_line import call, environment
-from sweep_files import RANDOM, chunks, done_rows, finish, write
+from sweep_files import RANDOM, finish, kept, same_states, write
 from test_sweep import right, start, until
 
 import stribeck as sb
-from stribeck.sweeps.lock import LOCK_FILE
 
 DASK = str(Path(sys.executable).with_name("dask"))
 
@@ -58,23 +56,15 @@ def cluster(folder, workers):
         yield made
 
 
-def rows_in(store):
-    return len(done_rows(store)) if (store / "done").exists() else 0
-
-
-def last_run(store):
-    return json.loads((store / "runs.jsonl").read_text().splitlines()[-1])
-
-
 def lose_a_worker(tmp_path, total, kill_at):
     """Kill one of three workers in the middle of a sweep; return it and what it held when that happened."""
     file, store = write(tmp_path, RANDOM.format(kind="sobol", points=total)), tmp_path / "store"
     with cluster(tmp_path, 3) as made:
         process = start(file, store, "--scheduler", made.address)
         try:
-            until(lambda: rows_in(store) >= kill_at)
+            until(lambda: len(kept(store)) >= kill_at)
             made.workers[1].send_signal(signal.SIGKILL)
-            before = chunks(store)
+            before = kept(store)
             out, err = finish(process, 300)
         finally:
             process.kill()
@@ -88,12 +78,10 @@ def lose_a_worker(tmp_path, total, kill_at):
 def check_after_the_loss(store, before, total):
     found = sb.open_sweep(store)
     assert found.outcomes == {"CONVERGED": total}
-    # Each state was written once: those before the loss are untouched, and the run reports each state once.
-    after = chunks(store)
-    kept = [path for path in before if path.startswith("done/")]
-    assert 0 < len(kept) < total
-    assert {path: after[path] for path in kept} == {path: before[path] for path in kept}
-    assert (last_run(store)["reported"], last_run(store)["computed"]) == (total, total)
+    # Each state was written once: those before the loss are untouched.
+    after = kept(store)
+    assert 0 < len(before) < total
+    assert {state: after[state] for state in before} == before
     right(found)
 
 
@@ -109,7 +97,7 @@ def test_a_large_sweep_on_a_cluster_that_loses_one_of_three_workers(tmp_path):
     check_after_the_loss(store, before, 4096)
     (tmp_path / "one").mkdir()
     alone = sb.sweep(tmp_path / "sweep.toml", tmp_path / "one" / "store", workers=2)
-    assert np.array_equal(alone.rows.values, sb.open_sweep(store).rows.values)
+    assert same_states(alone, sb.open_sweep(store))
 
 
 @pytest.mark.slow
@@ -118,33 +106,31 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
     with cluster(tmp_path, 1) as made:
         process = start(file, store, "--scheduler", made.address)
         try:
-            until(lambda: 10 <= rows_in(store))
+            until(lambda: 10 <= len(kept(store)))
             process.kill()
             process.communicate(timeout=60)
-            before = chunks(store)
+            before = kept(store)
         finally:
             process.kill()
         # A second run may use the same workers at once, and Ctrl-C stops it too.
         process = start(file, store, "--scheduler", made.address)
         try:
-            until(lambda: rows_in(store) >= len(before) // 3 + 10)
+            until(lambda: len(kept(store)) >= len(before) + 10)
             process.send_signal(signal.SIGINT)
             _, err = finish(process, 60)
         finally:
             process.kill()
     assert process.returncode == 130, err
-    assert "the lock was taken over" in err and "run the same command again to resume" in err
-    assert not (store / LOCK_FILE).exists()
-    kept = sb.open_sweep(store).finished
+    assert "was taken over" in err and "run the same command again to resume" in err
+    found = sb.open_sweep(store).finished
     last = sb.sweep(file, store)
-    assert (last.finished, last.computed) == (256, 256 - kept)
-    after = chunks(store)
-    done = [path for path in before if path.startswith("done/")]
-    assert {path: after[path] for path in done} == {path: before[path] for path in done}
+    assert (last.finished, last.computed) == (256, 256 - found)
+    after = kept(store)
+    assert {state: after[state] for state in before} == before
 
 
 def test_where_no_scheduler_answers_is_a_sentence(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr("stribeck.sweeps.workers.CONNECTION_TIMEOUT", 0.5)
+    monkeypatch.setattr("stribeck.batches.executors.CONNECTION_TIMEOUT", 0.5)
     file = write(tmp_path, RANDOM.format(kind="sobol", points=4))
     began = time.monotonic()
     answer = call(capsys, "sweep", file, "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:9")
@@ -160,7 +146,7 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_sentence(tmp_path):
     with cluster(tmp_path, 1) as made:
         process = start(file, store, "--scheduler", made.address)
         try:
-            until(lambda: rows_in(store) >= 5)
+            until(lambda: len(kept(store)) >= 5)
             made.scheduler.kill()
             _, err = finish(process, 120)
         finally:
@@ -168,4 +154,3 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_sentence(tmp_path):
     assert process.returncode == 1, err
     assert "stribeck: The cluster failed (the connection to its scheduler was lost); run the same sweep" in err
     assert 5 <= sb.open_sweep(store).finished < 1024
-    assert not (store / LOCK_FILE).exists()

@@ -42,7 +42,7 @@ def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweep")
     sweep = sb.sweep(write(folder, TEXT), folder / "store")
     assert sweep.outcomes == {"CONVERGED": 4}
-    return sweep.to_dataset(), folder
+    return sweep.to_dataset(grid=False), folder
 
 
 def test_each_state_is_that_of_a_contact_with_the_same_parts(found):
@@ -92,7 +92,7 @@ def test_what_is_wrong_with_a_table_is_told_with_its_name(tmp_path):
 
 def test_films_that_form_anew_have_the_columns_of_both_ends(tmp_path):
     text = TEXT.replace('model = "exit"', 'model = "reform"\npressure = "-1 kPa"').replace('"5 mm/s", ', "")
-    table = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    table = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     assert np.isfinite(table["exit_position"].values).all()
     assert (table["reformation_position"].values > table["exit_position"].values).all()
 
@@ -127,7 +127,7 @@ rtol = 1e-2
 
 def test_balls_have_the_fluid_of_their_load(tmp_path):
     """In Hertz units a relaxation time is another at each load."""
-    table = sb.sweep(write(tmp_path, BALL), tmp_path / "store").to_dataset()
+    table = sb.sweep(write(tmp_path, BALL), tmp_path / "store").to_dataset(grid=False)
     for i in range(2):
         contact = sb.PointContact(
             radius="9.5 mm",

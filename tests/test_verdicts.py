@@ -63,5 +63,5 @@ def test_a_sweep_says_unusual_inputs(capsys, tmp_path, old, new, said):
     assert old in text
     path = tmp_path / "sweep.toml"
     path.write_text(text.replace(old, new))
-    errors = call(capsys, "sweep", str(path), "--out", str(tmp_path / "s.zarr")).err
+    errors = call(capsys, "sweep", str(path), "--out", str(tmp_path / "s.sqlite")).err
     assert "Unusual: " in errors and said in errors.replace("\n", " ")

@@ -4,6 +4,7 @@ from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _PACKAGES = ("asymptotics", "atlas", "fluids", "solids", "surfaces")
 _HOMES = {
+    "batches.executors": ("SweepError",),
     "batches.result": ("BatchSolution",),
     "batches.solve_batch": ("solve_batch",),
     "cases.case": ("Case",),
@@ -38,7 +39,6 @@ _HOMES = {
     "solver.solve_error": ("SolveError",),
     "sweeps.dataset": ("Sweep", "open_sweep"),
     "sweeps.design": ("SweepDesign", "load_sweep"),
-    "sweeps.store": ("SweepError",),
     "sweeps.sweep": ("SweepProgress", "sweep"),
     "uncertainty.propagate": ("propagate",),
     "uncertainty.result": ("Spread", "Uncertainty"),

@@ -1,6 +1,7 @@
 """The public names with their types; at run time each is imported on first use."""
 
 from stribeck import asymptotics, atlas, fluids, solids, surfaces
+from stribeck.batches.executors import SweepError
 from stribeck.batches.result import BatchSolution
 from stribeck.batches.solve_batch import solve_batch
 from stribeck.cases.case import Case
@@ -36,7 +37,6 @@ from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.store import SweepError
 from stribeck.sweeps.sweep import SweepProgress, sweep
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Spread, Uncertainty

@@ -202,7 +202,7 @@ def sweep(case):
         file.write_text(case["toml"])
         found = sb.sweep(file, Path(folder) / "store").to_dataset().load()
     values = {}
-    for i in range(found.sizes["state"]):
+    for i in range(found.outcome.size):
         for name in ("central_gap", "minimum_gap", "contact_load_share"):
             value, error = float(found[name].values.flat[i]), float(found[f"{name}_error"].values.flat[i])
             values[f"{name} {i}"] = [value, error * max(abs(value), OWN_SCALE.get(name, 0.0))]

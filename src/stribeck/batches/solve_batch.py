@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import fields
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.batches.chain import Ended, solve_in_order
+from stribeck.batches.chain import Chain, Ended
+from stribeck.batches.executors import solve_here
 from stribeck.batches.inputs import varied
 from stribeck.batches.order import chains_of
 from stribeck.batches.result import BatchSolution
@@ -95,18 +96,18 @@ def solve_batch(
         groups.model, [] if contacts is None else [rule.of_contact(each) for each in contacts.ravel().tolist()]
     )
     own: dict[Definition, Array] = {} if is_enough else {each: np.full((2, total), np.nan) for each in DEFINITIONS}
-    each_contact = None if contacts is None else contacts.ravel()
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
     done = 0
 
-    def keep(rows: Indices, i: int, ended: Ended) -> None:
+    def keep(rows: Sequence[tuple[int, Ended]]) -> None:
         nonlocal done
-        row = rows[i]
-        if ended.fault is not None:
-            raise ended.fault
-        ends = ended.solution if ended.outcome.ok and ended.solution is not None else ended
-        outcome[row], done = ends.outcome, done + 1
-        if ended.solution is not None:
+        for row, ended in rows:
+            if ended.fault is not None:
+                raise ended.fault
+            ends = ended.solution if ended.outcome.ok and ended.solution is not None else ended
+            outcome[row], done = ends.outcome, done + 1
+            if ended.solution is None:
+                continue
             estimate[row] = ended.solution.error_estimate
             for definition, pair in own.items():
                 friction = ended.solution.friction(boundary_friction=0.0, definition=definition)
@@ -114,17 +115,17 @@ def solve_batch(
             for kept, found in ((values, _observed(ended.solution)), (errors, ended.solution.errors)):
                 for name, value in found.items():
                     kept.setdefault(name, np.full(total, np.nan))[row] = value
+
+    def tell() -> None:
         if on_progress is not None:
             on_progress(done, total)
 
-    def contact_at(rows: Indices, i: int) -> Contact | None:
-        return None if each_contact is None else each_contact[rows[i]]
+    def chain(rows: Indices) -> Chain:
+        each = [None] * len(rows) if contacts is None else contacts.ravel()[rows].tolist()
+        return Chain(rows, states[rows], groups.physics, rtol, each.__getitem__, lambda _, ended: ended)
 
-    try:
-        for chain in chains_of(states, shape if is_grid else ()):
-            solve_in_order(states[chain], groups.physics, rtol, partial(keep, chain), partial(contact_at, chain))
-    except KeyboardInterrupt:
-        pass
+    with suppress(KeyboardInterrupt):
+        solve_here([chain(rows) for rows in chains_of(states, shape if is_grid else ())], keep, tell)
 
     def shaped(kept: dict[str, Array]) -> dict[str, Array]:
         return {name: value.reshape(shape) for name, value in kept.items()}

@@ -46,9 +46,11 @@ def sweep_command(
 ) -> int:
     """Solve many states and store each as it finishes; after an interruption, run the command again to resume.
 
-    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --export sweep.nc
+    Example: stribeck sweep examples/sweep.toml --out sweep.sqlite --export sweep.nc
 
-    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --workers 2
+    Example: stribeck sweep examples/sweep.toml --out sweep.sqlite --workers 2
+
+    The store is one SQLite file.  --export writes NetCDF (.nc), Zarr (.zarr), CSV (.csv) or Parquet (.parquet).
 
     With --scheduler, such as --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
 
@@ -56,17 +58,16 @@ def sweep_command(
     store too, with their outcome.
     """
     from stribeck.cli.reports import sweep as report_sweep
-    from stribeck.files.datasets import NETCDF_ENDINGS
+    from stribeck.files.datasets import check_export, write_data
     from stribeck.sweeps.design import load_sweep
     from stribeck.sweeps.sweep import sweep
 
     if design is None:
-        raise InputError("SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr.")
+        raise InputError("SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.sqlite.")
     if out is None:
-        raise InputError("out is missing; give the folder of the store with --out.")
+        raise InputError("out is missing; give the file of the store with --out.")
     if export is not None:
-        check_writable(export, NETCDF_ENDINGS, force=force)
-        need_extra("a NetCDF file", "data", "netCDF4")
+        check_export(export, force=force)
     plan = load_sweep(design)
     _say_unusual(plan)
     processes = 1 if workers is None else as_whole("workers", workers)
@@ -80,7 +81,7 @@ def sweep_command(
         found = sweep(plan, out, workers=processes, scheduler=scheduler, on_progress=report_progress)
     written = []
     if export is not None and not found.interrupted:
-        found.to_netcdf(export, force=force)
+        write_data(found.to_dataset(), export, force=force)
         written.append(str(export))
     if found.note:
         complain(found.note, 0)

@@ -1,18 +1,23 @@
-"""Datasets of xarray as NetCDF and CSV_ENDINGS files.
+"""Datasets of xarray as files: NetCDF, Zarr, Parquet and CSV.
 
-xarray and netCDF4 come with the extra ``data`` and are imported on first use.
+The libraries come with the extras ``data`` and ``parquet`` and are imported on first use.
 """
 
 from __future__ import annotations
 
 import csv
+import os
+import secrets
+import shutil
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, path_of, reason_of
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -22,12 +27,15 @@ __all__ = [
     "CSV_ENDINGS",
     "DATA_ENDINGS",
     "NETCDF_ENDINGS",
+    "check_export",
     "import_xarray",
     "listed",
     "new_dataset",
     "write_csv",
     "write_data",
     "write_netcdf",
+    "write_parquet",
+    "write_zarr",
 ]
 
 Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit and long name of a variable
@@ -35,6 +43,9 @@ Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit a
 NETCDF_ENDINGS = (".nc",)
 CSV_ENDINGS = (".csv",)
 DATA_ENDINGS = (*NETCDF_ENDINGS, *CSV_ENDINGS)
+ZARR_ENDINGS = (".zarr",)
+PARQUET_ENDINGS = (".parquet",)
+EXPORT_ENDINGS = (*DATA_ENDINGS, *ZARR_ENDINGS, *PARQUET_ENDINGS)
 
 
 def import_xarray(what: str = "a dataset") -> Any:
@@ -80,13 +91,7 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
 
 def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as text: comments, one line of names with units, one line for each point."""
-    if len(dataset.sizes) != 1:
-        dimensions = ", ".join(map(str, dataset.sizes)) or "none"
-        raise InputError(
-            f"a CSV_ENDINGS file has one dimension and this dataset has {dimensions}; write NetCDF (.nc) instead."
-        )
-    (over,) = dataset.sizes
-    columns = [dataset[over], *dataset.data_vars.values()]
+    table = _table(dataset)
     with (
         atomic_write(path, CSV_ENDINGS, force=force) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
@@ -95,14 +100,94 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
             for line in _text(value).splitlines() or [""]:
                 file.write(f"# {name}: {line}\n")
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(f"{column.name} [{column.attrs['units']}]" for column in columns)
-        writer.writerows(zip(*(column.values.tolist() for column in columns), strict=True))
+        writer.writerow(f"{name} [{dataset[name].attrs.get('units', '1')}]" for name in table)
+        writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))
+
+
+def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
+    """Write a dataset as a table of Parquet, a row for each point; units and long names are metadata of its columns."""
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError:
+        raise MissingExtraError("a Parquet file", "parquet", "pyarrow") from None
+    columns = _table(dataset)
+    about = [pyarrow.array(column) for column in columns.values()]
+    fields = [
+        pyarrow.field(name, column.type, metadata={key: str(value) for key, value in dataset[name].attrs.items()})
+        for name, column in zip(columns, about, strict=True)
+    ]
+    schema = pyarrow.schema(fields, metadata={name: _text(value) for name, value in dataset.attrs.items()})
+    with atomic_write(path, PARQUET_ENDINGS, force=force) as temporary:
+        parquet.write_table(pyarrow.table(about, schema=schema), temporary)
+
+
+def write_zarr(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
+    """Write a dataset as a folder of Zarr 2, which keeps text in a way that every reader knows."""
+    target = check_folder(path, force=force)
+    temporary = target.with_name(f".stribeck-{secrets.token_hex(6)}")
+    try:
+        dataset.to_zarr(temporary, mode="w-", zarr_format=2, consolidated=True)
+        if check_folder(path, force=force).exists():
+            shutil.rmtree(target)
+        os.rename(temporary, target)
+    except OSError as problem:
+        raise InputError(f"{path} could not be written ({reason_of(problem, target)}); choose another place.") from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def check_folder(path: PathLike, *, force: bool = False) -> Path:
+    """Return where a folder of Zarr shall be written, or refuse a place where it cannot."""
+    try:
+        import zarr  # noqa: F401
+    except ImportError:
+        raise MissingExtraError("a Zarr folder", "data", "zarr") from None
+    target = path_of(path)
+    if not target.is_dir():
+        return check_writable(path, ZARR_ENDINGS, force=False)
+    if not (force and (target / ".zgroup").is_file()):
+        raise InputError(
+            f"{target} exists already and is kept; add --force (in Python force=True) to replace it if it is Zarr, "
+            "or choose another name."
+        )
+    return target
+
+
+def check_export(path: PathLike, *, force: bool = False) -> None:
+    """Refuse a file that :func:`write_data` could not write, before the work whose results it is for."""
+    ending = path_of(path).suffix.lower()
+    if ending in ZARR_ENDINGS:
+        check_folder(path, force=force)
+        return
+    check_writable(path, EXPORT_ENDINGS, force=force)
+    for known, purpose, extra, library in (
+        (NETCDF_ENDINGS, "a NetCDF file", "data", "netCDF4"),
+        (PARQUET_ENDINGS, "a Parquet file", "parquet", "pyarrow"),
+    ):
+        if ending in known and find_spec(library) is None:
+            raise MissingExtraError(purpose, extra, library)
 
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
-    """Write a dataset as the ending of ``path`` says: ``.nc`` or ``.csv``."""
-    write = write_csv if str(path).lower().endswith(CSV_ENDINGS) else write_netcdf
+    """Write a dataset as the ending of ``path`` says."""
+    ending = path_of(path).suffix.lower()
+    others = ((CSV_ENDINGS, write_csv), (ZARR_ENDINGS, write_zarr), (PARQUET_ENDINGS, write_parquet))
+    write = next((write for endings, write in others if ending in endings), write_netcdf)
     write(dataset, path, force=force)
+
+
+def _table(dataset: xarray.Dataset) -> dict[str, Any]:
+    """Return coordinates and variables as columns, a row for each combination of the coordinates."""
+    dims = list(dataset.sizes)
+    if not any(set(variable.dims) == set(dims) for variable in dataset.data_vars.values()):
+        raise InputError(
+            f"no number of this dataset is along all of {', '.join(map(str, dims)) or 'its dimensions'}, so that it is no "
+            "table; write NetCDF (.nc) instead."
+        )
+    empty = import_xarray("a table").DataArray(np.empty([dataset.sizes[dim] for dim in dims]), dims=dims)
+    names = [*(str(dim) for dim in dims), *(str(name) for name in dataset.data_vars)]
+    return {name: dataset[name].broadcast_like(empty).transpose(*dims).values.ravel() for name in names}
 
 
 def _text(value: Any) -> str:

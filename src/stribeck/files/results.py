@@ -6,7 +6,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from stribeck.files.datasets import write_csv, write_netcdf
+from stribeck.files.datasets import write_csv, write_netcdf, write_parquet, write_zarr
 from stribeck.files.writing import PathLike
 
 if TYPE_CHECKING:
@@ -76,8 +76,8 @@ class Exported(Drawn):
         """
         write_netcdf(self.to_dataset(**sampling), path, force=force)
 
-    def to_csv(self, path: PathLike, *, force: bool = False) -> None:
-        """Write the dataset as a table of values separated by commas.
+    def to_csv(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
+        """Write the dataset as a table of values separated by commas, a row for each combination of its coordinates.
 
         Parameters
         ----------
@@ -85,10 +85,50 @@ class Exported(Drawn):
             The file.
         force : bool
             Whether an existing file is replaced; otherwise it is kept and the call refused.
+        **sampling
+            What ``to_dataset`` takes.
 
         Raises
         ------
         InputError
-            If the file cannot be written, or exists and ``force`` is not given.
+            If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
         """
-        write_csv(self.to_dataset(), path, force=force)
+        write_csv(self.to_dataset(**sampling), path, force=force)
+
+    def to_parquet(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
+        """Write the dataset as Parquet, a row for each combination of its coordinates; needs the extra ``parquet``.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; otherwise it is kept and the call refused.
+        **sampling
+            What ``to_dataset`` takes.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
+        """
+        write_parquet(self.to_dataset(**sampling), path, force=force)
+
+    def to_zarr(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
+        """Write the dataset as a folder that ``xarray.open_zarr`` opens.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The folder.
+        force : bool
+            Whether an existing one is replaced; otherwise it is kept and the call refused.
+        **sampling
+            What ``to_dataset`` takes.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written, or exists and ``force`` is not given.
+        """
+        write_zarr(self.to_dataset(**sampling), path, force=force)

@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
-
-from stribeck._types import Array
+from stribeck.batches.chain import Ended
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Physics
-from stribeck.quantities.inputs import InputTable, unit_of
-from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import AREA_ROWS, LINE_BY_CAVITATION, OUTPUT_TABLES
+from stribeck.contacts.parts import BASE_PARTS, Parts
+from stribeck.quantities.inputs import INPUT_TABLES, unit_of
+from stribeck.quantities.outputs import AREA_ROWS, GROUPS, LINE_BY_CAVITATION, OUTPUT_TABLES
 from stribeck.solver.base_solution import BaseSolution, si_films
+from stribeck.solver.solve_error import describe
 
-__all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
+__all__ = ["ERROR", "StateInputs", "input_columns", "value_columns"]
 
 ERROR = "ERROR"  # Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`
 
-OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)  # A row holds the place of its outcome in here
+Row = tuple[list[float], str, str]
+"""Numbers of a state, the name of its outcome, and its message."""
 
 
-def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
+def value_columns(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each number of a row, in their order."""
     line = physics["geometry"] == "line"
     table = LINE_BY_CAVITATION[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
@@ -46,41 +50,57 @@ def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
         found |= AREA_ROWS
     found["nodes"] = ("1", "unknown gaps in the discretisation")
     found["newton_steps"] = ("1", "steps of the Newton iteration")
-    found["outcome"] = ("1", "how the solve of the state ended")
     return found
 
 
-def input_columns(names: tuple[str, ...], table: InputTable) -> dict[str, tuple[str, str]]:
+def input_columns(names: Iterable[str], physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of the inputs and groups of a state."""
-    found = {}
-    for name in names:
-        if name in ("speed_group", "load_group", "roughness_group"):
-            found[name] = ("1", name.replace("_", " "))
-        else:
-            found[name] = (unit_of(name, table), table.quantities[name].label)
-    return found
+    table = INPUT_TABLES[physics["geometry"]]
+    inputs = {name: (unit_of(name, table), table.quantities[name].label) for name in names}
+    return inputs | {f"{name}_group": ("1", f"{name} group") for name in GROUPS}
 
 
-def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tuple[Array, str]:
-    """Return the numbers of a state, in the order of :func:`columns_of`, and the notes on it."""
+@dataclass(frozen=True, eq=False)
+class StateInputs:
+    """Inputs of the states of a chain of a sweep: they make its contacts and its rows, also in another process."""
+
+    columns: dict[str, list[float]]
+    si: bool  # Whether the inputs are in SI units
+    physics: Physics
+    parts: Parts = BASE_PARTS  # Fluid, cavitation, flow factors, solid and motion of all contacts
+
+    def contact(self, i: int) -> Contact | None:
+        """Return the contact of the i-th state, where it has one."""
+        if not self.si:
+            return None
+        kind = CONTACTS[self.physics["geometry"]]
+        kept = {name: self.columns[name][i] for name in kind.INPUTS.names if name in self.columns}
+        return kind.of_kept(kept if self.parts is BASE_PARTS else {**kept, "parts": self.parts}, self.physics["law"])
+
+    def row(self, i: int, ended: Ended) -> Row:
+        """Return what a sweep keeps of the i-th state."""
+        solution = ended.solution
+        if solution is None:
+            missing = [math.nan] * len(value_columns(self.si, self.physics))
+            return missing, ERROR if ended.fault else ended.outcome.name, ended.message
+        values = _values(solution, self.columns["boundary_friction"][i], self.columns["beta"][i])
+        if ended.outcome.ok:
+            return values, solution.outcome.name, "\n".join(solution.notes)
+        said = "\n".join((solution.outcome.value, *solution.notes))
+        return values, solution.outcome.name, f"{describe(ended.groups)}: {said}"
+
+
+def _values(solution: BaseSolution, boundary_friction: float, beta: float) -> list[float]:
+    """Return the numbers of a state in the order of :func:`value_columns`."""
     table = solution.outputs
-    values = [float(getattr(solution, name)) for name in table.listed]
+    values: list[Any] = [getattr(solution, name) for name in table.listed]
     values += [solution.errors[name] for name in table.names if name in table.listed]
     frictions = [solution.friction(boundary_friction, beta, definition) for definition in DEFINITIONS]
     values.append(frictions[0].contact)
     for friction in frictions:
         values += [friction.total, friction.viscous, friction.error]
-    values.append(float(solution.groups.hersey_number(beta)))
+    values.append(solution.groups.hersey_number(beta))
     values += [value for value, _, _ in si_films(solution).values()]
     if isinstance(solution.groups.law, WithArea):
         values += [getattr(solution, name) for name in AREA_ROWS]
-    values += [solution.nodes, solution.newton_steps, OUTCOMES.index(solution.outcome.name)]
-    messages = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
-    return np.array(values), "\n".join(messages)
-
-
-def failed_row(contact: Contact | None, physics: Physics, outcome: str, message: str) -> tuple[Array, str]:
-    """Return the row of a state of which nothing is known but how its solve ended."""
-    values = np.full(len(columns_of(contact is not None, physics)), math.nan)
-    values[-1] = OUTCOMES.index(outcome)
-    return values, message
+    return [float(value) for value in (*values, solution.nodes, solution.newton_steps)]

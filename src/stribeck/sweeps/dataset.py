@@ -10,21 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.regime import friction_share, regime_of
-from stribeck.files.datasets import new_dataset
+from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
+from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.sweeps.rows import Rows, read_rows
-from stribeck.sweeps.store import describe_store, read_inputs
+from stribeck.sweeps.store import PENDING, read_store
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Sweep", "open_sweep"]
-
-PENDING = "NOT_COMPUTED"  # Outcome, in a dataset, of a state that is not finished
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,8 +34,12 @@ class Sweep(Exported, Shown, ByValue):
         The store.
     about : dict
         What it says of itself: ``title``, ``version``, ``design`` (the text of its file), ``rtol`` and more.
-    rows : Rows
-        Numbers and texts of the states, and which of them are finished.
+    columns : dict of str to ndarray
+        Inputs, groups and numbers of each state by name, nan where a state is not finished.
+    outcome : tuple of str
+        How the solve of each state ended; NOT_COMPUTED where it is not finished.
+    message : tuple of str
+        What there is to say about each state.
     interrupted : bool
         Whether the run that returned this was interrupted.
     computed : int
@@ -46,14 +47,16 @@ class Sweep(Exported, Shown, ByValue):
     seconds : float
         Time that it took [s].
     note : str
-        What was found when it began, such as the lock of a sweep that had died.
+        What was found when it began, such as that the sweep before it had died.
     """
 
-    _picture = "stribeck.sweeps.plot.plot_sweep"
+    _picture = "stribeck.batches.plot.plot_states"
 
     path: Path
     about: dict[str, Any] = field(repr=False)
-    rows: Rows = field(repr=False)
+    columns: dict[str, Array] = field(repr=False)
+    outcome: tuple[str, ...] = field(repr=False)
+    message: tuple[str, ...] = field(repr=False)
     interrupted: bool = False
     computed: int = 0
     seconds: float = 0.0
@@ -61,66 +64,75 @@ class Sweep(Exported, Shown, ByValue):
 
     def __len__(self) -> int:
         """Return the number of states, finished or not."""
-        return len(self.rows.done)
+        return len(self.outcome)
 
     @property
     def finished(self) -> int:
         """States that are finished, converged or failed."""
-        return int(self.rows.done.sum())
+        return len(self) - self.outcome.count(PENDING)
 
     @property
     def failed(self) -> int:
         """States that are finished and did not converge."""
-        return self.finished - self.outcomes.get(Outcome.CONVERGED.name, 0)
+        return self.finished - self.outcome.count(Outcome.CONVERGED.name)
 
     @property
     def outcomes(self) -> dict[str, int]:
         """Number of finished states by outcome, the most frequent first."""
-        names = (self.about["outcomes"][int(code)] for code in self.rows.values[self.rows.done, -1])
-        return dict(Counter(names).most_common())
+        return {name: count for name, count in Counter(self.outcome).most_common() if name != PENDING}
 
-    def to_dataset(self) -> xarray.Dataset:
+    def to_dataset(self, *, grid: bool = True) -> xarray.Dataset:
         """Return all states as an xarray Dataset.
+
+        Parameters
+        ----------
+        grid : bool
+            Whether the states of a grid have its dimensions, the inputs that vary; else all states are along ``state``.
 
         Returns
         -------
         xarray.Dataset
-            Along ``state``: inputs, groups, observables, friction by both definitions, their errors, regime, outcome and
-            message; nan and outcome NOT_COMPUTED where a state is not finished.  Units and long names are attributes.
+            Inputs, groups, observables, friction by both definitions, their errors, regime, outcome and message; nan and
+            outcome NOT_COMPUTED where a state is not finished.  Units and long names are attributes.
 
         Raises
         ------
-        InputError
-            If the store is not what was written.
         MissingExtraError
             If xarray is not installed.
         """
-        names = self.about["inputs"]["columns"]
-        inputs = read_inputs(self.path, (len(self), len(names)))
-        columns = {**_columns(self.about["inputs"], inputs), **_columns(self.about["values"], self.rows.values)}
-        codes, unit, label = columns.pop("outcome")
-        outcomes = self.about["outcomes"]
-        ends = [outcomes[int(code)] if done else PENDING for code, done in zip(codes, self.rows.done, strict=True)]
-        columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the balanced friction")
-        columns["outcome"] = (np.array(ends, dtype=object), unit, label)
-        columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "notes on the validity of the state")
+        grid, about = grid and self.about["kind"] == "grid", self.about
+        shape = tuple(about["shape"]) if grid else (len(self),)
+        dims = tuple(name if name in about["inputs"] and name in self.columns else f"{name}_group" for name in about["varied"])
+        dims = dims if grid else ("state",)
+        described = about["inputs"] | about["values"]
+        columns: dict[str, tuple[Any, str, str]] = {name: (self.columns[name], *described[name]) for name in described}
+        columns["regime"] = (self._regimes(), "1", "lubrication regime, by the balanced friction")
+        columns["outcome"] = (np.array(self.outcome, dtype=object), "1", "how the solve of the state ended")
+        columns["message"] = (np.array(self.message, dtype=object), "1", "notes on the validity of the state")
+        coords: dict[str, Column] = {"state": ("state", np.arange(len(self)), "1", "number of the state")}
+        if grid:
+            coords = {}
+            for axis, name in enumerate(dims):
+                values, unit, label = columns.pop(name)
+                along = np.moveaxis(values.reshape(shape), axis, -1).reshape(-1, shape[axis])
+                coords[name] = (name, along[0], unit, label)
         return new_dataset(
-            {name: ("state", *column) for name, column in columns.items()},
-            {"state": ("state", np.arange(len(self)), "1", "number of the state")},
+            {name: (dims, values.reshape(shape), unit, label) for name, (values, unit, label) in columns.items()},
+            coords,
             {
-                "title": self.about["title"] or "Sweep of lubricated rough contacts",
-                "source": f"stribeck {self.about['version']}",
+                "title": about["title"] or "Sweep of lubricated rough contacts",
+                "source": f"stribeck {about['version']}",
                 "complete": int(self.finished == len(self)),
                 "states": len(self),
                 "finished": self.finished,
                 "failed": self.failed,
-                "contact_law": self.about["contact_law"],
-                **{f"contact_law_{name}": value for name, value in self.about.get("contact_law_parameters", {}).items()},
-                "rtol": self.about["rtol"],
-                "kind": self.about["kind"],
-                "shape": self.about["shape"],
-                "varied": ", ".join(self.about["varied"]),
-                "design": self.about["design"],
+                "contact_law": about["contact_law"],
+                **{f"contact_law_{name}": value for name, value in about["contact_law_parameters"].items()},
+                "rtol": about["rtol"],
+                "kind": about["kind"],
+                "shape": about["shape"],
+                "varied": ", ".join(about["varied"]),
+                "design": about["design"],
             },
         )
 
@@ -134,20 +146,11 @@ class Sweep(Exported, Shown, ByValue):
         ]
         return Card(self.about["title"] or "sweep", rows, (self.note,) if self.note else ())
 
-    def _regimes(self, columns: dict[str, tuple[Any, str, str]]) -> Any:
+    def _regimes(self) -> np.ndarray[Any, np.dtype[np.object_]]:
         """Return the regime of each state, empty where there is none."""
-        found = np.full(len(self), "", dtype=object)
-        numbers = [columns[name][0] for name in ("fluid_load_share", "friction_contact", "friction_balanced")]
-        for i, (fluid, contact, total) in enumerate(zip(*numbers, strict=True)):
-            if np.isfinite(total):
-                found[i] = regime_of(float(fluid), float(friction_share(contact, total - contact)))
-        return found
-
-
-def _columns(about: dict[str, Any], table: Array) -> dict[str, tuple[Any, str, str]]:
-    """Return values, unit and long name of each column of an array."""
-    described = zip(about["columns"], about["units"], about["long_names"], strict=True)
-    return {name: (table[:, k], unit, label) for k, (name, unit, label) in enumerate(described)}
+        fluid, contact, total = (self.columns[name] for name in ("fluid_load_share", "friction_contact", "friction_balanced"))
+        numbers = regime_numbers(fluid, friction_share(contact, total - contact))
+        return np.where(np.isfinite(total), np.array(REGIMES, dtype=object)[numbers], "")
 
 
 def open_sweep(path: PathLike) -> Sweep:
@@ -168,5 +171,5 @@ def open_sweep(path: PathLike) -> Sweep:
     InputError
         If this is no store of a sweep, or it is damaged.
     """
-    store = path_of(path)
-    return Sweep(store, describe_store(store), read_rows(store))
+    about, columns, outcomes, messages = read_store(path)
+    return Sweep(path_of(path), about, columns, tuple(outcomes), tuple(messages))

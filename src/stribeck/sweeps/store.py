@@ -1,179 +1,301 @@
-"""The store of a sweep: a Zarr 3 group with one chunk a state, which holds at any moment what is finished and nothing else.
+"""The store of a sweep: one SQLite file with a row for each state that has ended, which one sweep at a time may fill.
 
-    values/c.I.0    the numbers of state I, little-endian float64, uncompressed
-    text/c.I.0      what there is to say about it, UTF-8, only where there is something
-    done/c.I        a checksum of I and the two, written last: the state is finished if this is there and fits
-    inputs, zarr.json; SHA256SUMS with their checksums; sweep.toml, runs.jsonl
+    about     what the store says of itself: a name and a value in JSON
+    inputs    inputs and groups of every state of the design
+    states    numbers, outcome and message of the states that have ended; NULL is nan
 
-The states are written and read by :mod:`stribeck.sweeps.rows`.
+The sweep that fills a store holds its write lock but for the moment of each commit, and its name stands in ``about`` under
+``writer``.  Another that gets the lock in such a moment sees the name, lets go and tries again; if it gets the lock each time,
+the first is dead, and it enters its own name.  So no two of them write, also where a file system does not lock.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import random
 import secrets
-import shutil
+import socket
+import sqlite3
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
-from stribeck.files.reading import read_bounded
-from stribeck.files.writing import MissingExtraError, PathLike, path_of, reason_of, sync_folder
-from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck._types import Array, Flags
+from stribeck.batches.executors import SweepError
+from stribeck.files.writing import PathLike, path_of, reason_of
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
-from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
+from stribeck.sweeps.columns import Row, input_columns, value_columns
 from stribeck.sweeps.design import SweepDesign
-from stribeck.sweeps.seal import MAX_FILE_BYTES, REPAIR_ADVICE, SEALED_FILES, SUMS_FILE, read_sealed, seal
 
-__all__ = ["SweepError", "create_or_open", "describe_store", "read_inputs"]
+__all__ = ["PENDING", "Store", "claimed_store", "read_store"]
 
-FORMAT = 2
-TEXT_BYTES = 2000  # Length of the text of a state
+FORMAT = 3  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks
+APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
 
-DESIGN_FILE = "sweep.toml"
+CLAIM_ATTEMPTS = 5  # Times that a lock must be free for its holder to count as dead
+CLAIM_PAUSE = 0.1  # Longest time between two of them [s]
+BUSY_TIMEOUT = 60.0  # Time that a commit waits for readers of a file system without a write-ahead log [s]
+ROWS_AT_ONCE = 10_000  # Rows read into memory as objects of Python
 
+PENDING = "NOT_COMPUTED"  # Outcome, in a dataset, of a state that is not finished
 
-class SweepError(RuntimeError):
-    """A sweep failed; the finished states are in its store, and it can be resumed.
-
-    Parameters
-    ----------
-    message : str
-        What happened and what to do, in sentences.
-    """
-
-    def __init__(self, message: str) -> None:
-        super().__init__(message)
+NO_STORE_ADVICE = "give the file of a store, or the name of a new one"
+REPAIR_ADVICE = "restore it from a copy, or run the sweep again into a new store"
 
 
-def create_or_open(path: PathLike, design: SweepDesign) -> Path:
-    """Make the store of a design, or open the one that is there if it is of the same design and version."""
-    store = path_of(path)
-    zarr = _zarr()
-    if store.exists():
-        if store.is_dir() and not any(store.iterdir()):
-            store.rmdir()
-        else:
-            _check_same(store, design)
-            return store
-    if not store.absolute().parent.is_dir():
-        raise InputError(f"{store} cannot be created because the folder {store.parent} does not exist; create it first.")
-    temporary = store.with_name(f".stribeck-{secrets.token_hex(6)}")
+class Store:
+    """A store that this process fills."""
+
+    def __init__(self, path: Path, db: sqlite3.Connection, note: str) -> None:
+        self.path, self.note = path, note  # What was found on opening, such as the name of a sweep that had died
+        self._db, self._name = db, _new_name()
+        self._set("writer", self._name)
+        self._commit()
+
+    def done(self) -> Flags:
+        """Return whether each state of the design has ended."""
+        (total,) = self._db.execute("SELECT count(*) FROM inputs").fetchone()
+        found = np.zeros(total, dtype=bool)
+        found[[state for (state,) in self._db.execute("SELECT state FROM states")]] = True
+        return found
+
+    def keep(self, rows: Sequence[tuple[int, Row]]) -> None:
+        """Keep states that have ended, in one transaction."""
+        if not rows:
+            return
+        places = ", ".join("?" * (3 + len(rows[0][1][0])))
+        self._db.executemany(
+            f"INSERT INTO states VALUES ({places})", [(state, outcome, said, *row) for state, (row, outcome, said) in rows]
+        )
+        self._commit()
+
+    def release(self) -> None:
+        """Let others write, and leave nothing beside the file where nobody reads it."""
+        with suppress(sqlite3.OperationalError):  # a full disk, of which the caller tells
+            if self._db.in_transaction:
+                self._set("writer", None)
+                self._db.execute("COMMIT")
+                self._db.execute("PRAGMA busy_timeout = 0")
+                self._db.execute("PRAGMA journal_mode = DELETE")
+
+    def _set(self, name: str, value: Any) -> None:
+        self._db.execute("INSERT OR REPLACE INTO about VALUES (?, ?)", (name, json.dumps(value)))
+
+    def _commit(self) -> None:
+        """Commit and take the lock again."""
+        self._db.execute("COMMIT")
+        self._db.execute("BEGIN IMMEDIATE")
+        writer = _writer(self._db)
+        if writer != self._name:
+            self._db.execute("ROLLBACK")
+            raise SweepError(f"{self.path} was taken over by {_called(writer)}; this sweep ends.")
+
+
+@contextmanager
+def claimed_store(path: PathLike, design: SweepDesign) -> Iterator[Store]:
+    """Hold the store of a design, which is made where there is none, and which nobody else fills meanwhile."""
+    place = _checked_place(path)
+    if not place.absolute().parent.is_dir():
+        raise InputError(f"{place} cannot be created because the folder {place.parent} does not exist; create it first.")
+    store = None
     try:
+        with closing(sqlite3.connect(place.absolute(), isolation_level=None)) as db:
+            _is_new(place, db)
+            db.execute("PRAGMA busy_timeout = 0")
+            with suppress(sqlite3.OperationalError):  # a store that is in use, and file systems without shared memory
+                db.execute("PRAGMA journal_mode = WAL")
+            db.execute("PRAGMA synchronous = NORMAL")
+            note = _claim(place, db)
+            if _is_new(place, db):
+                _make(db, design)
+            else:
+                _check_whole(place, db)
+                _check_same(place, _about(db), design)
+            db.execute(f"PRAGMA busy_timeout = {round(1e3 * BUSY_TIMEOUT)}")
+            store = Store(place, db, note)
+            try:
+                yield store
+            finally:
+                store.release()
+    except sqlite3.Error as problem:
+        if store is not None:
+            raise SweepError(
+                f"{place} could not be written ({reason_of(problem, place)}); the states finished until then are kept. "
+                "Correct that and run the same sweep again to resume it."
+            ) from None
+        if isinstance(problem, sqlite3.OperationalError):
+            raise InputError(f"{place} cannot be written ({reason_of(problem, place)}); choose another place.") from None
+        raise InputError(_unreadable(place, problem)) from None
+
+
+def read_store(path: PathLike) -> tuple[dict[str, Any], dict[str, Array], list[str], list[str]]:
+    """Return what a store says of itself, its numbers by name, and outcome and message of each state."""
+    place = _checked_place(path)
+    if not place.exists():
+        raise InputError(f"{place} does not exist; {NO_STORE_ADVICE}.")
+    try:
+        with closing(sqlite3.connect(f"{place.absolute().as_uri()}?mode=ro", uri=True)) as db:
+            if _is_new(place, db):
+                raise InputError(f"{place} does not contain a sweep; {NO_STORE_ADVICE}.")
+            db.execute("BEGIN")  # so that all is read as it was at one moment
+            _check_whole(place, db)
+            about = _about(db)
+            inputs = _table(db, "inputs", list(about["inputs"]), about["states"])
+            values = _table(db, "states", list(about["values"]), about["states"])
+            outcomes, messages = [PENDING] * about["states"], [""] * about["states"]
+            for state, outcome, message in db.execute("SELECT state, outcome, message FROM states"):
+                outcomes[state], messages[state] = outcome, message
+    except sqlite3.Error as problem:
+        raise InputError(_unreadable(place, problem)) from None
+    except (ArithmeticError, LookupError, TypeError, ValueError) as problem:
+        if isinstance(problem, InputError):
+            raise
+        raise InputError(f"{place} is damaged ({type(problem).__name__}); {REPAIR_ADVICE}.") from None
+    return about, {**inputs, **values}, outcomes, messages
+
+
+def _checked_place(path: PathLike) -> Path:
+    """Return the path of a store; refuse what cannot be one."""
+    place = path_of(path)
+    if (place / "zarr.json").is_file():
+        raise InputError(
+            f"{place} is a folder in which stribeck 0.1 kept a sweep, a format that this version does not read; a store is "
+            "one SQLite file now: give another name and run the sweep again, or continue this one with that version."
+        )
+    if place.exists() and not place.is_file():
+        raise InputError(f"{place} is {'a folder' if place.is_dir() else 'no ordinary file'}; {NO_STORE_ADVICE}.")
+    return place
+
+
+def _is_new(place: Path, db: sqlite3.Connection) -> bool:
+    """Return whether nothing is in the file; refuse what is no store of this version."""
+    (mark,), (form,) = (db.execute(f"PRAGMA {name}").fetchone() for name in ("application_id", "user_version"))
+    if mark == APPLICATION_ID and form != FORMAT:
+        raise InputError(f"{place} has the format {form}, of another version of stribeck; this version reads format {FORMAT}.")
+    if mark != APPLICATION_ID and db.execute("SELECT count(*) FROM sqlite_schema").fetchone()[0]:
+        raise InputError(f"{place} is a database of something else; {NO_STORE_ADVICE}.")
+    return bool(mark != APPLICATION_ID)
+
+
+def _claim(place: Path, db: sqlite3.Connection) -> str:
+    """Take the write lock from nobody or from a dead process; return the note on that."""
+    for attempt in range(CLAIM_ATTEMPTS):
+        if attempt:
+            db.execute("ROLLBACK")
+            time.sleep(random.uniform(0.5, 1.0) * CLAIM_PAUSE)
         try:
-            _make(zarr, temporary, design)
-            os.rename(temporary, store)
-            sync_folder(store.absolute().parent)
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
-    except OSError as problem:
-        if store.exists():  # somebody else was faster
-            return create_or_open(store, design)
-        raise InputError(f"{store} cannot be created ({reason_of(problem)}); choose another place.") from None
-    return store
+            db.execute("BEGIN IMMEDIATE")
+        except sqlite3.OperationalError as problem:
+            if problem.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
+                raise
+            by = _called(_writer(db))
+            raise InputError(
+                f"{place} is in use by {by}; wait for it, stop it with Ctrl-C, or choose another store."
+            ) from None
+        writer = _writer(db)
+        if writer is None:
+            return ""
+    return f"An earlier sweep on this store ({_called(writer)}) ended without releasing it; it was taken over."
 
 
-def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
+def _writer(db: sqlite3.Connection) -> dict[str, Any] | None:
+    """Return the name of the sweep that fills a store, None if there is none or the store is not made yet."""
+    with suppress(sqlite3.OperationalError):
+        for (name,) in db.execute("SELECT value FROM about WHERE name = 'writer'"):
+            found: dict[str, Any] | None = json.loads(name)
+            return found
+    return None
+
+
+def _called(writer: dict[str, Any] | None) -> str:
+    """Return the words for a sweep that fills a store."""
+    if writer is None:
+        return "another process"
+    here = writer["host"] == socket.gethostname()
+    return f"process {writer['pid']} on {'this machine' if here else writer['host']}"
+
+
+def _new_name() -> dict[str, Any]:
+    """Return what a sweep that fills a store calls itself."""
+    return {"pid": os.getpid(), "host": socket.gethostname(), "key": secrets.token_hex(8)}
+
+
+def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
     """Write everything but the states."""
-    n, columns = len(design), columns_of(design.si, design.physics)
-    inputs = {
-        **design.inputs,
-        **{f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)},
-    }
-    attributes = {
-        "stribeck_sweep": FORMAT,
+    columns = {name: design.inputs[name] for name in design.inputs}
+    columns |= {f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)}
+    values = value_columns(design.si, design.physics)
+    about = {
         "version": version("stribeck"),
         "title": design.title,
         "fingerprint": design.fingerprint,
         "design": design.text,
         "kind": design.kind,
-        "shape": list(design.shape),
-        "varied": list(design.varied),
+        "shape": design.shape,
+        "varied": design.varied,
+        "states": len(design),
         "si": design.si,
         "geometry": design.physics["geometry"],
         "rtol": design.rtol,
         "contact_law": design.law,
         "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
-        "outcomes": list(OUTCOMES),
+        "inputs": input_columns(design.inputs, design.physics),
+        "values": values,
     }
-    group = zarr.create_group(str(path), zarr_format=3, attributes=attributes)
-    flat = {"name": "default", "separator": "."}
-    plain = {"compressors": None, "filters": None}
-    described = input_columns(tuple(inputs), INPUT_TABLES[design.physics["geometry"]])
-    array = group.create_array(
-        "inputs", shape=(n, len(inputs)), chunks=(n, len(inputs)), dtype="<f8", attributes=_about(described), **plain
-    )
-    array[:] = np.stack(list(inputs.values()), axis=1)
-    shape = {"shape": (n, len(columns)), "chunks": (1, len(columns))}
-    group.create_array(
-        "values", **shape, dtype="<f8", fill_value=np.nan, chunk_key_encoding=flat, attributes=_about(columns), **plain
-    )
-    group.create_array(
-        "text", shape=(n, TEXT_BYTES), chunks=(1, TEXT_BYTES), dtype="u1", fill_value=0, chunk_key_encoding=flat, **plain
-    )
-    group.create_array("done", shape=(n,), chunks=(1,), dtype="<u4", fill_value=0, chunk_key_encoding=flat, **plain)
-    (path / DESIGN_FILE).write_text(design.text, encoding="utf-8")
-    seal(path)
+    inputs, numbers = (", ".join(f'"{name}" REAL' for name in names) for names in (columns, values))
+    db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    db.execute(f"PRAGMA user_version = {FORMAT}")
+    db.execute("CREATE TABLE about (name TEXT PRIMARY KEY, value TEXT)")
+    db.execute(f"CREATE TABLE inputs (state INTEGER PRIMARY KEY, {inputs})")
+    db.execute(f"CREATE TABLE states (state INTEGER PRIMARY KEY, outcome TEXT NOT NULL, message TEXT NOT NULL, {numbers})")
+    db.executemany("INSERT INTO about VALUES (?, ?)", [(name, json.dumps(value)) for name, value in about.items()])
+    rows = zip(range(len(design)), *(column.tolist() for column in columns.values()), strict=True)
+    db.executemany(f"INSERT INTO inputs VALUES ({', '.join('?' * (1 + len(columns)))})", rows)
 
 
-def _about(columns: dict[str, tuple[str, str]]) -> dict[str, list[str]]:
-    units, meanings = zip(*columns.values(), strict=True)
-    return {"columns": list(columns), "units": list(units), "long_names": list(meanings)}
+def _about(db: sqlite3.Connection) -> dict[str, Any]:
+    return {name: json.loads(value) for name, value in db.execute("SELECT name, value FROM about")}
 
 
-def describe_store(path: PathLike) -> dict[str, Any]:
-    """Return what a store says of itself: its attributes, and under ``"inputs"`` and ``"values"`` those of its columns."""
-    store = path_of(path)
-    try:
-        # Whether this is a store at all, before what is in it is compared with its checksums.
-        known = json.loads(read_bounded(store / "zarr.json", MAX_FILE_BYTES))["attributes"]["stribeck_sweep"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        if (store / SUMS_FILE).exists():
-            raise InputError(
-                f"{store} is damaged: zarr.json in it has changed since it was written; {REPAIR_ADVICE}."
-            ) from None
-        kind = "is a file" if store.is_file() else "does not contain a sweep" if store.exists() else "does not exist"
-        raise InputError(f"{store} {kind}; give the folder of a store, or the name of a new one.") from None
-    if known != FORMAT:
-        raise InputError(
-            f"{store} has the format {known!r}, of another version of stribeck; this version reads format {FORMAT}."
-        )
-    found = {name: json.loads(read_sealed(store, name)) for name in SEALED_FILES if name.endswith(".json")}
-    read_inputs(store, found["inputs/zarr.json"]["shape"])
-    about: dict[str, Any] = found["zarr.json"]["attributes"]
-    columns = {name: found[f"{name}/zarr.json"]["attributes"] for name in ("inputs", "values")}
-    return about | columns | {"states": found["done/zarr.json"]["shape"][0]}
+def _table(db: sqlite3.Connection, name: str, columns: list[str], total: int) -> dict[str, Array]:
+    """Return the numbers of a table by column, nan where there is none."""
+    found = np.full((len(columns), total), np.nan)
+    listed = ", ".join(f'"{column}"' for column in ("state", *columns))
+    rows = db.execute(f"SELECT {listed} FROM {name}")
+    while some := rows.fetchmany(ROWS_AT_ONCE):
+        table = np.array(some, dtype=float)
+        found[:, table[:, 0].astype(int)] = table[:, 1:].T
+    return dict(zip(columns, found, strict=True))
 
 
-def read_inputs(store: Path, shape: tuple[int, int]) -> Array:
-    """Return the inputs and groups of all states, verified."""
-    return np.frombuffer(read_sealed(store, "inputs/c/0/0"), dtype="<f8").reshape(shape)
+def _check_whole(place: Path, db: sqlite3.Connection) -> None:
+    (said,) = db.execute("PRAGMA quick_check(1)").fetchone()
+    if said != "ok":
+        raise InputError(f"{place} is damaged ({' '.join(said.split())}); {REPAIR_ADVICE}.")
 
 
-def _check_same(store: Path, design: SweepDesign) -> None:
+def _check_same(place: Path, about: dict[str, Any], design: SweepDesign) -> None:
     """Refuse a store of another design or version: its states would not belong together."""
-    about, running = describe_store(store), version("stribeck")
     if about["fingerprint"] != design.fingerprint:
         raise InputError(
-            f"{store} contains a different sweep from {design.path}: the states or the tolerance differ. "
-            f"Choose another store; "
-            f"{store / DESIGN_FILE} is the file it was made from."
+            f"{place} contains a different sweep from {design.path}: the states or the tolerance differ. "
+            "Choose another store; open_sweep(...).about['design'] is the file that this one was made from."
         )
-    if about["version"] != running:
+    if about["version"] != version("stribeck"):
         raise InputError(
-            f"{store} was started with stribeck {about['version']}, this is {running}: their numbers may differ. "
+            f"{place} was started with stribeck {about['version']}, this is {version('stribeck')}: their numbers may differ. "
             "Continue with that version, or choose another store."
         )
 
 
-def _zarr() -> Any:
-    try:
-        import zarr
-    except ImportError:
-        raise MissingExtraError("a sweep", "data", "zarr") from None
-    return zarr
+def _unreadable(place: Path, problem: sqlite3.Error) -> str:
+    if getattr(problem, "sqlite_errorcode", None) == sqlite3.SQLITE_NOTADB:
+        return f"{place} is a file of something else; {NO_STORE_ADVICE}."
+    return f"{place} cannot be read ({reason_of(problem)}); {REPAIR_ADVICE}."

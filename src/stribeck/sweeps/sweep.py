@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-import os
-import socket
+import math
 import time
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
-import numpy as np
-
+from stribeck.batches.chain import Chain
+from stribeck.batches.executors import (
+    Executor,
+    SweepError,
+    WorkerDiedError,
+    solve_here,
+    solve_on_cluster,
+    solve_on_processes,
+)
 from stribeck.batches.order import chains_of
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
-from stribeck.sweeps.chain import Chain
-from stribeck.sweeps.dataset import Sweep
+from stribeck.sweeps.columns import Row, StateInputs
+from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.lock import hold_lock
-from stribeck.sweeps.rows import read_rows, remove_unfinished
-from stribeck.sweeps.runs import log_run
-from stribeck.sweeps.store import SweepError, create_or_open, describe_store
+from stribeck.sweeps.store import Store, claimed_store
 
 __all__ = ["SweepProgress", "sweep"]
 
@@ -74,7 +78,7 @@ def sweep(
     design : SweepDesign or str or path-like
         What to solve: what :func:`load_sweep` returns, or the file.
     out : str or path-like
-        The store, a folder; made where there is none.
+        The store, one SQLite file; made where there is none.
     workers : int
         Processes of this machine; with 1 the states are solved in this process.
     scheduler : str, optional
@@ -93,7 +97,7 @@ def sweep(
     InputError
         If an argument is outside its range, the store holds another sweep, or another run is at it.
     MissingExtraError
-        If zarr, or dask where it is asked for, is not installed.
+        If dask is asked for and not installed.
     SweepError
         If the run could not go on, as on a full disk; what is finished is in the store.
 
@@ -110,109 +114,75 @@ def sweep(
         )
     checked_callback("on_progress", on_progress)
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
-    store = create_or_open(out, plan)
     began = time.monotonic()
-    with hold_lock(store) as note:
-        run = _Run(plan, store, workers, scheduler, on_progress)
-        interrupted = run.to_the_end()
-    if not interrupted and not run.rows.done.all():
+    with claimed_store(out, plan) as store:
+        run = _Run(plan, store, on_progress)
+        interrupted = run.to_the_end(_executor(workers, scheduler))
+        missing = not store.done().all()
+    if missing and not interrupted:
         raise SweepError("The run ended without an error, but states are missing; please report it.")
-    return Sweep(store, describe_store(store), run.rows, interrupted, run.computed, time.monotonic() - began, note)
+    seconds, found = time.monotonic() - began, open_sweep(store.path)
+    return replace(found, interrupted=interrupted, computed=run.computed, seconds=seconds, note=store.note)
+
+
+def _executor(workers: int, scheduler: str | None) -> Executor:
+    if scheduler is not None:
+        return partial(solve_on_cluster, scheduler)
+    return partial(solve_on_processes, workers) if workers > 1 else solve_here
 
 
 class _Run:
-    """One run of a sweep on its store, which is locked."""
+    """One run of a sweep on its store."""
 
-    def __init__(
-        self,
-        plan: SweepDesign,
-        store: Path,
-        workers: int,
-        scheduler: str | None,
-        on_progress: Callable[[SweepProgress], object] | None,
-    ) -> None:
-        self.plan, self.store, self.workers, self.scheduler = plan, store, workers, scheduler
-        self.on_progress = on_progress
-        self.before = self.computed = self.failed = 0
-        self.marks: deque[tuple[float, int]] = deque()
-        self.rows = read_rows(store)
+    def __init__(self, plan: SweepDesign, store: Store, on_progress: Callable[[SweepProgress], object] | None) -> None:
+        self.plan, self.store, self.on_progress = plan, store, on_progress
+        self.before = int(store.done().sum())
+        self.computed = self.failed = 0
+        self.marks = deque([(time.monotonic(), 0)])
 
-    def to_the_end(self) -> bool:
+    def to_the_end(self, execute: Executor) -> bool:
         """Solve what is not done; return whether that was interrupted."""
-        remove_unfinished(self.store, self.rows)
-        self.before = int(self.rows.done.sum())
-        facts = {"host": socket.gethostname(), "pid": os.getpid(), "workers": self.workers, "scheduler": self.scheduler}
-        with log_run(self.store, **facts, done=self.before) as ending:
-            ending["outcome"] = "STOPPED"
-            self.marks.append((time.monotonic(), 0))
-            try:
-                self._solve()
-                ending["outcome"] = "FINISHED"
-            except KeyboardInterrupt:
-                ending["outcome"] = "INTERRUPTED"
-            finally:
-                # Workers may have written more than they reported before they were stopped.
-                self.rows = read_rows(self.store)
-                ending["reported"] = self.computed
-                ending["computed"] = self.computed = int(self.rows.done.sum()) - self.before
-        return bool(ending["outcome"] == "INTERRUPTED")
-
-    def _solve(self) -> None:
-        # Imported here because most uses of the package start no processes.
-        from concurrent.futures.process import BrokenProcessPool
-
-        from stribeck.sweeps.workers import solve_in_process, solve_on_cluster, solve_on_processes
-
         for deaths in range(1, MAX_REPLACEMENTS + 2):
-            chains = self._chains()
             try:
-                if not chains:
-                    pass
-                elif self.scheduler is not None:
-                    solve_on_cluster(self.store, chains, self.scheduler, self._finished, self._report_progress)
-                elif self.workers > 1:
-                    solve_on_processes(
-                        self.store, chains, min(self.workers, len(chains)), self._finished, self._report_progress
-                    )
-                else:
-                    solve_in_process(self.store, chains, self._finished, self._report_progress)
-            except BrokenProcessPool:
+                execute(self._chains(), self._keep, self._tell)
+            except KeyboardInterrupt:
+                return True
+            except WorkerDiedError:
                 if deaths > MAX_REPLACEMENTS:
                     raise SweepError(
                         f"Worker processes died {deaths} times; is the memory of this machine large enough, and does a "
                         'script that sweeps with workers do so under `if __name__ == "__main__":`? '
                         "What is finished is kept: run the same sweep again, with fewer workers."
                     ) from None
-                self.rows = read_rows(self.store)
-                remove_unfinished(self.store, self.rows)
             else:
-                return
+                break
+        return False
 
     def _chains(self) -> list[Chain]:
         """Return what is left to solve; a chain that is done in part goes on with the rest."""
-        found = []
-        for states in chains_of(self.plan.groups, self.plan.shape):
-            left = states[~self.rows.done[states]]
+        plan, done, found = self.plan, self.store.done(), []
+        for states in chains_of(plan.groups, plan.shape):
+            left = states[~done[states]]
             if len(left):
-                groups = tuple((speed, load, roughness) for speed, load, roughness in self.plan.groups[left].tolist())
-                inputs = {name: tuple(column[left].tolist()) for name, column in self.plan.inputs.items()}
-                plan = self.plan
-                found.append(Chain(tuple(left.tolist()), groups, inputs, plan.si, plan.rtol, plan.physics, plan.parts))
+                columns = {name: column[left].tolist() for name, column in plan.inputs.items()}
+                inputs = StateInputs(columns, plan.si, plan.physics, plan.parts)
+                found.append(Chain(left, plan.groups[left], plan.physics, plan.rtol, inputs.contact, inputs.row))
         return found
 
-    def _finished(self, states: int, failed: int) -> None:
-        self.computed += states
-        self.failed += failed
+    def _keep(self, rows: Sequence[tuple[int, Row]]) -> None:
+        self.store.keep(rows)
+        self.computed += len(rows)
+        self.failed += sum(outcome != Outcome.CONVERGED.name for _, (_, outcome, _) in rows)
         now = time.monotonic()
         self.marks.append((now, self.computed))
         while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
             self.marks.popleft()
 
-    def _report_progress(self) -> None:
+    def _tell(self) -> None:
         if self.on_progress is None:
             return
         (began, first), now = self.marks[0], time.monotonic()
         rate = (self.computed - first) / (now - began) if self.computed > first and now > began else 0.0
         done, total = self.before + self.computed, len(self.plan)
-        left = (total - done) / rate if rate > 0 else np.inf
+        left = (total - done) / rate if rate > 0 else math.inf
         self.on_progress(SweepProgress(done, total, self.failed, rate, left))
