@@ -115,7 +115,7 @@ def fail_at(monkeypatch, when, how):
 def test_a_failed_state_keeps_its_outcome_and_costs_no_other(tmp_path, monkeypatch):
     fail_at(monkeypatch, lambda groups: 2e-4 < groups.speed < 9e-4, lambda: None)
     found = sb.sweep(write(tmp_path, GRID), tmp_path / "store")
-    table = found.to_dataset()
+    table = found.to_dataset(grid=False)
     hit = (table.speed_group.values > 2e-4) & (table.speed_group.values < 9e-4)
     assert found.failed == hit.sum() == 8
     assert found.outcomes == {"CONVERGED": 60, "PATH_LOST": 8}
@@ -482,5 +482,5 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
         larger = tmp_path / "larger"
         shutil.copytree(disk, larger)
     again = sb.sweep(file, larger / "store")
-    assert (again.finished, again.computed, again.note) == (128, 128 - found.finished, "")
+    assert (again.finished, again.computed) == (128, 128 - found.finished)
     assert os.listdir(larger) == ["store"]

@@ -166,7 +166,7 @@ def _checked_place(path: PathLike) -> Path:
     place = path_of(path)
     if (place / "zarr.json").is_file():
         raise InputError(
-            f"{place} is a folder in which stribeck 0.1 kept a sweep, a format that this version does not read; a store is "
+            f"{place} is a folder in which an earlier version kept a sweep, a format that this one does not read; a store is "
             "one SQLite file now: give another name and run the sweep again, or continue this one with that version."
         )
     if place.exists() and not place.is_file():
