@@ -6,7 +6,7 @@ from command_line import EXAMPLES
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
-from stribeck.batches.order import CHAIN, chains_of, coordinates
+from stribeck.batches.order import MAX_CHAIN, chains_of, coordinates
 from stribeck.quantities.inputs import LINE
 
 VARY = """
@@ -198,36 +198,30 @@ def test_every_state_is_in_one_chain_and_neighbours_follow_one_another(tmp_path,
     design = load(tmp_path, RANDOM.format(kind=kind, points=512))
     chains = chains_of(design.groups)
     assert sorted(np.concatenate(chains)) == list(range(512))
-    assert max(map(len, chains)) <= CHAIN
+    assert max(map(len, chains)) <= MAX_CHAIN
     z = coordinates(design.groups)
     steps = [np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains]
     unordered = np.abs(np.diff(z, axis=0)).max(axis=1)
     assert np.mean(np.concatenate(steps)) < 0.35 * np.mean(unordered)
 
 
-def test_long_lines_of_a_grid_are_followed_from_high_speed_to_low(tmp_path):
-    design = load(tmp_path, GRID)
-    chains = chains_of(design.groups, design.shape)
-    assert [len(chain) for chain in chains] == [17] * 4
-    for chain in chains:
-        speed, load_, roughness = design.groups[chain].T
-        assert (np.diff(speed) < 0).all()
-        assert len(set(load_)) == len(set(roughness)) == 1
-
-
-def test_short_lines_are_joined_each_beginning_where_the_one_before_ended(tmp_path):
-    design = load(tmp_path, GRID.replace("17", "5"))
-    chains = chains_of(design.groups, design.shape)
-    assert [len(chain) for chain in chains] == [20]
-    z = np.log(design.groups[chains[0]])
-    assert ((np.abs(np.diff(z, axis=0)) > 1e-9).sum(axis=1) == 1).all()
+@pytest.mark.parametrize("points", [5, 17, 60])
+def test_a_grid_is_followed_along_the_speed_in_equal_chains(tmp_path, points):
+    design = load(tmp_path, GRID.replace("17", str(points)))
+    chains = chains_of(design.groups)
+    assert sorted(np.concatenate(chains)) == list(range(4 * points))
+    lengths = [len(chain) for chain in chains]
+    assert len(chains) == -(-4 * points // MAX_CHAIN) and max(lengths) - min(lengths) <= 1
+    z = coordinates(design.groups)
+    steps = np.concatenate([np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains])
+    assert np.median(steps) < 2.5 * np.log(1e4) / (points - 1)
 
 
 def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):
     design = load(
         tmp_path, GRID.replace("boundary_friction = 0.8\n", "").replace("[vary]\n", "[vary]\nboundary_friction = [0.5, 0.8]\n")
     )
-    chains = chains_of(design.groups, design.shape)
+    chains = chains_of(design.groups)
     assert sorted(np.concatenate(chains)) == list(range(136))
     for chain in chains:
         assert np.array_equal(design.groups[chain][::2], design.groups[chain][1::2])
@@ -236,7 +230,7 @@ def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):
 def test_resting_and_smooth_states_have_chains_of_their_own(tmp_path):
     text = "[groups]\n[vary]\nload = [0.1, 0.2]\nroughness = [0, 1e-4, 1e-3]\nspeed = [0, 1e-5, 1e-4]\n"
     design = load(tmp_path, text)
-    chains = chains_of(design.groups, design.shape)
+    chains = chains_of(design.groups)
     assert sorted(np.concatenate(chains)) == list(range(18))
     for chain in chains:
         assert len({tuple(state == 0) for state in design.groups[chain]}) == 1

@@ -86,7 +86,6 @@ def solve_batch(
     parts = (groups.speed, groups.load, groups.roughness)
     states = np.stack([np.broadcast_to(part, shape).ravel() for part in parts], axis=1)
     total = len(states)
-    is_grid = all(np.size(part) < total for part in parts)
     table = OUTPUT_TABLES[groups.geometry].names
     values = {name: np.full(total, np.nan) for name in table}
     errors = {name: np.full(total, np.nan) for name in table}
@@ -116,7 +115,7 @@ def solve_batch(
                 for name, value in found.items():
                     kept.setdefault(name, np.full(total, np.nan))[row] = value
 
-    def tell() -> None:
+    def report_progress() -> None:
         if on_progress is not None:
             on_progress(done, total)
 
@@ -125,7 +124,7 @@ def solve_batch(
         return Chain(rows, states[rows], groups.physics, rtol, each.__getitem__, lambda _, ended: ended)
 
     with suppress(KeyboardInterrupt):
-        solve_here([chain(rows) for rows in chains_of(states, shape if is_grid else ())], keep, tell)
+        solve_here([chain(rows) for rows in chains_of(states)], keep, report_progress)
 
     def shaped(kept: dict[str, Array]) -> dict[str, Array]:
         return {name: value.reshape(shape) for name, value in kept.items()}

@@ -86,8 +86,8 @@ class StateInputs:
         values = _values(solution, self.columns["boundary_friction"][i], self.columns["beta"][i])
         if ended.outcome.ok:
             return values, solution.outcome.name, "\n".join(solution.notes)
-        said = "\n".join((solution.outcome.value, *solution.notes))
-        return values, solution.outcome.name, f"{describe(ended.groups)}: {said}"
+        message = "\n".join((solution.outcome.value, *solution.notes))
+        return values, solution.outcome.name, f"{describe(ended.groups)}: {message}"
 
 
 def _values(solution: BaseSolution, boundary_friction: float, beta: float) -> list[float]:

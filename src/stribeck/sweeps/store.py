@@ -72,7 +72,8 @@ class Store:
             return
         places = ", ".join("?" * (3 + len(rows[0][1][0])))
         self._db.executemany(
-            f"INSERT INTO states VALUES ({places})", [(state, outcome, said, *row) for state, (row, outcome, said) in rows]
+            f"INSERT INTO states VALUES ({places})",
+            [(state, outcome, message, *row) for state, (row, outcome, message) in rows],
         )
         self._commit()
 
@@ -276,9 +277,9 @@ def _table(db: sqlite3.Connection, name: str, columns: list[str], total: int) ->
 
 
 def _check_whole(place: Path, db: sqlite3.Connection) -> None:
-    (said,) = db.execute("PRAGMA quick_check(1)").fetchone()
-    if said != "ok":
-        raise InputError(f"{place} is damaged ({' '.join(said.split())}); {REPAIR_ADVICE}.")
+    (message,) = db.execute("PRAGMA quick_check(1)").fetchone()
+    if message != "ok":
+        raise InputError(f"{place} is damaged ({' '.join(message.split())}); {REPAIR_ADVICE}.")
 
 
 def _check_same(place: Path, about: dict[str, Any], design: SweepDesign) -> None:

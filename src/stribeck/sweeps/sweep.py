@@ -144,7 +144,7 @@ class _Run:
         """Solve what is not done; return whether that was interrupted."""
         for deaths in range(1, MAX_REPLACEMENTS + 2):
             try:
-                execute(self._chains(), self._keep, self._tell)
+                execute(self._chains(), self._keep, self._report_progress)
             except KeyboardInterrupt:
                 return True
             except WorkerDiedError:
@@ -161,7 +161,7 @@ class _Run:
     def _chains(self) -> list[Chain]:
         """Return what is left to solve; a chain that is done in part goes on with the rest."""
         plan, done, found = self.plan, self.store.done(), []
-        for states in chains_of(plan.groups, plan.shape):
+        for states in chains_of(plan.groups):
             left = states[~done[states]]
             if len(left):
                 columns = {name: column[left].tolist() for name, column in plan.inputs.items()}
@@ -178,7 +178,7 @@ class _Run:
         while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
             self.marks.popleft()
 
-    def _tell(self) -> None:
+    def _report_progress(self) -> None:
         if self.on_progress is None:
             return
         (began, first), now = self.marks[0], time.monotonic()
