@@ -7,6 +7,8 @@ import hashlib
 import json
 import math
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -144,82 +146,58 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
         on each line, for all of its problems.
     """
+    import pydantic
+
     path = path_of(path)
     table = read_toml(path, "sweep file", "[vary]")
     problems: list[str] = []
-    design = _checked(path, table, problems)
-    if design is None:
-        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
-    return design
-
-
-def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDesign | None:
-    """Return the design of a file, or None and all its problems."""
-    import pydantic
-
     geometry: Geometry = "line"
-    try:
+    with _noted(problems, f"[{'contact' if 'contact' in table else 'groups'}] "):
         geometry, table = geometry_of(table)
-    except InputError as problem:
-        problems.append(f"[{'contact' if 'contact' in table else 'groups'}] {problem}")
-    known = INPUT_TABLES[geometry]
-    model = file_model(geometry)
+    known, model = INPUT_TABLES[geometry], file_model(geometry)
     table, parts, wrong = take_parts(table, geometry)
     problems += wrong
-    if parts and "groups" in table:
+    si, vary, kind = "groups" not in table, table.get("vary"), kind_of(table)
+    if parts and not si:
         problems.append(
             f"{', '.join(parts)}: sweeps have other fluids, solids and motions in SI units; give [contact] in the place of "
             "[groups], or leave the table out."
         )
-    raw_vary = table.get("vary")
-    if "contact" in table and "groups" in table:
+    if "contact" in table and not si:
         problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
-    si = "groups" not in table
-    axes: list[Axis] = []
+    checked: dict[str, Any] = {}
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
         problems += [error_sentence(model, error, known) for error in failure.errors(include_url=False)]
-        checked = None
-    kind = kind_of(table)
-    if isinstance(raw_vary, dict) and kind is not None:
-        for name, entry in raw_vary.items():
-            try:
+    axes: list[Axis] = []
+    if isinstance(vary, dict) and kind is not None:
+        for name, entry in vary.items():
+            with _noted(problems, "[vary] "):
                 axes.append(axis_of(name, entry, kind, si, known))
-            except InputError as problem:
-                problems.append(f"[vary] {problem}")
-        if not raw_vary:
+        if not vary:
             problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
         base = table.get("contact" if si else "groups", {})
         given = INPUTS_OF_SURFACES if si and ("surface" in table or "asperities" in table) else ()
-        problems += missing(base if isinstance(base, dict) else {}, raw_vary, si, given, known)
-    if checked is None or problems:
-        return None
-    problems += design_problems(checked["design"], axes)
-    if problems:
-        return None
-    law = checked["contact" if si else "groups"]["law"]
-    try:
+        problems += missing(base if isinstance(base, dict) else {}, vary, si, given, known)
+    _refuse(path, problems)
+    design, law = checked["design"], checked["contact" if si else "groups"]["law"]
+    _refuse(path, design_problems(design, axes))
+    varying = points_of(design["kind"], axes, design["points"] or 0, design["seed"] or 0)
+    with _noted(problems):
+        source = FIRST_TABLE_BY_LAW.get(law)
         for axis in axes:  # what varies is not also said by a table of the surface
-            source = FIRST_TABLE_BY_LAW.get(law)
             if si and axis.name in INPUTS_OF_SURFACES and source not in (None, "table") and checked[source] is not None:
                 raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
         fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
         shape: AsperityLaw | None = fixed.pop("law")
-    except InputError as problem:
-        problems += str(problem).splitlines()
-        return None
-    varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
-    try:
-        inputs, groups, model = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), BASE_MODEL)
-    except InputError as problem:
-        problems.append(str(problem))
-        return None
+        inputs, groups, of_first = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), BASE_MODEL)
+    _refuse(path, problems)
     return SweepDesign(
         path=path,
         text=path.read_text(encoding="utf-8-sig"),
         title=checked["title"],
-        kind=checked["design"]["kind"],
+        kind=design["kind"],
         shape=tuple(map(len, axes)) if kind == "grid" else (len(groups),),
         varied=tuple(varying),
         inputs=inputs,
@@ -227,9 +205,23 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         si=si,
         rtol=checked["solver"]["rtol"],
         law=law,
-        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry, model=model).physics,
+        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry, model=of_first).physics,
         parts=Parts(**parts) if parts else BASE_PARTS,
     )
+
+
+@contextmanager
+def _noted(problems: list[str], where: str = "") -> Iterator[None]:
+    """Note what is refused among the problems of a file."""
+    try:
+        yield
+    except InputError as problem:
+        problems += [f"{where}{line}" for line in str(problem).splitlines()]
+
+
+def _refuse(path: Path, problems: list[str]) -> None:
+    if problems:
+        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
 
 
 def _contacts(
