@@ -177,10 +177,11 @@ def _checked_place(path: PathLike) -> Path:
 
 def _is_new(place: Path, db: sqlite3.Connection) -> bool:
     """Return whether nothing is in the file; refuse what is no store of this version."""
+    (tables,) = db.execute("SELECT count(*) FROM sqlite_schema").fetchone()  # first: another sweep may just make the store
     (mark,), (form,) = (db.execute(f"PRAGMA {name}").fetchone() for name in ("application_id", "user_version"))
     if mark == APPLICATION_ID and form != FORMAT:
         raise InputError(f"{place} has the format {form}, of another version of stribeck; this version reads format {FORMAT}.")
-    if mark != APPLICATION_ID and db.execute("SELECT count(*) FROM sqlite_schema").fetchone()[0]:
+    if mark != APPLICATION_ID and tables:
         raise InputError(f"{place} is a database of something else; {NO_STORE_ADVICE}.")
     return bool(mark != APPLICATION_ID)
 
