@@ -84,7 +84,7 @@ def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch)
     starts, start = [], neighbours._CylinderSteps.start
     monkeypatch.setattr(neighbours._CylinderSteps, "start", lambda self, here: starts.append(here) or start(self, here))
     assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 0
-    assert len(starts) == 4
+    assert 2 <= len(starts) <= 4  # of 68 states in two chains
 
 
 def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
