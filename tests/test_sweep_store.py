@@ -135,8 +135,6 @@ def read(path):
 @pytest.mark.parametrize("ending", [".nc", ".zarr", ".csv", ".parquet"])
 @pytest.mark.filterwarnings("error")
 def test_the_command_exports_every_number_text_and_unit(copy, filled, tmp_path, capsys, ending):
-    if ending == ".parquet":
-        pytest.importorskip("pyarrow")
     store, file = copy
     path = tmp_path / f"sweep{ending}"
     answer = call(capsys, "sweep", file, "--out", store, "--export", path)
@@ -157,8 +155,6 @@ def test_the_command_exports_every_number_text_and_unit(copy, filled, tmp_path, 
 
 @pytest.mark.parametrize("ending", [".csv", ".parquet"])
 def test_a_table_has_a_row_for_each_state_of_a_grid(filled, tmp_path, ending):
-    if ending == ".parquet":
-        pytest.importorskip("pyarrow")
     write_it = filled.to_csv if ending == ".csv" else filled.to_parquet
     write_it(tmp_path / f"sweep{ending}")
     table = read(tmp_path / f"sweep{ending}")
