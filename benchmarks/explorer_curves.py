@@ -44,7 +44,7 @@ CHOSEN = {
     "Patir and Cheng": ("flow_factors", "patir-cheng"),
     "film re-forms": ("cavitation", "reform"),
     "bonded layer": ("solid", "layer"),
-    "viscoelastic": ("solid", "StandardLinearSolid"),
+    "viscoelastic": ("solid", "standard-linear-solid"),
 }
 """What is chosen on the page for the cylinder with which it begins."""
 

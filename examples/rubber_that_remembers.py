@@ -20,7 +20,7 @@ def main():
     """Return the state of each, and the hysteresis friction over the slope a/R."""
     found = {}
     for number in DEBORAH:
-        solid = None if number is None else sb.solids.StandardLinearSolid(number, ratio=3.0)
+        solid = None if number is None else sb.solids.StandardLinearSolid(number, modulus_ratio=3.0)
         state = sb.solve(STATE, solid=solid, rtol=1e-3)
         pressure = sum(state.nodal_pressures())
         lost = sb.solids.hysteresis_friction(state.mesh, state.groups.model.solid, pressure)

@@ -65,8 +65,8 @@ PARTS = {
 def test_a_contact_a_state_and_a_curve_name_fluid_cavitation_solid_and_motion():
     contact = CONTACT.replace(**PARTS)
     said = (
-        "fluid carreau, relaxation time 1 ms, exponent 0.6, infinite viscosity 0 Pa*s, solid bonded layer, thickness 1 mm, "
-        "poisson ratio 0.5, cavitation reform, cavity pressure -80 kPa, slide to roll 0.7"
+        "fluid carreau, relaxation time 1 ms, exponent 0.6, infinite viscosity 0 Pa*s, solid bonded layer, "
+        "layer thickness 1 mm, poisson ratio 0.5, cavitation reform, cavity pressure -80 kPa, slide to roll 0.7"
     )
     for result in (sb.solve(contact), sb.stribeck_curve(contact, points=5), contact):
         assert f"model</th><td style='text-align:left'>{said}<" in result._repr_html_()

@@ -13,7 +13,6 @@ from command_line import EXAMPLES, call, case_text
 from fit_data import measured
 
 import stribeck as sb
-from stribeck.cases import model_parts
 from stribeck.cases.law import LAWS
 from stribeck.data_sheet.picture import draw_report
 from stribeck.data_sheet.report import page_of
@@ -67,16 +66,13 @@ def test_the_optional_tables_of_a_new_case_are_read_once_uncommented(tmp_path):
 
 
 @pytest.mark.quick
-def test_a_new_law_is_one_row_and_stands_in_new_cases_and_on_the_page(monkeypatch):
-    law = dataclasses.make_dataclass("CarreauYasuda", [("relaxation_time", float)])
-    monkeypatch.setitem(model_parts.RHEOLOGIES, "carreau-yasuda", model_parts.Part(law, {"relaxation_time": '"1 ms"'}))
+def test_a_new_liquid_is_one_row_and_stands_in_new_cases_and_on_the_page(monkeypatch):
     monkeypatch.setattr(presets, "PRESETS", {**presets.PRESETS, "honey": presets.PRESETS["water"]})
     source = Path(sb.__file__).parent
     text = runpy.run_path(str(source / "data_sheet/new_case.py"))["new_case"]()
     found = runpy.run_path(str(source / "explorer/inputs/choices.py"))["CHOICES"]
-    for name in ("carreau-yasuda", "cross", "honey", "roelands", "patir-cheng", "retardation_time", *LAWS):
+    for name in ("cross", "honey", "roelands", "patir-cheng", "retardation_time", *LAWS):
         assert name in text, name
-    assert found["fluid"].options["carreau-yasuda"] == ("carreau yasuda", (("relaxation_time",), ()))
     assert "honey" in found["preset"].options and list(found["law"].options) == list(LAWS)
 
 

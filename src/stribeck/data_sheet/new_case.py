@@ -157,7 +157,7 @@ def _parts() -> str:
         presets=", ".join(name for name in PRESETS if name != "water"),
         laws="\n".join(lines),
         flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",
-        bodies="\n".join(f"# # {getattr(law, 'label', law.name)}: {_needed(law)}" for law in bodies),
+        bodies="\n".join(f"# {'# or ' if law is not bodies[0] else ''}{_needed(law)}   # {law.label}" for law in bodies),
     )
 
 
