@@ -127,6 +127,20 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
             {"fluid": {"pressure_coeff": 1}},
             r"\] pressure_coeff = 1 is not .*mean pressure_coefficient",
         ),
+        (
+            {"solid": {"model": "half-space", "layer_thickness": "2 mm"}},
+            r"\] layer_thickness = '2 mm' is given, but",
+        ),
+        ({"solid": {"model": "rubber"}}, r"\[solid\] model = 'rubber' must be one of 'half-space', 'layer'"),
+        ({"solid": {"model": "prony", "layer_thickness": "2 mm"}}, r"\[solid\] relaxation_times is missing beside model"),
+        (
+            {"fluid": {"model": "eyring", "stress": 1e6, "eyring_stress": 2e6}},
+            r"\] stress = 1000000.0 is eyring_stress, which",
+        ),
+        (
+            {"asperities": {"exponent": 3}},
+            r"\] exponent = 3 is not a known key; known are density, radius, deviation\.",
+        ),
         ({"solid": {"layer_thicknes": "2 mm"}}, r"\] layer_thicknes = '2 mm' is not a .* did you mean layer_th"),
         ({"fluid": {"name": "water"}}, r"\[fluid\] name = 'water' is not a known key; did you mean preset or model"),
         ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),

@@ -83,6 +83,9 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
             if not isinstance(table, dict):
                 raise InputError(f"{name} = {show(table)} must be a table, [{name}].")
             letters = {LETTERS[key]: key for key in table if LETTERS.get(key) in KEYS[name]}
+            for key, written in letters.items():
+                if key in table:
+                    raise InputError(f"{written} = {show(table[written])} is {key}, which is given too; remove one of them.")
             table = {LETTERS[key] if key in letters.values() else key: value for key, value in table.items()}
             unknown = [f"[{name}] {_unknown(key, table[key], KEYS[name])}" for key in table if key not in KEYS[name]]
             if unknown:
@@ -228,7 +231,12 @@ def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     given = [name for name, keys in own.items() if set(keys) & table.keys()]
     if "model" in table:
         given = list(dict.fromkeys([*given, _one_of(table, "model", tuple(KINDS["solid"].laws), "")]))
+        if given[-1] not in laws and len(table) > 1:
+            other = next(key for key in table if key != "model")
+            raise InputError(f"{other} = {show(table[other])} is given, but model = {given[-1]!r} has no such key; remove it.")
         given = [name for name in given if name in laws]
+        if not given:
+            return {"solid": None}
     if not given:
         given = [name for name, rows in numbers.items() if rows.keys() & table.keys()][:1]
     if not given:

@@ -115,7 +115,7 @@ def example_of(key: str, inputs: InputTable = LINE) -> str:
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:
-    known = [*model.model_fields, *(GIVEN if "radius" in model.model_fields else ())]
+    known = [*model.model_fields, *(GIVEN if "modulus" in model.model_fields else ())]
     meant = MEANT.get(key, key)
     advice = advice_on(key, known)
     if advice:
