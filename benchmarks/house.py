@@ -240,7 +240,7 @@ def fit_of_a_ball():
     rows = zip(found.values.tolist(), (found.friction * noise).tolist())
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "measured.csv"
-        file.write_text("speed [m/s],friction\\n" + "".join(f"{speed},{friction}\\n" for speed, friction in rows))
+        file.write_text("sum of speeds [m/s],friction\\n" + "".join(f"{speed},{friction}\\n" for speed, friction in rows))
         sb.fit(file, contact)
 
 found = {}
