@@ -237,7 +237,8 @@ def test_what_is_wrong_with_numbers_of_the_fluid_is_said(tmp_path, before, after
         sb.load_case(path)
 
 
-@pytest.mark.parametrize("seed", [700, pytest.param(715, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [700, 715])
 def test_intervals_of_what_the_data_do_not_determine_stay_with_the_fit(seed):
     """One ended in an error, as its guesses left what the law holds for; one was moved by the way to another minimum."""
     true, speeds = TRUE.replace(fluid=sb.fluids.Barus("500 1/GPa"), cavitation="exit"), np.geomspace(1e-3, 0.5, 12)
@@ -250,6 +251,7 @@ def test_intervals_of_what_the_data_do_not_determine_stay_with_the_fit(seed):
     assert low == 0 and 5e-7 < high < 1e-5
 
 
+@pytest.mark.slow
 def test_intervals_of_a_relaxation_time_cover_in_6_experiments():
     true, speeds = TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.5)), np.geomspace(1e-3, 0.5, 12)
     exact, held = friction_of(true, speeds), 0
