@@ -13,8 +13,8 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
-from stribeck.files.pictures import CONTACT, GREY, INK, PICTURE_ENDINGS, TINTS, blank_figure, picture
 from stribeck.files.writing import PathLike, atomic_write
+from stribeck.plot.style import CONTACT, GREY, INK, PICTURE_ENDINGS, TINTS, blank_figure
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -51,7 +51,6 @@ SYMBOLS = {
 }
 
 
-@picture("there is nothing to draw")
 def plot_error_maps(
     maps: Sequence[tuple[Formula[Any], xarray.Dataset]],
     path: PathLike | None = None,
@@ -70,6 +69,24 @@ def plot_error_maps(
     maps : sequence of (Formula, xarray.Dataset)
         Formulas, and what :func:`evidence.error_maps.error_map` returned for them.  More than three loads make a map
         of what does not depend on the speed.
+    path : str or path-like, optional
+        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    force : bool
+        Whether an existing file is replaced; otherwise it is kept.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given, or if there is nothing to draw.
+    MissingExtraError
+        If matplotlib is not installed.
 
     Notes
     -----

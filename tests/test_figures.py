@@ -224,7 +224,7 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
         ("figures/article/figure_4.py", False, True),
         ("figures/style.py", False, False),
         ("cli/solving.py", False, False),
-        ("curves/plot.py", False, False),
+        ("plot/curve.py", False, False),
         ("fits/fit.py", False, False),
     ],
 )

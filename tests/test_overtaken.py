@@ -8,9 +8,9 @@ from fit_data import TRUE, measured
 
 import stribeck as sb
 from stribeck.atlas import friction, friction_derivatives
-from stribeck.curves.plot import plot_curve
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.curves import solved_curve
+from stribeck.plot.curve import plot_curve
 from stribeck.regimes.phase_from_atlas import transition_speeds
 from stribeck.regimes.weakening import weakening
 

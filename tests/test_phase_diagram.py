@@ -367,7 +367,7 @@ def test_bad_input_is_refused_with_a_sentence(changes, words):
 @pytest.fixture
 def plot():
     pytest.importorskip("matplotlib")
-    return importlib.import_module("stribeck.regimes.plot")
+    return importlib.import_module("stribeck.plot.phase_diagram")
 
 
 def texts(figure):

@@ -71,7 +71,7 @@ def words(figure):
 
 
 def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
-    from stribeck.files.pictures import add_legend, new_figure
+    from stribeck.plot.style import add_legend, new_figure
 
     for name, columns in (("load 1 N", 4), ("load 1 N, slide-to-roll ratio 0.5, " * 2, 2)):
         figure, [ax] = new_figure((8.5, 4.0), [], title="Fit")
@@ -85,7 +85,7 @@ def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
 
 
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
-    axes = curve.plot().axes[0]
+    axes = curve.plot(abscissa="hersey").axes[0]
     for label, values in (("from asperities", curve.friction_contact), ("from the fluid", curve.friction_viscous)):
         np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
         np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
@@ -94,8 +94,30 @@ def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
 
 
-def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
+def test_the_second_panel_shows_the_films_and_the_roughness_in_si_units(curve):
     axes = curve.plot().axes[1]
+    assert axes.get_ylabel() == "film thickness (µm)" and axes.get_xlabel() == "sliding speed $U$ (m/s)"
+    films = curve.to_si()
+    for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
+        np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.values)
+        np.testing.assert_allclose(line(axes, label).get_ydata(), 1e6 * films[name], rtol=1e-12)
+    np.testing.assert_allclose(line(axes, "roughness").get_ydata(), 1e6 * curve.contact.roughness, rtol=1e-9)
+
+
+def test_the_films_over_a_load_are_lengths_and_those_of_groups_are_over_the_indentation():
+    curve = KINDS["over load"]()
+    drawn = line(curve.plot().axes[1], "central film").get_ydata()
+    np.testing.assert_allclose(
+        drawn / curve.to_si()["central_film_thickness"], drawn[0] / curve.to_si()["central_film_thickness"][0]
+    )
+    groups = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=5)
+    axes = groups.plot().axes[1]
+    assert axes.get_ylabel() == r"film thickness ($u_\mathrm{Hz}$)"
+    np.testing.assert_array_equal(line(axes, "minimum film").get_ydata(), groups.observable("minimum_gap"))
+
+
+def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
+    axes = curve.plot(panel="hydrodynamic").axes[1]
     drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
     assert set(zip(curve.hydrodynamic_friction, np.asarray(curve.friction), strict=True)) <= drawn
     law = line(axes, "as smooth surfaces")
@@ -103,20 +125,20 @@ def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the
 
 
 def test_the_upper_axis_turns_hersey_numbers_into_speeds(curve):
-    figure = curve.plot()
+    figure = curve.plot(abscissa="hersey")
     figure.canvas.draw()
     [upper] = figure.axes[0].child_axes
     np.testing.assert_allclose(upper.get_xlim(), curve.values[[0, -1]], rtol=1e-12)
     assert upper.get_xlabel() == "sliding speed $U$ (m/s)"
     ball = sb.load_case(PDMS.with_name("rubber_ball.toml")).contact
-    drawn = sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3).plot().axes[0]
+    drawn = sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3).plot(abscissa="hersey").axes[0]
     assert drawn.get_xlabel() == "Hersey number $ηUR/F_N$"
     drawn.figure.canvas.draw()
     np.testing.assert_allclose(drawn.child_axes[0].get_xlim(), (0.05, 0.2), rtol=1e-12)
 
 
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
-    axes = curve.plot().axes[0]
+    axes = curve.plot(abscissa="hersey").axes[0]
     mark = line(axes, "minimum")
     hersey = curve.contact.viscosity * curve.minimum.value / curve.contact.load
     np.testing.assert_allclose(mark.get_xdata(), hersey, rtol=1e-12)
@@ -126,7 +148,7 @@ def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
 
 
 def test_regimes_are_shaded_between_the_transitions(curve):
-    axes = curve.plot().axes[0]
+    axes = curve.plot(abscissa="hersey").axes[0]
     assert [text.get_text() for text in axes.texts] == ["boundary", "mixed", "hydrodynamic"]
     spans = [patch for patch in axes.patches if patch.get_zorder() == 0]
     per_hersey = curve.contact.load / curve.contact.viscosity
@@ -142,9 +164,13 @@ def test_a_curve_over_load_or_roughness_has_it_as_abscissa():
         assert axes.get_xlabel().startswith(over) and axes.get_xlabel().endswith(f"({unit})")
 
 
-def test_where_the_hydrodynamic_law_says_nothing_the_shares_of_the_load_are_shown():
+def test_where_the_hydrodynamic_law_says_nothing_the_shares_of_the_load_are_at_hand():
     curve = KINDS["over roughness"]()
-    axes = curve.plot().axes[1]
+    with pytest.raises(sb.InputError, match="take 'shares'"):
+        curve.plot(panel="hydrodynamic")
+    with pytest.raises(sb.InputError, match="panel = 'films'; it must be 'film' or 'hydrodynamic' or 'shares'"):
+        curve.plot(panel="films")
+    axes = curve.plot(panel="shares").axes[1]
     np.testing.assert_array_equal(line(axes, "from the fluid").get_ydata(), curve.observable("fluid_load_share"))
     assert axes.get_ylabel() == "share of the load"
 
@@ -237,7 +263,7 @@ def test_the_lower_axis_is_the_one_that_is_wanted(curve):
     axes.figure.canvas.draw()
     assert axes.child_axes[0].get_xlabel().startswith("Hersey number")
     np.testing.assert_allclose(axes.child_axes[0].get_xlim(), curve.hersey_number[[0, -1]], rtol=1e-12)
-    with pytest.raises(sb.InputError, match=r"abscissa = 'sped'; it must be 'hersey' or 'speed'\.$"):
+    with pytest.raises(sb.InputError, match=r"abscissa = 'sped'; it must be 'speed' or 'hersey'\.$"):
         curve.plot(abscissa="sped")
 
 

@@ -267,7 +267,7 @@ def test_a_ball_refuses_models_that_it_is_not_solved_for():
 
 @pytest.mark.quick
 def test_interference_is_black_without_a_film_and_fades_far_apart():
-    from stribeck.solver.point.plot import interference
+    from stribeck.plot.ball import interference
 
     np.testing.assert_array_equal(interference(0.0), [0, 0, 0])
     np.testing.assert_allclose(interference(1e-4), 0.5, atol=1e-6)

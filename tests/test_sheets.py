@@ -1,6 +1,5 @@
 """A new case runs as it is written; a report is one file with everything in it that asks no server for anything."""
 
-import dataclasses
 import html
 import math
 import re
@@ -14,9 +13,9 @@ from fit_data import measured
 
 import stribeck as sb
 from stribeck.cases.law import LAWS
-from stribeck.data_sheet.picture import draw_report
 from stribeck.data_sheet.report import page_of
 from stribeck.fluids import presets
+from stribeck.plot.curve import draw_report
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import FACTS
 from stribeck.quantities.inputs import INPUT_TABLES
@@ -126,7 +125,7 @@ def test_the_picture_of_a_report_has_films_in_micrometres_and_measured_points_at
     contact, speeds = said.solution.contact, [1e-3, 1e-2, 0.1]
     per_speed = {"speed": 1, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}[abscissa]
     data = measured([speed * per_speed for speed in speeds], [0.5, 0.3, 0.1], abscissa=abscissa)
-    left, right = draw_report(dataclasses.replace(said, data=data)).axes
+    left, right = draw_report(said.curve, data, said.uncertainty).axes
     [points] = [each.lines[0] for each in left.containers if each.get_label() == "measured"]
     assert points.get_xdata() == pytest.approx(speeds) and points.get_ydata() == pytest.approx([0.5, 0.3, 0.1])
     lines = {line.get_label(): line for line in right.lines}

@@ -457,7 +457,7 @@ def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkey
 def test_importing_the_module_does_not_import_xarray():
     code = textwrap.dedent("""
         import sys
-        import stribeck.files.datasets, stribeck.curves.plot
+        import stribeck.files.datasets, stribeck.plot.curve
         assert not {"xarray", "netCDF4", "matplotlib", "pandas"} & set(sys.modules)
     """)
     assert run_python(code).code == 0

@@ -15,9 +15,9 @@ from command_line import FEW, PDMS, call, environment
 
 import stribeck as sb
 from stribeck.cli.exits import complain
-from stribeck.files import pictures
 from stribeck.files.reading import read_bounded
 from stribeck.files.toml import read_toml
+from stribeck.plot import style as pictures
 
 COMMAND = (sys.executable, "-m", "stribeck")
 SOLVE = (*COMMAND, "solve", "--groups", "1e-4", "0.1", "1e-3")

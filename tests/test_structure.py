@@ -31,7 +31,9 @@ EXAMPLE = PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml"
 # physics, so that problems with known answers can test it.
 LAYERS = (
     ("__init__", "__main__", "cli"),
-    ("explorer", "figures", "data_sheet", "experiments"),
+    ("explorer", "figures", "data_sheet"),
+    ("plot",),
+    ("experiments",),
     ("fits", "sweeps", "regimes"),
     ("checks", "uncertainty"),
     ("curves", "batches"),

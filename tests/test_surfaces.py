@@ -10,6 +10,7 @@ from command_line import call
 from scipy.integrate import quad
 
 import stribeck as sb
+from stribeck.plot.surface import plot_surface
 from stribeck.surfaces import (
     RoughSurface,
     SelfAffine,
@@ -23,7 +24,6 @@ from stribeck.surfaces import (
     write_surface_table,
 )
 from stribeck.surfaces.measured_spectrum import line_density
-from stribeck.surfaces.plot import plot_surface
 
 STEP = 1e-6
 FUNDAMENTAL = 2 * math.pi / 128e-6

@@ -22,7 +22,7 @@
 import matplotlib.pyplot as plt
 
 import stribeck as sb
-from stribeck.fits.plot import plot_fit
+from stribeck.plot.fit import plot_fit
 
 data, case = "../../examples/pdms_measured.csv", "../../examples/pdms_fit.toml"
 fit = sb.fit(data, case)

@@ -38,7 +38,7 @@ assert abs(surface.roughness.hurst - 0.8) < 2 * surface.fit.errors["hurst"]
 # Heights, the spectrum with its fit, and the contact law that follows from it:
 
 # %%
-from stribeck.surfaces.plot import plot_surface
+from stribeck.plot.surface import plot_surface
 
 plot_surface(surface)
 

@@ -60,7 +60,7 @@ class BatchSolution(Exported, Shown, ByValue):
         balls in a fluid that thins or in liquid that ends near the contact; else empty.
     """
 
-    _picture = "stribeck.batches.plot.plot_states"
+    _picture = "stribeck.plot.batch.plot_states"
 
     groups: Groups
     contacts: Contacts | None

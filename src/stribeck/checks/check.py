@@ -98,7 +98,7 @@ class Checks(Exported):
         By name of a check, the fact that must be given for it.
     """
 
-    _picture = "stribeck.checks.plot.plot_checks"
+    _picture = "stribeck.plot.checks.plot_checks"
 
     checks: tuple[Check, ...]
     unsolved: tuple[str, ...] = ()

@@ -205,7 +205,7 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
 
 def check_pictures(plot: Path | None, force: bool) -> list[Path]:
     """Return the pictures to write, after a look at whether that will be possible."""
-    from stribeck.files.pictures import PICTURE_ENDINGS
+    from stribeck.plot.style import PICTURE_ENDINGS
 
     if plot is None:
         return []

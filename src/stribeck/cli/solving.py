@@ -352,7 +352,7 @@ def _write(
         for path in outputs:
             actions[path] = lambda path=path: write_data(dataset, path, force=force)  # type: ignore[misc]
     for path in pictures:
-        from stribeck.curves.plot import plot_curve
+        from stribeck.plot.curve import plot_curve
 
         actions[path] = lambda path=path: plot_curve(curve, path, force=force, **shown)  # type: ignore[misc]
     return write_each(actions)

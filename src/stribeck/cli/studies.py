@@ -156,7 +156,7 @@ def fit_command(
         drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
     actions: dict[Path, Callable[[], object]] = {}
     for picture in pictures:
-        from stribeck.fits.plot import plot_fit
+        from stribeck.plot.fit import plot_fit
 
         actions[picture] = lambda picture=picture: plot_fit(  # type: ignore[misc]
             found, picture, force=force, title=loaded.title, notes=not no_notes
@@ -219,7 +219,7 @@ def surface_command(
     scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
     surface = surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments)
     for picture in pictures:
-        from stribeck.surfaces.plot import plot_surface
+        from stribeck.plot.surface import plot_surface
 
         plot_surface(surface, picture, force=force, notes=not no_notes)
     if out is not None:

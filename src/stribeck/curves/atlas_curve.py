@@ -41,7 +41,7 @@ LOG_STEP = 1e-4  # Step of ln(value) in the slope from which a landmark's error 
 class AtlasCurve(BaseCurve):
     """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields."""
 
-    _picture = "stribeck.curves.plot.plot_atlas_curve"
+    _picture = "stribeck.plot.curve.plot_curve"
 
     over: Over  # What varies
     values: Array  # Where the points lie, ascending: the group [-], or SI units where the curve has a contact

@@ -49,6 +49,11 @@ class BaseCurve(Exported, Shown):
 
     @property
     @abstractmethod
+    def law_in_doubt(self) -> Array:
+        """Whether the contact law is outside its range at each point while asperities matter there."""
+
+    @property
+    @abstractmethod
     def _ends(self) -> tuple[float, float]:
         """Values between which the curve is a function."""
 

@@ -59,7 +59,7 @@ class StribeckCurve(BaseCurve, ByValue):
         Points asked for.
     """
 
-    _picture = "stribeck.curves.plot.plot_curve"
+    _picture = "stribeck.plot.curve.plot_curve"
 
     over: Over
     values: Array

@@ -13,9 +13,9 @@ from pathlib import Path
 from stribeck.cases.case import Case
 from stribeck.cases.reading import load_case
 from stribeck.data_sheet.content import Content, content_of
-from stribeck.data_sheet.picture import draw_report
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, path_of
 from stribeck.fits.measurements import Measurements
+from stribeck.plot.curve import draw_report
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 
@@ -98,7 +98,7 @@ def _svg(content: Content) -> str:
 
     stream = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "stribeck"}):
-        draw_report(content).savefig(stream, format="svg", metadata={"Date": None})
+        draw_report(content.curve, content.data, content.uncertainty).savefig(stream, format="svg", metadata={"Date": None})
     text = stream.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
     return text.replace("<svg ", '<svg role="img" aria-label="Friction and film over the speed" ', 1)
@@ -118,7 +118,7 @@ def _write_pdf(content: Content, path: Path) -> None:
                 place = 0.07, 0.955 - i * 0.0117
                 figure.text(*place, text, size=7, weight=weight, family="DejaVu Sans Mono", va="top", parse_math=False)
             book.savefig(figure)
-        book.savefig(draw_report(content))
+        book.savefig(draw_report(content.curve, content.data, content.uncertainty))
 
 
 def _lines(content: Content) -> Iterator[tuple[str, bool]]:

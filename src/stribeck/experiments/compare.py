@@ -85,7 +85,7 @@ class Comparison(Exported, Shown):
         What could not be fitted, and why.
     """
 
-    _picture = "stribeck.experiments.plot.plot_comparison"
+    _picture = "stribeck.plot.experiments.plot_comparison"
 
     candidates: tuple[Candidate, ...]
     failed: dict[str, str]

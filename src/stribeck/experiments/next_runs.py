@@ -106,7 +106,7 @@ class Plan(Exported, Shown):
         Kind of the load, of a cylinder or a ball.
     """
 
-    _picture = "stribeck.experiments.plot.plot_plan"
+    _picture = "stribeck.plot.experiments.plot_plan"
 
     runs: tuple[NextRun, ...]
     before: dict[str, float]

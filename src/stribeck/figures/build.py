@@ -41,7 +41,7 @@ SOURCES_WITHOUT_NUMBERS = (
     "cli/",
     "explorer/",
     "figures/style.py",
-    "files/pictures.py",
+    "plot/",
     "fits/",
     "sweeps/",
 )
@@ -161,7 +161,7 @@ def fingerprint(figure: PaperFigure) -> str:
     for path in sorted(package.rglob("*.py")):
         name = path.relative_to(package).as_posix()
         of_another = name.startswith("figures/article/figure_") and path.stem != figure.stem
-        if not name.startswith(SOURCES_WITHOUT_NUMBERS) and not name.endswith("/plot.py") and not of_another:
+        if not name.startswith(SOURCES_WITHOUT_NUMBERS) and not of_another:
             found.update(name.encode() + b"\0" + path.read_bytes())
     return found.hexdigest()[:16]
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS, blank_figure
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS, blank_figure
 
 if TYPE_CHECKING:
     import xarray

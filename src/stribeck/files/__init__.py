@@ -1,1 +1,1 @@
-"""Files in and out, whole or not at all: tables, datasets, pictures."""
+"""Files in and out, whole or not at all: tables, datasets."""

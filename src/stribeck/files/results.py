@@ -35,7 +35,7 @@ class Drawn:
             Whether an existing file is replaced; otherwise it is kept and the call refused.
         **options
             What this picture alone takes: ``title`` of most, ``notes=False`` of those with notes below,
-            ``abscissa="speed"`` of a curve, ``colours="interference"`` of a ball.
+            ``abscissa="hersey"`` and ``panel="hydrodynamic"`` of a curve, ``colours="interference"`` of a ball.
 
         Returns
         -------

@@ -70,7 +70,7 @@ class Measurements(Exported, Shown, ByValue):
         Rows of the file that look like run-in.
     """
 
-    _picture = "stribeck.fits.plot.plot_measurements"
+    _picture = "stribeck.plot.fit.plot_measurements"
 
     abscissa: Abscissa
     values: Array

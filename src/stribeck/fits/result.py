@@ -142,7 +142,7 @@ class Fit(Exported, Shown, ByValue):
         Predictions of all rows that were made.
     """
 
-    _picture = "stribeck.fits.plot.plot_fit"
+    _picture = "stribeck.plot.fit.plot_fit"
 
     inputs: tuple[FittedInput, ...]
     outcome: FitOutcome

@@ -51,7 +51,7 @@ class Profile(Exported, Shown, ByValue):
         Which of the two units hold.
     """
 
-    _picture = "stribeck.solver.plot.plot_fields"
+    _picture = "stribeck.plot.state.plot_fields"
 
     x: Array
     gap: Array

@@ -77,7 +77,7 @@ class Solution(BaseSolution):
     Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
     """
 
-    _picture = "stribeck.solver.plot.plot_profile"
+    _picture = "stribeck.plot.state.plot_profile"
 
     groups: Groups
     contact: Contact | None

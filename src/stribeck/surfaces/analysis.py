@@ -57,7 +57,7 @@ class Surface(Drawn, Shown):
         What must be known before the numbers are used.
     """
 
-    _picture = "stribeck.surfaces.plot.plot_surface"
+    _picture = "stribeck.plot.surface.plot_surface"
 
     topography: Topography
     shape: Form

@@ -50,7 +50,7 @@ class Sweep(Exported, Shown, ByValue):
         What was found when it began, such as that the sweep before it had died.
     """
 
-    _picture = "stribeck.batches.plot.plot_states"
+    _picture = "stribeck.plot.batch.plot_states"
 
     path: Path
     about: dict[str, Any] = field(repr=False)

@@ -97,7 +97,7 @@ class Uncertainty(Exported):
         Where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty.
     """
 
-    _picture = "stribeck.uncertainty.plot.plot_uncertainty"
+    _picture = "stribeck.plot.uncertainty.plot_uncertainty"
 
     contact: Contact
     errors: dict[str, float]

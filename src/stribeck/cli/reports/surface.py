@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from stribeck.cli.exits import say
+from stribeck.plot.surface import error_text
 from stribeck.quantities.formats import format_si
 from stribeck.surfaces.analysis import Surface
-from stribeck.surfaces.plot import error_text
 
 if TYPE_CHECKING:
     from rich.console import Console

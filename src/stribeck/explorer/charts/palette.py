@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS
 
 __all__ = ["DARK", "LIGHT", "PIN_DASHES", "Palette"]
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.plot.phase_diagram import draw_phase_diagram, draw_phase_space
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
-from stribeck.regimes.plot import draw_phase_diagram, draw_phase_space
 from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:

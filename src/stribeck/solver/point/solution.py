@@ -71,7 +71,7 @@ class Field(Exported, Shown, ByValue):
         Which of the two units hold.
     """
 
-    _picture = "stribeck.solver.point.plot.plot_field"
+    _picture = "stribeck.plot.ball.plot_field"
 
     x: Array
     y: Array
@@ -148,7 +148,7 @@ class PointSolution(BaseSolution):
     Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
     """
 
-    _picture = "stribeck.solver.point.plot.plot_point_solution"
+    _picture = "stribeck.plot.ball.plot_point_solution"
 
     groups: Groups
     contact: Contact | None

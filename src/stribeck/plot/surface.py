@@ -1,77 +1,46 @@
-"""Picture of a surface: its heights, its spectrum with the fit, and the contact law that follows.
-
-matplotlib comes with the extra ``plot`` and is imported on first use, without pyplot.
-"""
+"""Picture of a surface: its heights, its spectrum with the fit, and the contact law that follows."""
 
 from __future__ import annotations
 
 import math
-from importlib.metadata import version
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure, new_figure, picture
-from stribeck.files.writing import PathLike
+from stribeck.plot import style
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, new_figure, readable_unit
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.units import DIMENSIONS
 from stribeck.surfaces.analysis import Surface
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 __all__ = ["plot_surface"]
 
 MAX_PIXELS = 1024  # Most points along a side of the map that is drawn
 
 
-@picture()
-def plot_surface(
-    surface: Surface,
-    path: PathLike | None = None,
-    *,
-    ax: Axes | None = None,
-    force: bool = False,
-    title: str = "",
-    notes: bool = True,
-) -> Figure:
+@style.picture()
+def plot_surface(surface: Surface, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
     """Draw the heights of a surface, its spectrum with the fit, and its contact law.
 
     Parameters
     ----------
-    surface : Surface
-        The surface.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw the heights into, in place of a new figure.
     title : str
         Headline; the name of the file by default.
     """
-    if ax is not None:
-        figure = figure_of(ax)
-        _draw_heights(figure, ax, surface)
-        return finish_figure(figure, path, force)
-    figure, (heights, spectrum, law) = new_figure(
-        (14.0, 4.4),
-        [_caption(surface)],
-        surface.notes if notes else (),
-        title=title or surface.topography.source or "Surface",
-        columns=3,
-        right=0.7,
-    )
-    heights.get_gridspec().update(wspace=0.42)  # type: ignore[union-attr]
+    footer, said = [_caption(surface)], surface.notes if notes else ()
+    headline = title or surface.topography.source or "Surface"
+    figure, (heights, *others) = new_figure((14.0, 4.4), footer, said, title=headline, columns=3, right=0.7, ax=ax)
+    if others:
+        heights.get_gridspec().update(wspace=0.42)  # type: ignore[union-attr]
     _draw_heights(figure, heights, surface)
-    _draw_spectrum(spectrum, surface)
-    _draw_law(law, surface)
-    for axes in (spectrum, law):
+    for axes, draw in zip(others, (_draw_spectrum, _draw_law), strict=False):
+        draw(axes, surface)
         axes.legend(fontsize=8, frameon=False, loc="lower left")
-    return finish_figure(figure, path, force)
+    return figure
 
 
 def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
     z = surface.topography.heights
-    factor, unit = _scale(max(surface.topography.size))
-    height, height_unit = _scale(float(np.abs(z).max()))
+    factor, unit = readable_unit("length", max(surface.topography.size))
+    height, height_unit = readable_unit("length", float(np.abs(z).max()))
     axes.set_xlabel(f"$x$ ({unit})")
     if surface.topography.is_line:
         x = np.arange(z.size) * surface.topography.spacing[0]
@@ -114,20 +83,12 @@ def _draw_spectrum(axes: Axes, surface: Surface) -> None:
         label="measured, standard error",
     )
     smooth = np.geomspace(surface.roughness.q0 * 1.0001, surface.roughness.q1 * 0.9999, 200)
-    axes.plot(
-        smooth,
-        fit.at(smooth, is_line=measured.is_line),
-        color=CONTACT,
-        lw=1.8,
-        label=f"fit, $H$ = {surface.roughness.hurst:.2f}",
-    )
+    name = f"fit, $H$ = {surface.roughness.hurst:.2f}"
+    axes.plot(smooth, fit.at(smooth, is_line=measured.is_line), color=CONTACT, lw=1.8, label=name)
     if "roll_off" in fit.found and surface.roughness.roll_off is not None:
         axes.axvline(surface.roughness.roll_off, color=MARK, lw=1.0, ls=(0, (4, 3)), label="roll-off $q_r$")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    peak = float(density[good].max())
-    axes.set_ylim(max(float(density[shown].min()), float(density[good].min()) * 1e-3) * 0.3, peak * 10)
-    axes.set_xlabel("wave number $q$ (1/m)")
+    low = 0.3 * max(float(density[shown].min()), float(density[good].min()) * 1e-3)
+    axes.set(xscale="log", yscale="log", ylim=(low, 10 * float(density[good].max())), xlabel="wave number $q$ (1/m)")
     axes.set_ylabel("spectrum along the line $C_1$ (m$^3$)" if measured.is_line else "spectrum $C$ (m$^4$)")
     axes.set_title("Power spectrum", size=10, color=GREY, loc="left")
 
@@ -137,14 +98,8 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
     height = np.linspace(0.005, 4.0, 500)
     s = law.alpha * height
     axes.plot(height, law.beta * np.exp(law.log_pressure(s)), color=CONTACT, lw=2.0, label="Persson, fitted spectrum")
-    axes.plot(
-        height,
-        law.beta * np.exp(-s),
-        color=FLUID,
-        lw=1.3,
-        ls=(0, (5, 3)),
-        label=rf"exponential, $\alpha$ = {law.alpha:.2f}, $\beta$ = {law.beta:.3g}",
-    )
+    name = rf"exponential, $\alpha$ = {law.alpha:.2f}, $\beta$ = {law.beta:.3g}"
+    axes.plot(height, law.beta * np.exp(-s), color=FLUID, lw=1.3, ls=style.DASHED, label=name)
     axes.set_yscale("log")
     axes.set_xlabel(r"mean separation $u/h_\mathrm{rms}$")
     axes.set_ylabel(r"contact pressure $p/E^*$")
@@ -170,18 +125,11 @@ def _caption(surface: Surface) -> list[str]:
         f"rms slope {found['rms_slope']:.3g}",
         f"window {surface.window}",
         f"trend {surface.shape.trend}",
-        f"stribeck {version('stribeck')}",
+        style.program(),
     ]
     if found["body_radius"] is not None:
         parts.insert(4, f"radius of the body {format_si(found['body_radius'], 'length')}")
     return parts
-
-
-def _scale(length: float) -> tuple[float, str]:
-    """Return the factor from m to a unit in which a length is a readable number, and that unit."""
-    unit = format_si(length, "length").rpartition(" ")[2]
-    power = next(power for power, known in DIMENSIONS["length"].steps.items() if known == unit)
-    return 10.0**-power, unit
 
 
 def error_text(error: float) -> str:

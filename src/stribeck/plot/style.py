@@ -1,25 +1,28 @@
-"""The style of all pictures: colours, the empty figure with headline and footer, legend and file.
+"""The style of all pictures: colours, the empty figure with headline and footer, axes, legend and file.
 
-matplotlib comes with the extra ``plot`` and is imported on first use. Figures are made without pyplot, so
-that they need no display and change no settings of the caller.
+Figures are made without pyplot, so that they need no display and change no settings of the caller.
 """
 
 from __future__ import annotations
 
+import inspect
 import textwrap
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import wraps
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 from stribeck.quantities.docstrings import complete_docstring
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-Draws = TypeVar("Draws", bound=Callable[..., Any])
+    from matplotlib.axes import Axes as Axes
+    from matplotlib.figure import Figure as Figure
+else:  # Annotations that other modules of pictures import
+    Axes = Figure = Any
 
 PICTURE_ENDINGS = (".png", ".svg", ".pdf")
 
@@ -29,8 +32,14 @@ GREY = "#6e7781"
 CONTACT = "#d55e00"
 FLUID = "#0072b2"
 MARK = "#cc79a7"
+SERIES = (INK, CONTACT, FLUID, MARK, "#009e73", "#e69f00")  # Of lines that are alike, in turn
 TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
+DASHED = (0, (5, 3))
+CONTACT_LINE: dict[str, Any] = {"color": CONTACT, "ls": (0, (6, 2)), "label": "from asperities"}
+FLUID_LINE: dict[str, Any] = {"color": FLUID, "ls": "-.", "label": "from the fluid"}
+ROUGHNESS_LINE: dict[str, Any] = {"color": GREY, "lw": 1.0, "ls": DASHED}
 
+FRICTION = r"friction coefficient $\mu$"
 
 CAPTION_LINE_INCH = 0.19
 LEGEND_INCH = 0.55
@@ -39,7 +48,7 @@ CAPTION_MARGIN_INCH = 0.15  # Free beside a caption
 # The arguments that functions share which draw.
 ARGUMENTS = {
     "path": "str or path-like, optional\n    Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.",
-    "ax": "matplotlib.axes.Axes, optional\n    Axes to draw into, in place of a new figure.",
+    "ax": "matplotlib.axes.Axes, optional\n    Axes to draw the main panel into, in place of a new figure.",
     "force": "bool\n    Whether an existing file is replaced; otherwise it is kept.",
     "title": "str\n    Headline.",
     "notes": "bool\n    Whether the notes stand below the picture.",
@@ -52,14 +61,29 @@ RAISES = (
 )
 
 
-def picture(also: str = "") -> Callable[[Draws], Draws]:
-    """Return a decorator that says of a function which draws what all of them do; ``also`` is what else it refuses."""
+def picture(also: str = "") -> Callable[[Callable[..., Figure]], Callable[..., Figure]]:
+    """Return a decorator that lets a function which draws a result write the picture, and completes its docstring.
 
-    def say(function: Draws) -> Draws:
-        function.__doc__ = complete_docstring(function, ARGUMENTS, RETURNS, RAISES.format(f", or if {also}" if also else ""))
-        return function
+    ``also`` is what else it refuses.
+    """
 
-    return say
+    def decorate(function: Callable[..., Figure]) -> Callable[..., Figure]:
+        @wraps(function)
+        def draw(result: Any, path: PathLike | None = None, *, force: bool = False, **options: Any) -> Figure:
+            figure = function(result, **options)
+            if path is not None:
+                with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
+                    figure.savefig(temporary)
+            return figure
+
+        own, added = inspect.signature(function), inspect.signature(draw, follow_wrapped=False).parameters
+        first, *others = own.parameters.values()
+        draw.__signature__ = own.replace(parameters=[first, added["path"], *others, added["force"]])  # type: ignore[attr-defined]
+        shared = ARGUMENTS | {first.name: f"{first.annotation}\n    What is drawn."}
+        draw.__doc__ = complete_docstring(draw, shared, RETURNS, RAISES.format(f", or if {also}" if also else ""))
+        return draw
+
+    return decorate
 
 
 def blank_figure(width: float, height: float, dpi: float = 150, **options: Any) -> Figure:
@@ -154,8 +178,33 @@ def make_logarithmic(axes: Axes, which: str, values: Array) -> None:
         axis.set_minor_locator(NullLocator())
 
 
-def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
-    """Put one legend for all axes under them, where it covers nothing, in as many columns as the figure is wide for."""
+def readable_unit(dimension: str, largest: float) -> tuple[float, str]:
+    """Return the factor from SI to a unit in which the largest value is a readable number, and that unit."""
+    unit = format_si(largest, dimension).rpartition(" ")[2]
+    return 10.0 ** -next(power for power, known in DIMENSIONS[dimension].steps.items() if known == unit), unit
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Return the label of an axis; numbers have no unit."""
+    return text if unit in ("", "1") else f"{text} ({unit})"
+
+
+def label_rows(axes: Axes, names: Sequence[str]) -> None:
+    """Name the rows of a picture of horizontal bars, the first on top."""
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+
+
+def program() -> str:
+    """Return name and version of the program, for captions."""
+    return f"stribeck {version('stribeck')}"
+
+
+def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4, *, inside: object = False) -> None:
+    """Put one legend for all axes under them, in as many columns as the figure is wide for, or into the last of the axes."""
+    if inside:
+        axes[-1].legend(frameon=False, fontsize=8.5)
+        return
     found: dict[str, Any] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
@@ -177,14 +226,6 @@ def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
         if legend.get_window_extent().x1 <= figure.bbox.x1 or ncols == 1:
             return
         legend.remove()
-
-
-def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
-    """Write the figure where wanted, and return it."""
-    if path is not None:
-        with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
-            figure.savefig(temporary)
-    return figure
 
 
 def caption_lines(figure: Figure, parts: Sequence[Sequence[str]], notes: Sequence[str], room: float) -> list[tuple[str, str]]:

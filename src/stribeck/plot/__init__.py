@@ -1,0 +1,1 @@
+"""Pictures of all results, one module a subject, in one style."""

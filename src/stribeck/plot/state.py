@@ -1,0 +1,165 @@
+"""The picture of one state: gap and pressures along the contact."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import input_texts
+from stribeck.plot import style
+from stribeck.plot.style import (
+    GREY,
+    INK,
+    MARK,
+    Axes,
+    Figure,
+    add_legend,
+    make_logarithmic,
+    new_figure,
+    readable_unit,
+    with_unit,
+)
+from stribeck.quantities.inputs import LINE
+from stribeck.quantities.units import InputError
+from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.solution import Solution
+
+__all__ = ["Scale", "plot_fields", "plot_profile"]
+
+Scale = tuple[float, str]  # Factor to the drawn unit, and the label with that unit
+
+SIZE = (7.5, 6.0)
+
+
+@style.picture()
+def plot_profile(solution: Solution, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
+    """Draw gap and pressures along the contact, in SI units where the solution has a contact."""
+    figure, drawn = new_figure(SIZE, *caption_of(solution, notes), rows=2, title=title or "Gap and pressure", ax=ax)
+    x = _positions(solution)
+    fields = solution.profile(x)
+    scales = scales_of_state(solution, float(np.abs(fields.gap).max()), "position $x$")
+    _draw_along(figure, drawn, fields, scales, solution, np.sqrt(np.clip(1 - x**2, 0, None)))
+    drawn[-1].set_xlim(x[0] * scales[0][0], x[-1] * scales[0][0])
+    mark_failure(solution, drawn)
+    return figure
+
+
+@style.picture("there are fewer than two positions")
+def plot_fields(fields: Profile, *, ax: Axes | None = None, title: str = "") -> Figure:
+    """Draw gap and pressures of a profile, in its units, as far as the pressures reach."""
+    if len(fields.x) < 2:
+        raise InputError(f"the profile has {len(fields.x)} positions; a picture needs two at least.")
+    figure, drawn = new_figure(SIZE, [], rows=2, title=title or "Gap and pressure", ax=ax)
+    size = np.abs(fields.contact_pressure) + np.abs(fields.fluid_pressure)
+    reach = 1.6 * float(np.abs(fields.x[size > 0.02 * size.max()]).max(initial=0.0)) or math.inf
+    near = np.abs(fields.x) <= reach
+    shown = Profile(fields.x[near], fields.gap[near], fields.contact_pressure[near], fields.fluid_pressure[near], fields.unit)
+    _draw_along(figure, drawn, shown, scales_of_fields(shown, shown.x, "position $x$"))
+    return figure
+
+
+def _draw_along(
+    figure: Figure,
+    drawn: list[Axes],
+    fields: Profile,
+    scales: tuple[Scale, Scale, Scale],
+    solution: BaseSolution | None = None,
+    hertz: Array | None = None,
+) -> None:
+    """Draw the gap into the axes above, if there are any, and the pressures into the last."""
+    to_x, to_gap, to_pressure = scales
+    x, (*above, below) = fields.x * to_x[0], drawn
+    draw_pressures(below, fields, x, to_pressure, hertz)
+    below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
+    for axes in above:
+        draw_gap(axes, solution, x, fields.gap, to_gap)
+        axes.tick_params(labelbottom=False)
+        axes.sharex(below)
+    add_legend(figure, drawn, columns=3, inside=not above)
+
+
+def scales_of_fields(fields: Any, x: Array, name: str) -> tuple[Scale, Scale, Scale]:
+    """Return the scales of position, gap and pressure of a profile or a field, in units with readable numbers."""
+    largest = [float(np.abs(values).max()) or 1.0 for values in (x, fields.gap, fields.pressure)]
+    return _scales(None if fields.unit == "Hertz" else (1.0, 1.0, 1.0), largest, name)
+
+
+def scales_of_state(solution: BaseSolution, gap: float, name: str) -> tuple[Scale, Scale, Scale]:
+    """Return the scales of position, gap and pressure of a solution whose largest drawn gap is given."""
+    hertz = None if solution.contact is None else solution.contact.hertz
+    units = None if hertz is None else (hertz.half_width, hertz.indentation, hertz.pressure)
+    return _scales(units, [1.0, gap, 1.0], name)
+
+
+def _scales(units: tuple[float, float, float] | None, largest: list[float], name: str) -> tuple[Scale, Scale, Scale]:
+    """Return scales of fields in given SI units, or in those of Hertz."""
+    if units is None:
+        return (1.0, f"{name[:-1]}/a$"), (1.0, r"gap $h/u_\mathrm{Hz}$"), (1.0, r"pressure $p/p_\mathrm{Hz}$")
+    rows = zip(units, largest, ("length", "length", "pressure"), (name, "gap $h$", "pressure"), strict=True)
+    found = [(unit, text, *readable_unit(dimension, unit * most)) for unit, most, dimension, text in rows]
+    x, gap, pressure = ((unit * factor, with_unit(text, shown)) for unit, text, factor, shown in found)
+    return x, gap, pressure
+
+
+def draw_pressures(axes: Axes, fields: Profile, x: Array, to_pressure: Scale, hertz: Array | None = None) -> None:
+    """Draw the pressures along the contact, and that of Hertz if given."""
+    factor, label = to_pressure
+    if hertz is not None:
+        axes.plot(x, factor * hertz, color=GREY, lw=1.0, ls=(0, (2, 2)), label="dry smooth contact (Hertz)")
+    axes.plot(x, factor * fields.pressure, color=INK, lw=1.8, label="total pressure")
+    axes.plot(x, factor * fields.contact_pressure, lw=1.6, **style.CONTACT_LINE)
+    axes.plot(x, factor * fields.fluid_pressure, lw=1.6, **style.FLUID_LINE)
+    axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    axes.set_ylabel(label)
+
+
+def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to_gap: Scale) -> None:
+    """Draw the gap, and the roughness of a solution if it is visible beside it."""
+    factor, label = to_gap
+    axes.plot(x, factor * gap, color=INK, lw=1.8, label="gap")
+    contact, shown = None if solution is None else solution.contact, gap
+    rms = 0.0 if solution is None else float(solution.groups.relative_roughness) * (1.0 if contact is None else contact.alpha)
+    if rms > max(0.0, 0.03 * gap.min()):
+        shown = np.append(gap, rms)
+        symbol = r"$h_\mathrm{rms}/\alpha$" if contact is None else LINE.symbols["roughness"]
+        axes.axhline(factor * rms, label=f"roughness {symbol}", **style.ROUGHNESS_LINE)
+    if gap.min() > 0:
+        make_logarithmic(axes, "y", factor * shown)
+    axes.set_ylabel(label)
+
+
+def mark_failure(solution: BaseSolution, drawn: list[Axes]) -> None:
+    """Write across the picture of a failed state that the state is no result."""
+    words: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": MARK}
+    for axes in () if solution.outcome.ok else drawn:
+        axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **words)
+
+
+def caption_of(solution: BaseSolution, notes: bool) -> tuple[list[list[str]], list[str]]:
+    """Return the caption of a state's picture: inputs, groups, law and error, and its notes if wanted."""
+    groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
+    error = f"estimated error {solution.error_estimate:.1e}"
+    second = [law_text(solution), f"rtol {solution.rtol:g}", error, style.program()]
+    said = [] if solution.outcome.ok else [solution.outcome.value]
+    return [[*input_texts(solution.contact), *groups], second], [*said, *(solution.notes if notes else ())]
+
+
+def _positions(solution: Solution) -> Array:
+    """Return positions to draw at [a], denser where the nodes are, as far as the pressure reaches."""
+    pressure = np.abs(solution.contact_pressure) + np.abs(solution.fluid_pressure)
+    reach = max(1.6, 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0)))
+    return np.unique(np.concatenate([np.linspace(-reach, reach, 801), solution.x[np.abs(solution.x) < reach]]))
+
+
+def law_text(solution: BaseSolution) -> str:
+    """Return name and parameters of the contact law."""
+    if solution.law in ("dry contact", "smooth"):
+        return solution.law
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in solution.law_parameters.items()
+    )
+    return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
