@@ -57,6 +57,8 @@ LOCATORS = {
     "_zero": "curves",
     "_lowest_of_function": "curves",
     "_lowest_of_points": "curves",
+    "first_zero": "numerics",
+    "least_by_slope": "numerics",
     "crossing": "curves",
     "_passages": "regimes",
     "_located": "regimes",
