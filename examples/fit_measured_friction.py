@@ -20,7 +20,7 @@ def main():
 
 def plot(fit):
     """Draw data, fitted curves and residuals."""
-    from stribeck.fits.plot import plot_fit
+    from stribeck.plot.fit import plot_fit
 
     return plot_fit(fit)
 

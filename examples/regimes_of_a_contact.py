@@ -20,7 +20,7 @@ def main():
 
 def plot(diagram):
     """Draw the regimes and the lines between them."""
-    from stribeck.regimes.plot import plot_phase_diagram
+    from stribeck.plot.phase_diagram import plot_phase_diagram
 
     return plot_phase_diagram(diagram)
 
