@@ -42,7 +42,7 @@ def timed(work: Callable[[], object]) -> tuple[float, object]:
     return time.process_time() - begin, found
 
 
-def sweep_of(groups: sb.Groups) -> sb.Sweep:
+def sweep_of(groups: sb.Groups) -> sb.results.Sweep:
     """Return the states swept in this process."""
     lists = {name: np.asarray(getattr(groups, name)).tolist() for name in ("speed", "load", "roughness")}
     vary = "\n".join(f"{name} = {values}" for name, values in lists.items())

@@ -29,7 +29,6 @@ from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import cold_start
 
 SIDES = {"both infinities": False, "the left infinity": True}
@@ -47,7 +46,7 @@ def draw(number: int, seed: int) -> list[sb.Groups]:
     return states
 
 
-def true_error(s: sb.Solution) -> float:
+def true_error(s: sb.results.Solution) -> float:
     """Return the largest relative error of the observables against a finer and wider mesh."""
     g, coarse = s.groups, s.mesh
     out = coarse.edges[-1] * 2.0 ** np.arange(1, 6)
@@ -73,7 +72,7 @@ def true_error(s: sb.Solution) -> float:
     if g.speed == 0:
         scales[gaps] = np.maximum(scales[gaps], 1e-3 * g.relative_roughness)
     scales[scales == 0] = 1.0
-    values = np.array([getattr(s.observables, name) for name in NAMES])
+    values = s.observables.array()
     return float(np.nanmax(np.abs(values - exact) / scales))
 
 

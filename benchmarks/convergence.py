@@ -56,7 +56,7 @@ def observed(state: State) -> tuple[np.ndarray, float, np.ndarray]:
     """Return the observables of a state, its estimated error and what errors are relative to."""
     point = verify(state, state.groups, FineOperators(state.mesh), 1e-6)
     values = np.array([getattr(point.values, name) for name in NAMES])
-    return values, point.estimate.total, point.estimate.scales
+    return values, point.estimate.total, point.estimate.scales[: len(NAMES)]
 
 
 def exact(groups: sb.Groups) -> State:

@@ -30,7 +30,7 @@ TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
 STATES = {"hydrodynamic": (1.0, 0.1, 1e-4), "mixed": (1e-5, 0.1, 1e-4), "boundary": (1e-8, 0.1, 1e-2)}
 
 
-def cost(groups: sb.Groups, rtol: float, runs: int) -> tuple[float, sb.Solution]:
+def cost(groups: sb.Groups, rtol: float, runs: int) -> tuple[float, sb.results.Solution]:
     """Return the cost of a cold solve in units of the factorisation, and its solution."""
     ratios = []
     for _ in range(runs):

@@ -28,6 +28,7 @@ import fluid_box
 import numpy as np
 
 import stribeck as sb
+from stribeck.contact_laws import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.scaling import SCALINGS
 from stribeck.contacts.with_parts import with_parts
@@ -54,8 +55,11 @@ def law_of(name: str) -> AsperityLaw | None:
         return sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8))
     if name == "table":
         s = np.linspace(0.05, 6.0, 40)
-        return sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s))
-    return {"greenwood-williamson": sb.GreenwoodWilliamson(), "greenwood-tripp": sb.GreenwoodTripp()}.get(name)
+        return sb.contact_laws.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s))
+    return {
+        "greenwood-williamson": GreenwoodWilliamson(),
+        "greenwood-tripp": GreenwoodTripp(),
+    }.get(name)
 
 
 def draw(seed: int, number: int, geometry: str = "line") -> tuple[str, float, float]:
@@ -64,7 +68,7 @@ def draw(seed: int, number: int, geometry: str = "line") -> tuple[str, float, fl
     return LAWS[number % len(LAWS)], float(load), float(kappa)
 
 
-def misses(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
+def misses(curve: sb.results.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
     """Return errors over what a curve states at speeds, shape (speeds, observables), and how many states were not solved."""
     fixed = curve.groups
     groups = sb.Groups(speeds, float(fixed.load[0]), float(fixed.roughness[0]), law=curve.law)
@@ -80,7 +84,7 @@ def misses(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int
     return found, int(np.isnan(found).all(axis=1).sum())
 
 
-def misses_of_ball(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
+def misses_of_ball(curve: sb.results.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the same for a curve of a ball."""
     here, found = curve.at(speeds), np.full((len(speeds), len(UNPLACED)), np.nan)
     scales = {name: np.array([s.state.scales[name] for s in map(curve._at, np.log(speeds))]) for name in UNPLACED}
@@ -127,7 +131,7 @@ def judge_with_parts(seed: int, number: int, places: int, rtol: float, seconds: 
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     took = f"{curve.states} in {time.process_time() - began:.1f} s" + ("" if curve.outcome.ok else f", {curve.outcome.name}")
-    values = np.geomspace(*np.exp(curve._function.coordinates[[0, -1]]), places + 2)[1:-1]
+    values = np.geomspace(*curve.values[[0, -1]], places + 2)[1:-1]
     here, found = curve.at(values), np.full((places, len(ALL_NAMES)), np.nan)
     for i, value in enumerate(values.tolist()):
         try:

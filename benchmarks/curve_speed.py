@@ -34,7 +34,7 @@ def factorisation() -> float:
     return min(times)
 
 
-def curve(rtol: float) -> tuple[float, float, sb.StribeckCurve]:
+def curve(rtol: float) -> tuple[float, float, sb.results.StribeckCurve]:
     """Return the time of the curve, that of its minimum and transitions, and the curve."""
     start = time.process_time()
     result = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-9, 10.0), points=101, rtol=rtol)

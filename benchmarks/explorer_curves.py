@@ -19,9 +19,9 @@ import numpy as np
 from curve_speed import factorisation
 
 from stribeck.cases.reading import load_case
+from stribeck.curves.stribeck_curve import StribeckCurve
 from stribeck.explorer.answer import Answerer
-from stribeck.explorer.charts import charts
-from stribeck.explorer.charts.palette import LIGHT
+from stribeck.explorer.charts import all_charts
 from stribeck.explorer.inputs import inputs
 from stribeck.explorer.inputs.choices import choose
 from stribeck.explorer.inputs.inputs import Inputs
@@ -61,9 +61,9 @@ def go_on(*_: object) -> None:
 
 def shown(model: Answerer, now: Inputs) -> None:
     """Do all that the server does for new inputs, up to the charts of the solved curve."""
-    charts.all_charts(model(now), [], [], LIGHT)
-    model.settle(now, go_on)
-    charts.all_charts(model(now), [], [], LIGHT)
+    all_charts(model(now))
+    list(model.at_rest(now)[0](go_on))
+    all_charts(model(now))
 
 
 def spent(work: Callable[..., object], *arguments: object) -> float:
@@ -93,12 +93,12 @@ def main() -> None:
                 units.append(factorisation())
                 times.append(spent(shown, model, now))
         curve = model(now).curve
-        assert curve is not None and curve.solved is not None and not curve.stale
-        rows = model.diagrams(now, go_on)
+        assert curve is not None and isinstance(curve.found, StribeckCurve)
+        rows = model.at_rest(now)[2](go_on)
         first = spent(next, rows)
         whole = first + spent(list, rows)
         median, most = statistics.median(times), sorted(times)[int(0.9 * len(times))]
-        cells = [f"{1e3 * each:.0f}" for each in (median, most)] + [str(curve.solved.states)]
+        cells = [f"{1e3 * each:.0f}" for each in (median, most)] + [str(curve.found.states)]
         cells += [f"{1e3 * each:.0f}" for each in (first, whole)] + [f"{1e3 * statistics.median(units):.2f}"]
         print(f"| {name} | {' | '.join(cells)} |", flush=True)
         medians.append(median)

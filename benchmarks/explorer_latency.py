@@ -37,16 +37,13 @@ CLOCK = """() => {
   window.moves = [];
   window.solved = false;
   addEventListener('keydown', () => { window.pressed = performance.now(); }, true);
-  const frame = window.explorerFrame;
-  window.explorerFrame = (answer) => {
-    const drawn = frame(answer), start = window.pressed;
-    const source = document.querySelector('.friction .head .caption').textContent;
-    if (answer.html.length && start && (!window.solved || source.startsWith('solved'))) {
+  document.addEventListener('shown', ({ detail }) => {
+    const start = window.pressed, source = document.querySelector('.friction .source').textContent;
+    if (detail.numbers && start && (!window.solved || source.startsWith('solved'))) {
       window.pressed = 0;
       requestAnimationFrame(() => { window.moves.push(performance.now() - start); });
     }
-    return drawn;
-  };
+  });
 }"""
 
 
@@ -103,7 +100,7 @@ def measure_solved(page, address: str, number: int) -> None:
         select = page.locator(f"[data-choice={choice}] select").first
         first = select.input_value()
         select.select_option(value)
-        page.wait_for_function("document.querySelector('.friction .head .caption').textContent.startsWith('solved')")
+        page.wait_for_function("document.querySelector('.friction .source').textContent.startsWith('solved')")
         page.evaluate("window.solved = true")
         print(row(name, moved(page, "load", number, 400)))
         page.evaluate("window.solved = false")

@@ -202,9 +202,8 @@ def true_errors(point: RefinedState) -> np.ndarray:
     fine = solve_state(state.groups, Operators(mesh, state.groups.model), state, 1e-11)
     if not fine.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {fine.outcome.value}")
-    in_article = state.equations.operators.is_base_model
-    exact = observables(fine.equations, fine.y, float(groups.load)).array(in_article)
-    return np.abs(point.values.array(in_article) - exact) / point.estimate.scales
+    exact = observables(fine.equations, fine.y, float(groups.load)).array()
+    return np.abs(point.values.array() - exact) / point.estimate.scales
 
 
 def measured(groups: sb.Groups, parts: dict[str, Any], rtol: float, is_judged: bool) -> dict[str, Any]:

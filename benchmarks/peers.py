@@ -133,7 +133,7 @@ def textbook_film(name: str, nodes: int, speed: float, runs: int = RUNS) -> Smoo
 
 def our_mixed(rtol: float, runs: int) -> Mixed:
     seconds, state = best(lambda: sb.solve(MIXED, rtol=rtol), runs)
-    return Mixed(state.contact_load_share, state.friction(definition=DEFINITION).viscous, seconds, state.error_estimate)
+    return Mixed(state.contact_load_share, state.friction(definition=DEFINITION).fluid, seconds, state.error_estimate)
 
 
 def textbook_mixed(name: str, nodes: int, runs: int = RUNS) -> Mixed:

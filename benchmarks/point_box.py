@@ -32,10 +32,10 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.mesh_choice import Resolution, bytes_of
 from stribeck.equations.point.observables import observables
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
 from stribeck.solver.point.level import band_for, solve_level
-from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import _dry_level, solve_cold
-from stribeck.solver.point.state import WITHOUT_TOLERANCE, PointState
+from stribeck.solver.point.state import PointState
 
 USUAL = "exponential"
 KINDS = (USUAL, "persson", "smooth", USUAL, "persson", "rest", USUAL, "smooth", "persson", USUAL)

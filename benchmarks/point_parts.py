@@ -7,7 +7,9 @@ Usage::
 
 FAMILY is cavitated, a film that ends at ambient pressure and nothing else, or combined: each of motion, a fluid that stiffens
 or thins, flow factors, a layer and such an end with even odds.  Groups are even in the logarithm: speed 1e-7 to 10, load 1e-4
-to 1, kappa 1e-3 to 1; one state in five is smooth, at speed 1e-3 to 10.
+to 1, kappa 1e-3 to 1; one state in five is smooth, at speed 1e-3 to 10.  Families wide_thinning and wide_cavitation have the
+fluids and cavities of fluid_box.py, and groups over all that is solved: speed 1e-7 to 1e3, load 1e-8 to 10, kappa 1e-5 to 10,
+one state in eight smooth, at speed 1e-5 to 1e4.
 
 Each state is solved once more on a finer mesh: all panels near the contact halved and three degrees more, with 1.4 times the
 modes and a rim farther out where the fluid thins; where the film breaks 1.4 times the angles or more, and four degrees more,
@@ -25,6 +27,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import fluid_box
 import numpy as np
 from point_box import FINER_DEGREE, FINER_MODES, SHIFTED
 
@@ -34,12 +37,12 @@ from stribeck.equations.point.mesh_choice import MAX_EXTRA_FAR_PANELS, Resolutio
 from stribeck.equations.point.observables import observables
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
 from stribeck.solver.point.level import solve_level
-from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold
-from stribeck.solver.point.state import WITHOUT_TOLERANCE, PointState
+from stribeck.solver.point.state import PointState
 
-FAMILIES = ("cavitated", "combined")
+FAMILIES = ("cavitated", "combined", "wide_thinning", "wide_cavitation")
 ANGLES = (15, 30, 45, 65, 95, 130)
 """Angles of the judge of a film that breaks: multiples of five, as those of the states."""
 
@@ -51,6 +54,8 @@ MOST_MODES = 200
 def draw(family: str, number: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]:
     """Return groups and parts of one state; those of a number do not depend on the others."""
     rng = np.random.default_rng([seed, FAMILIES.index(family), number])
+    if family.startswith("wide"):
+        return wide(family, number, rng)
     speed, load, kappa, smooth = (float(each) for each in 10 ** rng.uniform((-7, -4, -3, -3), (1, 0, 0, 1)))
     if number % 5 == 4:
         speed, kappa = smooth, 0.0
@@ -69,6 +74,15 @@ def draw(family: str, number: int, seed: int) -> tuple[sb.Groups, dict[str, Any]
     if rng.random() < 0.5:
         parts["solid"] = sb.solids.Layer(float(10 ** rng.uniform(-0.5, 1.5)), float(rng.choice([0.3, 0.45, 0.5])))
     return groups, parts
+
+
+def wide(family: str, number: int, rng: np.random.Generator) -> tuple[sb.Groups, dict[str, Any]]:
+    """Return groups over all that is solved, and the parts of a family of random cylinders."""
+    speed, load, kappa, smooth = (float(each) for each in 10 ** rng.uniform((-7, -8, -5, -5), (3, 1, 1, 4)))
+    if number % 8 == 7:
+        speed, load, kappa = smooth, 1e-3, 0.0
+    parts = fluid_box.PARTS[family](rng, sb.Groups(speed, load, kappa * load))
+    return sb.Groups(speed, load, kappa * load ** (2 / 3), geometry="point"), parts
 
 
 def film_of(speed: float, kappa: float) -> float:

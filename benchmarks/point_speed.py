@@ -89,12 +89,12 @@ def curve(count: int) -> None:
     print("|---|---|---|---|---|---|---|")
     for points, rtol in ((count, 1e-5), (101, 1e-5), (101, 1e-6)):
 
-        def trace(points: int = points, rtol: float = rtol) -> sb.StribeckCurve:
+        def trace(points: int = points, rtol: float = rtol) -> sb.results.StribeckCurve:
             return sb.stribeck_curve(ball(1.0), speed=(1e-7, 10.0), points=points, rtol=rtol)
 
         before = unit()
         seconds, found = timed(trace)
-        assert isinstance(found, sb.StribeckCurve)
+        assert isinstance(found, sb.results.StribeckCurve)
         marks, _ = timed(lambda found=found: found.transitions)
         one = 0.5 * (before + unit())
         film = max(solution.minimum_gap_error for solution in found.solutions)

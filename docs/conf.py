@@ -64,7 +64,9 @@ LIVE = r"""<div id="live-curve">
 
 </div>
 
+<link rel="stylesheet" href="_static/chart.css">
 <script defer src="_static/atlas_table.js"></script>
+<script defer src="_static/chart.js"></script>
 <script defer src="_static/live_curve.js"></script>
 
 *Move the sliders: the [atlas](atlas.md) of solved states is evaluated in your browser, and friction is within 0.01 % of a

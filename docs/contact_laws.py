@@ -59,8 +59,8 @@ ROOM = 1e-2
 class Pair:
     """One load under one law: the state at rest and the curve over the speed."""
 
-    rest: sb.Solution
-    curve: sb.StribeckCurve
+    rest: sb.results.Solution
+    curve: sb.results.StribeckCurve
 
     def speed(self, name: str) -> float:
         """Return the speed group of a landmark, nan where the curve has none."""
@@ -130,15 +130,15 @@ def parting(pairs: dict[float, tuple[Pair, Pair]]) -> str:
     return table([*head, "minimum $\\mu/\\mu_0$, exponential", "Persson"], rows)
 
 
-def simulated(alpha: float, beta: float) -> sb.TableLaw:
+def simulated(alpha: float, beta: float) -> sb.contact_laws.TableLaw:
     """Return the law of the simulated surface for a contact with these coefficients."""
-    rows = sb.TableLaw.read(SIMULATED)
-    return sb.TableLaw(
+    rows = sb.contact_laws.TableLaw.read(SIMULATED)
+    return sb.contact_laws.TableLaw(
         alpha * np.array(rows.separation), np.array(rows.pressure) / beta, title="GFMD, one self-affine surface"
     )
 
 
-def laws_of_surface() -> tuple[sb.surfaces.PerssonLaw, dict[str, sb.surfaces.PerssonLaw | sb.TableLaw | None]]:
+def laws_of_surface() -> tuple[sb.surfaces.PerssonLaw, dict[str, sb.surfaces.PerssonLaw | sb.contact_laws.TableLaw | None]]:
     """Return Persson's law of the simulated surface, and all three laws of it by name."""
     law = sb.surfaces.persson_law(SURFACE)
     return law, {"exponential": None, "Persson": law, "GFMD": simulated(law.alpha, law.beta)}
@@ -166,7 +166,7 @@ def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple
         raise RuntimeError("no minimum")
     state = curve.minimum.solution
     friction = state.friction(curve.boundary_friction, curve.beta, "balanced")
-    return curve.minimum.value, curve.minimum.friction, state.central_separation, friction.contact_share
+    return curve.minimum.speed, curve.minimum.friction, state.central_separation, friction.contact_share
 
 
 def minima() -> str:

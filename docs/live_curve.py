@@ -1,6 +1,6 @@
-"""The table that the live curve of the front page reads: the packaged atlas, as a script that a browser runs.
+"""What the live curve of the front page reads: the packaged atlas as a script that a browser runs, and the explorer's chart.
 
-`make docs` writes it beside docs/_static/live_curve.js. By itself: ``python docs/live_curve.py FOLDER``.
+`make docs` writes both beside docs/_static/live_curve.js. By itself: ``python docs/live_curve.py FOLDER``.
 """
 
 import base64
@@ -19,7 +19,7 @@ from stribeck import atlas
 from stribeck.atlas.grid import BREAK_TERMS, MAX_L_OF_HEAVY
 from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
-from stribeck.quantities.inputs import LINE, quantity
+from stribeck.contacts.geometries import LINE
 from stribeck.quantities.units import DIMENSIONS
 
 FUNCTIONS = ("log_odds", "viscous_balanced", "central_gap", "minimum_gap")
@@ -99,7 +99,7 @@ def inputs() -> dict[str, list[dict]]:
         kind = DIMENSIONS[row.dimension]
         low, high = SLIDERS.get(name, row.usual)
         steps = {str(power): unit for power, unit in kind.steps.items()}
-        value = quantity(name, given[name])
+        value = LINE.checked(name, given[name])
         si.append({"name": name, "label": row.label, "steps": steps, "low": low, "high": high, "value": value})
     by_name = {row["name"]: row for row in si}
     beta, mu0 = by_name["beta"], by_name["boundary_friction"]
@@ -111,9 +111,11 @@ def inputs() -> dict[str, list[dict]]:
 
 
 def write(folder: Path) -> None:
-    """Write the script."""
+    """Write the table as a script, and the chart of the explorer with its colours."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "atlas_table.js").write_text(f"window.stribeckTable = {json.dumps(table(), separators=(',', ':'))};\n")
+    for name in ("chart.js", "chart.css"):
+        (folder / name).write_bytes(files("stribeck.explorer").joinpath(name).read_bytes())
 
 
 if __name__ == "__main__":

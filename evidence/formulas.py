@@ -85,7 +85,7 @@ STATE_QUANTITIES: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
     "offset": lambda s, _: s.offset,
     "contact_load_share": lambda s, _: s.contact_load_share,
     "fluid_load_share": lambda s, _: s.fluid_load_share,
-    "viscous_friction": lambda s, options: s.friction(**_coefficients(options)).viscous,
+    "viscous_friction": lambda s, options: s.friction(**_coefficients(options)).fluid,
     "friction": lambda s, options: s.friction(**_coefficients(options)).total,
 }
 

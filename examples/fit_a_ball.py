@@ -29,7 +29,7 @@ def measured():
     """Return solved friction at both loads with noise, in place of a file: see sb.read_measurements."""
     curves = [sb.stribeck_curve(BALL.replace(load=load), speed=SPEEDS, rtol=1e-4).friction for load in LOADS]
     friction = np.concatenate([np.asarray(curve) for curve in curves])
-    return sb.Measurements(
+    return sb.results.Measurements(
         abscissa="speed",
         values=np.tile(SPEEDS, 2),
         friction=friction * np.exp(0.03 * np.random.default_rng(8).standard_normal(len(friction))),

@@ -27,9 +27,9 @@ def balance(state):
     return {
         "int p w'": relative(weights * here.pressure * (gap_slope - x)),
         "int p_c h'": relative(weights * here.contact_pressure * gap_slope),
-        "published": published.viscous,
-        "balanced": balanced.viscous,
-        "difference": published.viscous - balanced.viscous,
+        "published": published.fluid,
+        "balanced": balanced.fluid,
+        "difference": published.fluid - balanced.fluid,
         "4 F^(1/2)/pi int p_c x": 4 * LOAD**0.5 / np.pi * (weights @ (here.contact_pressure * x)),
         "published, total": published.total,
         "balanced, total": balanced.total,

@@ -41,5 +41,5 @@ if __name__ == "__main__":
     for name in ("body_radius", "h_rms", "hurst"):
         print(f"{name}: {values[name]:.4g} +- {values[name + '_error']:.1g}")
     for name in ("alpha", "beta"):
-        print(f"{name}: {values[name]:.3g}, 95 % interval {values[name + '_interval']}")
+        print(f"{name}: {values[name]:.3g}, 95 % interval {values[name + '_low_95']:.3g} to {values[name + '_high_95']:.3g}")
     plot(found).savefig("contact_law.png")

@@ -1,12 +1,15 @@
 """What the tests of the command share: case files to write, and the command called inside this process or outside."""
 
+import math
 import os
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from stribeck.cli import main
+from stribeck.cli import main, progress
+
+progress.LINE_INTERVAL = math.inf  # On a busy machine a command may take long enough for a line of progress on stderr.
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PDMS = EXAMPLES / "pdms_cylinder.toml"

@@ -26,7 +26,7 @@ def exact(contact=TRUE, low=1e-4, high=0.5, rows=25):
 def measured(values, friction, error=None, abscissa="speed", curve=None, curves=("data",), inputs=({},)):
     """Return measurements as if read from a file."""
     n = len(values)
-    return sb.Measurements(
+    return sb.results.Measurements(
         abscissa=abscissa,
         values=np.asarray(values, dtype=float),
         friction=np.asarray(friction, dtype=float),

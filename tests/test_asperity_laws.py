@@ -8,6 +8,7 @@ from scipy.integrate import quad
 from scipy.special import gamma, pbdv
 
 import stribeck as sb
+from stribeck.contact_laws import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.greenwood import log_moment, log_moment_slope
 
 pytestmark = pytest.mark.quick
@@ -75,8 +76,8 @@ def test_the_popular_fit_of_greenwood_and_tripp_is_wrong_where_contact_begins():
 
 
 def test_summits_give_a_contact_its_beta():
-    one = sb.GreenwoodWilliamson.coefficients(density="1e10 1/m^2", radius="10 um", deviation="0.5 um")
-    two = sb.GreenwoodTripp.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
+    one = GreenwoodWilliamson.coefficients(density="1e10 1/m^2", radius="10 um", deviation="0.5 um")
+    two = GreenwoodTripp.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
     assert one["roughness"] == two["roughness"] == 5e-7
     assert one["alpha"] == two["alpha"] == 1.0
     assert one["beta"] == pytest.approx(4 / 3 * 0.05 * math.sqrt(0.05), rel=1e-12)
@@ -88,8 +89,8 @@ def test_the_load_of_a_summit_is_that_of_hertz():
     eta, R, sigma, E, gap = 1e10, 1e-5, 5e-7, 2e6, 4e-7
     z = sigma * np.random.default_rng(7).standard_normal(1_000_000)
     pressure = eta * np.mean(4 / 3 * E * math.sqrt(R) * np.maximum(z - gap, 0) ** 1.5)
-    beta = sb.GreenwoodWilliamson.coefficients(density=eta, radius=R, deviation=sigma)["beta"]
-    law = beta * E * math.exp(float(sb.GreenwoodWilliamson().log_pressure(np.array([gap / sigma]))[0]))
+    beta = GreenwoodWilliamson.coefficients(density=eta, radius=R, deviation=sigma)["beta"]
+    law = beta * E * math.exp(float(GreenwoodWilliamson().log_pressure(np.array([gap / sigma]))[0]))
     assert pressure == pytest.approx(law, rel=5e-3)
 
 
@@ -102,28 +103,15 @@ def test_two_rough_surfaces_carry_what_their_misaligned_asperities_do():
     r2 = largest**2 * rng.random(1_000_000)  # evenly over a disc
     force = 4 / 3 * E * math.sqrt(R / 2) * np.maximum(z - gap - r2 / (4 * R), 0) ** 1.5
     pressure = eta * eta * math.pi * largest**2 * force.mean()
-    beta = sb.GreenwoodTripp.coefficients(density=eta, radius=R, deviation=sigma)["beta"]
-    law = beta * E * math.exp(float(sb.GreenwoodTripp().log_pressure(np.array([gap / sigma]))[0]))
+    beta = GreenwoodTripp.coefficients(density=eta, radius=R, deviation=sigma)["beta"]
+    law = beta * E * math.exp(float(GreenwoodTripp().log_pressure(np.array([gap / sigma]))[0]))
     assert pressure == pytest.approx(law, rel=2e-2)
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"density": 0.0}, "^density = 0.0 must be positive"),
-        ({"radius": "10 N"}, "^radius = '10 N' is a force"),
-        ({"deviation": "-1 um"}, "^deviation = '-1 um' must be positive"),
-    ],
-)
-def test_impossible_summits_are_refused(changes, sentence):
-    with pytest.raises(sb.InputError, match=sentence):
-        sb.GreenwoodWilliamson.coefficients(**({"density": "1e10 1/m^2", "radius": "10 um", "deviation": "1 um"} | changes))
-
-
 def test_a_state_below_the_mean_plane_says_that_the_model_is_left():
-    heavy = sb.solve(sb.Groups(speed=0.0, load=1.0, roughness=0.01), law=sb.GreenwoodWilliamson())
+    heavy = sb.solve(sb.Groups(speed=0.0, load=1.0, roughness=0.01), law=GreenwoodWilliamson())
     assert heavy.central_gap < 0
     assert any("below their mean plane" in note for note in heavy.notes)
     assert any(note.startswith("The gap is negative: asperities") for note in heavy.notes)
-    light = sb.solve(sb.Groups(speed=0.0, load=0.01, roughness=1e-4), law=sb.GreenwoodWilliamson())
+    light = sb.solve(sb.Groups(speed=0.0, load=0.01, roughness=1e-4), law=GreenwoodWilliamson())
     assert light.notes == ()

@@ -17,7 +17,8 @@ from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
 from stribeck.contacts.model import Model
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.result import path_of
+from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -187,16 +188,18 @@ def test_seals_with_the_law_of_persson_are_read_off_their_table():
     seal = sb.load_case(Path(__file__).parents[1] / "examples" / "rod_seal.toml").contact.replace(cavitation="none")
     read = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, method="atlas")
     solved = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, rtol=1e-5)
-    assert read.table.name == "line-persson"
-    assert (np.abs(read.friction - solved.friction) < read.friction_error).all()
+    assert sb.atlas.for_groups(read.groups).name == "line-persson"
+    assert read.rtol == sb.atlas.for_groups(read.groups).error
+    assert (np.abs(read.friction - solved.friction) < read.friction.error).all()
 
 
 def test_films_that_end_are_read_off_a_table_of_their_own():
     contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact.replace(cavitation="exit")
     ends = {"speed": (1e-3, 1.0), "points": 7}
     read, solved = (sb.stribeck_curve(contact, **ends, rtol=1e-6, method=method) for method in ("atlas", "solver"))
-    assert read.table.name == "line-exit"
-    assert (np.abs(read.friction - solved.friction) < read.friction_error).all()
+    assert sb.atlas.for_groups(read.groups).name == "line-exit"
+    assert read.rtol == sb.atlas.for_groups(read.groups).error
+    assert (np.abs(read.friction - solved.friction) < read.friction.error).all()
     assert read.regimes == solved.regimes
     full = sb.stribeck_curve(contact.replace(cavitation="none"), **ends, method="atlas")
     assert read.minimum.friction < 0.99 * full.minimum.friction
@@ -419,10 +422,10 @@ def test_a_curve_read_off_it_is_the_solved_one(contact):
     assert len(read) == 41
     assert np.allclose(read.values, solved.values, rtol=1e-5)
     solved = sb.stribeck_curve(contact, speed=read.values)
-    for name in ("friction", "friction_viscous", "friction_contact"):
-        assert np.allclose(getattr(read, name), getattr(solved, name), rtol=1e-4)
+    for part in ("total", "fluid", "asperities"):
+        assert np.allclose(getattr(read.friction, part), getattr(solved.friction, part), rtol=1e-4)
     assert np.allclose(read.observable("minimum_gap"), solved.observable("minimum_gap"), rtol=1e-4)
-    assert (np.abs(read.friction - solved.friction) <= read.friction_error).all()
+    assert (np.abs(read.friction - solved.friction) <= read.friction.error).all()
     assert read.regimes == solved.regimes
     assert [mark.name for mark in read.transitions] == [mark.name for mark in solved.transitions]
     for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
@@ -435,7 +438,7 @@ def test_a_curve_over_load_falls_where_the_solved_one_does(contact):
     solved = sb.stribeck_curve(contact, load=(5, 100), points=21)
     assert np.allclose(slope.friction, solved.friction, rtol=1e-4)
     differences = np.gradient(slope.friction, np.log(slope.values))[1:-1]
-    assert np.allclose(slope._slope_at(slope.values)[1:-1], differences, atol=0.02 * np.abs(differences).max())
+    assert np.allclose(path_of(slope).slopes(np.log(slope.values))[1:-1], differences, atol=0.02 * np.abs(differences).max())
 
 
 def test_a_curve_knows_what_it_does_not_have(contact):
@@ -447,8 +450,7 @@ def test_a_curve_knows_what_it_does_not_have(contact):
 
 def test_elasticities_read_off_it_are_the_solved_ones(contact):
     _, right = friction_sensitivities(contact)
-    nothing, found = friction_sensitivities(contact, method="atlas")
-    assert nothing is None
+    found = atlas_sensitivities(contact)
     assert found == pytest.approx(right, abs=2e-4)
 
 
@@ -473,7 +475,7 @@ def test_the_atlas_says_which_states_it_covers():
     speed, load = np.array([0.0, 1e-6, 1e9]), np.array([[1e-3], [2.0]])
     assert sb.atlas.covers(sb.Groups(speed, load, 1e-4)).tolist() == [[True, True, False], [False, False, False]]
     assert sb.atlas.covers(sb.Groups(1e-6, 0.1, np.array([0.0, 1e-4, 1e3]))).tolist() == [True, True, False]
-    other = sb.Groups(1e-6, 0.1, np.array([0.0, 1e-4]), law=sb.GreenwoodTripp())
+    other = sb.Groups(1e-6, 0.1, np.array([0.0, 1e-4]), law=sb.contact_laws.GreenwoodTripp())
     assert sb.atlas.covers(other).tolist() == [True, False]
     for groups in (sb.Groups(1e-6, 0.1, 1e-4), sb.Groups(1e-6, 2.0, 1e-4)):
         if sb.atlas.covers(groups):

@@ -27,7 +27,7 @@ def test_arrays_of_inputs_broadcast_and_each_state_is_that_of_its_contact(found)
         for arguments in ({}, {"definition": "published"}, {"boundary_friction": 0.9}):
             one, many = state.friction(**arguments), found.friction(**arguments)
             assert many[i, 2] == pytest.approx(one, rel=2e-6)
-            assert many.contact[i, 2] == pytest.approx(one.contact, rel=2e-6)
+            assert many.asperities[i, 2] == pytest.approx(one.asperities, rel=2e-6)
         film = state.minimum_gap * contact.hertz.indentation
         assert found.to_si()["minimum_film_thickness"][i, 2] == pytest.approx(film, rel=2e-6)
 

@@ -26,12 +26,13 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; those apart need a browser, valgrind or minutes."""
 
-LONG = {"point_speed"}
+LONG = {"point_speed", "surface_errors", "peers", "curve_bound"}
 """Those that take a while even so."""
 
 APART = {
     "fluid_speed",
     "point_box",
+    "point_estimate",
     "point_exit_speed",
     "point_parts",
     "walk",

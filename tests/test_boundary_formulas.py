@@ -374,7 +374,7 @@ def test_the_viscous_friction_is_that_of_each_definition(definition):
     kappas, errors = (1e-3, 1e-4, 1e-5), []
     for kappa in kappas:
         groups = slow(1e-3, kappa, 1e-6)
-        right = sb.solve(groups, rtol=1e-8).friction(beta=1.0, definition=definition).viscous
+        right = sb.solve(groups, rtol=1e-8).friction(beta=1.0, definition=definition).fluid
         errors.append(boundary.viscous_friction.function(groups, 1.0, definition) / right - 1)
     assert np.polyfit(np.log(kappas), np.log(np.abs(errors)), 1)[0] == pytest.approx(2 / 3, abs=0.06)
     assert abs(errors[-1]) < 0.011

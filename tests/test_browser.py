@@ -30,7 +30,7 @@ pytestmark = pytest.mark.browser
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LONG = 30_000  # ms; a shared machine may be slow
 
-CHART = "name => getElement(Number(document.querySelector('.chart-' + name).id.slice(1))).options"
+CHART = "name => document.querySelector('.chart-' + name).chart.options ?? {series: []}"
 NUMBERS = """() => Object.fromEntries([...document.querySelectorAll('.numbers [data-key]')].map(
     row => [row.dataset.key, [row.dataset.value, Number(row.dataset.error)]]))"""
 
@@ -79,7 +79,7 @@ def open_page(chromium, address):
         page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
         page.on("request", lambda request: asked.append(request.url))
         page.goto(f"{address}&{query.lstrip('?')}")
-        page.wait_for_selector(".chart-diagram canvas")
+        page.wait_for_selector(".numbers [data-key=regime]")
         page.wait_for_function("location.search.includes('definition=')")  # it rests
         return page
 
@@ -124,7 +124,7 @@ def check_numbers(page, now):
     expected = {
         "friction_published": friction["published"].total,
         "friction_balanced": friction["balanced"].total,
-        "contact_friction_share": chosen.contact / chosen.total,
+        "contact_friction_share": chosen.asperities / chosen.total,
         "fluid_load_share": solution.fluid_load_share,
         "contact_load_share": solution.contact_load_share,
         "central_film_thickness": solution.central_gap * now.contact.hertz.indentation,
@@ -134,7 +134,7 @@ def check_numbers(page, now):
     }
     for key, value in expected.items():
         assert abs(float(shown[key][0]) - value) <= 2 * shown[key][1] + 1e-15 * abs(value), key
-    assert shown["regime"][0] == sb.regime_of(solution.fluid_load_share, chosen.contact / chosen.total)
+    assert shown["regime"][0] == sb.regime_of(solution.fluid_load_share, chosen.asperities / chosen.total)
 
 
 def point(page):
@@ -177,7 +177,7 @@ def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
     page = open_page()
     assert not page.locator(".chart-plane").is_visible() and not page.locator("[data-row=wetted_radius]").is_visible()
     now = at_rest(page, lambda: pick(page, "geometry", "point"))
-    page.wait_for_selector("body:not(.working)")
+    page.wait_for_selector(".explorer:not(.working)")
     page.wait_for_function("document.querySelector('.chart-plane canvas')?.getBoundingClientRect().width > 100")
     assert isinstance(now.contact, sb.PointContact)
     solution = sb.solve(now.contact, rtol=now.rtol)
@@ -235,7 +235,7 @@ def test_dragging_a_slider_follows_the_hand(open_page):
 
     now = at_rest(page, drag)
     place = float(slider(page, "speed").input_value())
-    low, high = np.log10([inputs.FIELDS["line"]["speed"].low, inputs.FIELDS["line"]["speed"].high])
+    low, high = np.log10([*inputs.FIELDS["line"]["speed"].usual])
     assert place == pytest.approx(low + 0.75 * (high - low), abs=0.15)
     assert np.log10(now.contact.speed) == pytest.approx(place, abs=0.01)
     check_numbers(page, now)
@@ -316,8 +316,8 @@ def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
     [
         ("Picture of the curve (PNG)", "-curve.png", b"\x89PNG"),
         ("Picture of the fields (SVG)", "-state.svg", b"<?xml"),
-        ("Curves (CSV)", ".csv", b"# title: PDMS cylinder"),
-        ("Gap and pressure (CSV)", "-profile.csv", b"# title: PDMS cylinder"),
+        ("Curves (CSV)", ".csv", b"# source: stribeck "),
+        ("Gap and pressure (CSV)", "-profile.csv", b"# source: stribeck "),
         ("Case file of this state (TOML)", ".toml", b"title = "),
     ],
 )
@@ -448,7 +448,9 @@ def test_it_fits_a_phone(open_page):
 def test_it_is_dark_where_the_system_is(open_page):
     page = open_page(color_scheme="dark")
     page.wait_for_selector("body.body--dark")
-    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction' && s.color !== '#1f2328')")
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")
+    ink = page.evaluate("getComputedStyle(document.querySelector('.chart-friction canvas')).getPropertyValue('--ink')")
+    assert ink.strip() != "#1f2328"
 
 
 def test_the_distances_are_those_of_the_regimes_command(open_page):

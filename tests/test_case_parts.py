@@ -132,7 +132,10 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
             r"\] layer_thickness = '2 mm' is given, but",
         ),
         ({"solid": {"model": "rubber"}}, r"\[solid\] model = 'rubber' must be one of 'half-space', 'layer'"),
-        ({"solid": {"model": "prony", "layer_thickness": "2 mm"}}, r"\[solid\] relaxation_times is missing beside model"),
+        (
+            {"solid": {"model": "prony", "layer_thickness": "2 mm"}},
+            r"\[solid\] relaxation_times is missing, which .* needs",
+        ),
         (
             {"fluid": {"model": "eyring", "stress": 1e6, "eyring_stress": 2e6}},
             r"\] stress = 1000000.0 is eyring_stress, which",
@@ -160,20 +163,17 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"fluid": {"preset": "water", "model": "cross"}}, r"\[fluid\] model = 'cross' is given, but a preset"),
         ({"fluid": "water"}, r"\[fluid\] fluid = 'water' must be a table"),
         ({"cavitation": {}}, r"\[cavitation\] model is missing"),
-        ({"cavitation": {"model": "swift"}}, "must be one of 'none', 'exit'"),
-        (
-            {"cavitation": {"model": "reform", "pressure": "1 kPa"}},
-            r"\[cavitation\] cavity_pressure = '1 kPa' must be zero or below",
-        ),
+        ({"cavitation": {"model": "swift"}}, "must be 'none', 'exit'"),
         ({"motion": {}}, r"\[motion\] slide_to_roll is missing"),
         ({"flow_factors": {"gamma": 3}}, r"\[flow_factors\] model is missing"),
         ({"flow_factors": {"model": "effective-medium", "gamma": 1}}, r"\[flow_factors\] gamma = 1 is given"),
         ({"solid": {"poisson_ratio": 0.5}}, r"\[solid\] layer_thickness is missing"),
-        ({"solid": {"modulus_ratio": 3}}, r"\[solid\] retardation_time is missing beside modulus_ratio; add .* = \"10 ms\""),
-        ({"solid": {"retardation_time": "1 s", "modulus_ratio": 0.5}}, r"\[solid\] modulus_ratio = 0.5 must be above 1"),
+        (
+            {"solid": {"modulus_ratio": 3}},
+            r"\[solid\] retardation_time is missing, which .* needs; add .* = \"10 ms\"",
+        ),
         ({"solid": {"retardation_time": "1 s", "moduli": [1]}}, r"\[solid\] .* two descriptions"),
         ({"solid": {"relaxation_times": "1 s", "moduli": [1]}}, r"\[solid\] relaxation_times = '1 s' must be a list"),
-        ({"solid": {"layer_thickness": "-1 mm"}}, r"\[solid\] layer_thickness = '-1 mm'"),
     ],
 )
 def test_what_is_wrong_in_a_table_is_said_with_its_name(tables, said):

@@ -50,6 +50,6 @@ def test_a_curve_tells_once_from_where_on():
 def test_the_command_prints_it(capsys, tmp_path):
     full = tmp_path / "full.toml"
     full.write_text(SEAL.read_text().replace('model = "exit"', 'model = "none"'))
-    assert "Note: Behind the contact the fluid pressure falls 0.14" in call(capsys, "solve", full).out
+    assert "Note: Behind the contact the fluid pressure falls 0.14" in call(capsys, "solve", full, "-v").out
     assert "cavitate" not in call(capsys, "solve", SEAL).out
     assert "cavitate" not in call(capsys, "solve", PDMS).out

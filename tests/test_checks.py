@@ -10,9 +10,9 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
-from stribeck import FiniteSurface
 from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of, checks_of_curve, checks_of_solution
+from stribeck.contact_laws import FiniteSurface
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.facts import fact_values
 from stribeck.surfaces import SelfAffine, persson_law
@@ -178,7 +178,7 @@ def test_the_tail_of_the_law_moves_the_minimum_of_the_demo_by_a_fifth():
     doubts = "The model applies, with doubts about contact law at the minimum. Largest error stated: 26 %"
     assert found.applies and found.headline.startswith(doubts)
     assert "stribeck check" not in str(found)
-    gaussian = TRUE.replace(alpha=1.0, law=sb.GreenwoodTripp())  # its tail is its own
+    gaussian = TRUE.replace(alpha=1.0, law=sb.contact_laws.GreenwoodTripp())  # its tail is its own
     assert "tail of the contact law" not in verdicts(gaussian, "tail")
 
 
@@ -186,7 +186,7 @@ def test_the_tail_of_the_law_moves_the_minimum_of_the_demo_by_a_fifth():
 def test_the_finite_surface_has_the_pressures_of_the_simulation():
     law = persson_law(SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8))
     finite = FiniteSurface(law.alpha, law)
-    rows = sb.TableLaw.read(EXAMPLES / "gfmd_mean_gap.csv")
+    rows = sb.contact_laws.TableLaw.read(EXAMPLES / "gfmd_mean_gap.csv")
     for gap, pressure in list(zip(rows.separation, rows.pressure, strict=True))[-2:]:
         assert law.beta * np.exp(finite.log_pressure(law.alpha * gap)) == pytest.approx(pressure, rel=0.02)
         assert law.beta * np.exp(law.log_pressure(law.alpha * gap)) > 1.4 * pressure
@@ -197,7 +197,7 @@ def test_the_finite_surface_has_the_pressures_of_the_simulation():
         differences = (shape.log_pressure(inside + step) - shape.log_pressure(inside - step)) / (2 * step)
         assert shape.log_slope(inside) == pytest.approx(differences, rel=1e-6, abs=1e-6)
     with pytest.raises(sb.InputError, match="a tail of its own"):
-        FiniteSurface(2.0, sb.GreenwoodTripp())
+        FiniteSurface(2.0, sb.contact_laws.GreenwoodTripp())
     with pytest.raises(sb.InputError, match="positive number"):
         FiniteSurface(0)
 
@@ -404,7 +404,7 @@ OUT_OF_RANGE = {
     "gap below the range of the exponential law": TRUE.replace(load=600.0, speed="1 um/s"),
     "gap above the range of the exponential law": TRUE.replace(speed="20 mm/s"),
     "asperities below their mean plane": TRUE.replace(
-        alpha=1.0, beta=1e-3, law=sb.GreenwoodWilliamson(), load=300.0, speed=0.0
+        alpha=1.0, beta=1e-3, law=sb.contact_laws.GreenwoodWilliamson(), load=300.0, speed=0.0
     ),
     "wide contact": TRUE.replace(modulus="100 kPa", load="500 N/m"),
     "hard contact": STEEL,

@@ -71,7 +71,7 @@ def case(tmp_path):
 @pytest.mark.parametrize("geometry", SCALES)
 def test_a_command_takes_a_part_or_refuses_it_by_name(capsys, case, geometry, part, command):
     path = case(geometry, part)
-    answer = call(capsys, command, path, *COMMANDS[command])
+    answer = call(capsys, command, path, *COMMANDS[command], *(["-v"] if command == "solve" else []))
     if answer.code == 2:
         assert is_refused(geometry, answer)
         return

@@ -38,22 +38,20 @@ def heated(stop, **options):
     return march(correct, 0.0, stop, Steps(0.05, 0.1, 1e-7), **options)
 
 
-def test_a_march_follows_a_branch_through_its_targets():
-    path = heated(0.36, targets=[0.05, 0.2, 0.3])
-    assert path.outcome.ok
-    for p in (0.05, 0.2, 0.3, 0.36):
-        np.testing.assert_allclose(path.at(p).x, temperature(p), atol=1e-9)
+def test_a_march_follows_a_branch_to_its_end():
+    path = heated(0.36)
+    assert path.outcome.ok and path.coordinates[-1] == 0.36
+    for p, root in zip(path.coordinates, path.states, strict=True):
+        np.testing.assert_allclose(root.x, temperature(p), atol=1e-9)
 
 
 def test_a_march_halts_before_a_fold_and_keeps_the_branch_behind_it():
-    path = heated(0.5, targets=[0.1, 0.2, 0.3])
+    path = heated(0.5)
     assert path.outcome is Outcome.PATH_LOST
     assert not path.failure.outcome.ok
     assert EXPLOSION - 1e-4 < path.coordinates[-1] < EXPLOSION
     for p, root in zip(path.coordinates, path.states, strict=True):
         np.testing.assert_allclose(root.x, temperature(p), atol=1e-6)
-    with pytest.raises(ValueError, match=r"no point at 0\.5.*lost"):
-        path.at(0.5)
 
 
 # The engine, on states that are nothing but their coordinate
@@ -89,17 +87,13 @@ def marched(correct, start, stop, *, first, longest, shortest, order=3, **option
 
 
 @pytest.mark.parametrize(("start", "stop"), [(0.0, 3.0), (3.0, -1.0), (-2.0, 0.1)])
-def test_a_march_hits_its_ends_and_every_target_exactly(start, stop):
-    targets = list(np.random.default_rng(5).uniform(min(start, stop), max(start, stop), 9))
-    path = marched(Corrector(), start, stop, targets=targets, **LENGTHS)
+def test_a_march_hits_its_ends_exactly(start, stop):
+    path = marched(Corrector(), start, stop, **LENGTHS)
     assert path.outcome.ok
-    assert {start, stop, *targets} <= set(path.coordinates)
     assert (path.coordinates[0], path.coordinates[-1]) == (start, stop)
     steps = np.diff(path.coordinates) * np.sign(stop - start)
     assert (steps > 0.0).all()
     assert steps.max() <= 0.5 * (1 + 1e-12)
-    for target in targets:
-        assert path.at(target).s == target
 
 
 def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
@@ -110,11 +104,6 @@ def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
     np.testing.assert_allclose(hard[1:6] / hard[:5], 0.5)
     assert hard.min() >= 0.5e-3
     np.testing.assert_allclose(even[:-2], 0.1)
-
-
-def test_a_target_close_by_does_not_shorten_the_steps_after_it():
-    path = marched(Corrector(effort=4), 0.0, 2.0, targets=[0.01, 0.012], **LENGTHS)
-    np.testing.assert_allclose(np.diff(path.coordinates)[2:10], 0.1)
 
 
 def test_a_failed_step_is_retried_shorter_and_nothing_behind_it_is_lost():
@@ -148,10 +137,9 @@ def test_a_state_that_is_none_counts_as_a_failure():
 
 
 def test_a_path_with_no_way_on_is_lost_next_to_its_end():
-    path = marched(Corrector(fails=lambda s, before: s > 1.0), 0.0, 2.0, targets=[0.25], **LENGTHS)
+    path = marched(Corrector(fails=lambda s, before: s > 1.0), 0.0, 2.0, **LENGTHS)
     assert path.outcome is Outcome.PATH_LOST
     assert 1.0 - 2e-3 < path.coordinates[-1] <= 1.0
-    assert path.at(0.25).s == 0.25
     assert path.failure.outcome is Outcome.STEP_LIMIT
 
 
@@ -161,31 +149,22 @@ def test_a_failed_start_is_named_by_its_own_outcome():
     assert path.states == ()
 
 
-@pytest.mark.parametrize("where", ["correct", "on_point"])
-def test_an_interrupt_keeps_the_points_before_it(where):
-    def interrupt(s):
+def test_an_interrupt_ends_a_march():
+    def correct(s, history):
         if s > 1.0:
             raise KeyboardInterrupt
-
-    def correct(s, history):
-        if where == "correct":
-            interrupt(s)
         return Plain(s)
 
-    path = marched(correct, 0.0, 3.0, on_point=lambda s, _: interrupt(s) if where == "on_point" else None, **LENGTHS)
-    assert path.outcome is Outcome.INTERRUPTED
-    assert len(path.states) == len(path.coordinates) >= 4
-    assert (path.coordinates[-1] > 1.0) == (where == "on_point")
+    with pytest.raises(KeyboardInterrupt):
+        marched(correct, 0.0, 3.0, **LENGTHS)
 
-    resumed = marched(
-        Corrector(),
-        path.coordinates[-1],
-        3.0,
-        history=list(zip(path.coordinates, path.states, strict=True)),
-        **LENGTHS,
-    )
+
+def test_a_march_goes_on_from_known_points():
+    path = marched(Corrector(), 0.0, 3.0, **LENGTHS)
+    known = list(zip(path.coordinates, path.states, strict=True))[:4]
+    resumed = marched(Corrector(), known[-1][0], 3.0, history=known, **LENGTHS)
     assert resumed.outcome.ok
-    assert resumed.states[: len(path.states)] == path.states
+    assert resumed.states[:4] == path.states[:4]
 
 
 def test_the_corrector_sees_the_last_accepted_points_only():
@@ -200,18 +179,6 @@ def test_the_corrector_sees_the_last_accepted_points_only():
     assert len(corrector.asked) > len(accepted)
 
 
-def test_progress_is_told_each_accepted_point_once():
-    told = []
-    path = marched(
-        Corrector(fails=lambda s, before: s - before > 0.2),
-        0.0,
-        2.0,
-        on_point=lambda s, state: told.append((s, state)),
-        **LENGTHS,
-    )
-    assert told == list(zip(path.coordinates, path.states, strict=True))
-
-
 def test_extrapolation_is_exact_for_polynomials_of_its_order():
     s = np.array([0.0, 0.3, 1.1, 1.2])
     for degree in range(4):
@@ -224,8 +191,6 @@ def test_extrapolation_is_exact_for_polynomials_of_its_order():
     [
         ("shortest", {"shortest": 0.0}),
         ("longest", {"longest": 0.05}),
-        ("targets", {"targets": [0.5, 2.5]}),
-        ("targets", {"targets": [-0.5]}),
         ("stop", {"stop": math.inf}),
         ("history", {"history": [(0.5, Plain(0.5))]}),
     ],

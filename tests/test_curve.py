@@ -78,7 +78,7 @@ def test_every_point_is_the_state_that_a_single_solve_finds(over, ends):
     for i, value in enumerate(curve.values):
         alone = sb.solve(CONTACT.replace(**{over: float(value)}), rtol=1e-8)
         single = alone.friction()
-        assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction_error[i] + single.error))
+        assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction.error[i] + single.error))
         for name in ("central_gap", "minimum_gap", "flux_gap", "contact_load_share"):
             both = curve.rtol + alone.rtol
             assert curve.observable(name)[i] == pytest.approx(getattr(alone, name), rel=2 * both, abs=2 * both)
@@ -103,15 +103,15 @@ def test_a_curve_over_the_load_changes_the_speed_group_too():
 
 @pytest.mark.quick
 def test_the_parts_of_friction_add_up_and_the_error_covers_them(curve):
-    np.testing.assert_allclose(curve.friction_contact + curve.friction_viscous, curve.friction, rtol=1e-14)
-    assert (curve.friction_error > 0).all()
-    assert (curve.friction_error < 1e-5 * curve.friction).all()
+    np.testing.assert_allclose(curve.friction.asperities + curve.friction.fluid, curve.friction, rtol=1e-14)
+    assert (curve.friction.error > 0).all()
+    assert (curve.friction.error < 1e-5 * curve.friction).all()
     assert curve.error_estimate <= curve.rtol
 
 
 def test_both_abscissas_are_those_of_the_paper(curve):
     np.testing.assert_allclose(curve.hersey_number, 0.05 * curve.values / 30.0, rtol=1e-12)
-    fast = curve.friction_contact < 1e-6 * curve.friction
+    fast = curve.friction.asperities < 1e-6 * curve.friction
     assert fast.sum() >= 3
     # The law combines its two limits and is within 6 % of the truth between them.
     np.testing.assert_allclose(curve.friction[fast], curve.hydrodynamic_friction[fast], rtol=0.07)
@@ -148,7 +148,7 @@ def test_progress_counts_every_point_once():
 def test_the_automatic_range_reaches_from_the_plateau_to_the_hydrodynamic_branch(definition):
     curve = sb.stribeck_curve(CONTACT, points=13, definition=definition)
     assert curve.friction[0] == pytest.approx(0.7, rel=1e-3)
-    assert curve.friction_contact[-1] < 1e-3 * curve.friction[-1]
+    assert curve.friction.asperities[-1] < 1e-3 * curve.friction[-1]
     assert curve.friction[-1] > 3 * curve.minimum.friction
     assert [regime for regime, _, _ in curve.regime_ranges] == ["boundary", "mixed", "hydrodynamic"]
 
@@ -158,13 +158,13 @@ def test_beyond_the_range_of_the_law_the_plateau_is_lower_and_found_too():
     slope = np.diff(np.log(curve.friction[:2])) / np.diff(np.log(curve.values[:2]))
     assert abs(slope[0]) < 1e-2
     assert curve.friction[0] < 0.7
-    assert curve.friction_contact[-1] < 1e-3 * curve.friction[-1]
+    assert curve.friction.asperities[-1] < 1e-3 * curve.friction[-1]
 
 
 def test_a_smooth_contact_has_no_plateau_and_covers_ten_decades():
     curve = sb.stribeck_curve(load=0.1, roughness=0, points=3)
     np.testing.assert_allclose(curve.values, [1e-9, 1e-4, 10], rtol=1e-12)
-    assert (curve.friction_contact == 0).all()
+    assert (curve.friction.asperities == 0).all()
 
 
 # --- minimum and transitions ---
@@ -235,7 +235,7 @@ def test_transitions_lie_where_cold_solves_have_these_shares(curve):
         assert alone.fluid_load_share == pytest.approx(share, abs=1e-7)
         assert marks[name].friction == pytest.approx(alone.friction().total, rel=1e-7)
     alone = sb.solve(CONTACT.replace(speed=marks["asperities cause 10 % of the friction"].value), rtol=1e-9).friction()
-    assert alone.contact / alone.total == pytest.approx(0.1, abs=1e-7)
+    assert alone.asperities / alone.total == pytest.approx(0.1, abs=1e-7)
 
 
 def test_a_transition_agrees_with_the_root_that_cold_solves_have(curve):
@@ -324,7 +324,7 @@ def test_each_kind_of_note_is_told_once(curve):
         ({"load": ("1 N", "2 N")}, "load = '1 N' is a force"),
         ({"speed": (1, 2), "load": (1, 2)}, "speed and load are both ranges"),
         ({"rtol": 1e-20}, "rtol = 1e-20; it must be a number from 1e-11"),
-        ({"definition": "mine"}, "definition = 'mine'; it must be one of 'balanced', 'published'"),
+        ({"definition": "mine"}, "definition = 'mine' must be 'balanced' or 'published'"),
         ({"boundary_friction": -1}, "boundary_friction = -1 must be zero or positive"),
     ],
 )

@@ -50,7 +50,7 @@ def normal_width(label, low, high):
 
 @pytest.mark.parametrize("options", [("--range", "0.1 um/s", "10 um/s"), ("--over", "roughness", "--range", "2 um", "4 um")])
 def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, options, drawn, capsys, tmp_path):
-    answer = call(capsys, "curve", case, *options, "--points", 3, "--rtol", "1e-4", "--plot", tmp_path / "curve.png")
+    answer = call(capsys, "curve", case, *options, "--points", 3, "--rtol", "1e-4", "-v", "--plot", tmp_path / "curve.png")
     assert answer.code == 0, answer.err
     [band] = [each for each in drawn[0].axes[0].collections if "by errors of the inputs" in each.get_label()]
     heights = band.get_paths()[0].vertices[:, 1]

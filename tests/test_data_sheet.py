@@ -9,9 +9,9 @@ from command_line import EXAMPLES, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
+from stribeck.contacts.forms import FORMS
+from stribeck.contacts.geometries import LINE
 from stribeck.data_sheet.content import _inputs
-from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
-from stribeck.quantities.inputs import INPUT_TABLES, LINE
 from stribeck.quantities.uncertain import split_error
 from stribeck.uncertainty.states import SampledStates, _values
 
@@ -55,18 +55,20 @@ def test_a_data_sheet_becomes_a_contact(sheet):
     assert case.conversions[0].startswith("youngs_modulus = 5.521 MPa from shore_a = 70: E = 0.0981") and "Gent 1958" in str(
         case.conversions
     )
-    assert case.errors == {"youngs_modulus": pytest.approx(0.3), "roughness": pytest.approx(0.1)}
+    assert case.errors == {"modulus": pytest.approx(0.3), "roughness": pytest.approx(0.1)}
 
 
 @pytest.mark.quick
-def test_a_value_that_is_given_is_not_called_assumed():
-    assert read_given({"shore_a": 70}).sentences[0].endswith("poisson_ratio = 0.5 assumed.")
-    assert "assumed" not in read_given({"shore_a": 70, "poisson_ratio": 0.5}).sentences[0]
+def test_a_value_that_is_given_is_not_called_assumed(tmp_path):
+    path = tmp_path / "case.toml"
+    for given, assumed in (({}, True), ({"poisson_ratio": "0.5"}, False)):
+        path.write_text(case_text(SHEET | given))
+        assert sb.load_case(path).conversions[0].endswith("poisson_ratio = 0.5 assumed.") == assumed
 
 
 def test_shore_d_is_that_of_its_source():
-    given = read_given({"shore_d": 40})
-    assert math.log10(given.values["youngs_modulus"] / 1e6) == pytest.approx(0.0235 * 90 - 0.6403)
+    modulus = TRUE.replace(shore_d=40).modulus
+    assert math.log10(0.75 * modulus / 1e6) == pytest.approx(0.0235 * 90 - 0.6403)
 
 
 @pytest.mark.quick
@@ -86,8 +88,7 @@ def test_python_takes_a_data_sheet_too():
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"shore_a": "95"}, "shore_a = 95 must be between 20 and 90"),
-        ({"width": None}, "force = '15.4 N' needs width too, as in width = '20 mm'"),
+        ({"width": None}, "width is missing beside force = '15.4 N'; add a length, for example width = "),
         ({"load": '"770 N/m"'}, "load = '770 N/m' and force = '15.4 N' and width = '20 mm' are both given"),
         ({"rotational_speed": '"5 Hz"'}, "may mean turns or radians per second; write it in rpm or rad/s"),
         ({"ra": '"0.4 +- x um"'}, "cannot be read; write it as '1.0 +- 0.2 um'"),
@@ -106,13 +107,17 @@ def test_what_cannot_be_converted_is_named_alone(tmp_path, changes, sentence):
 
 
 @pytest.mark.quick
-def test_the_table_of_conversions_is_whole():
-    for row in CONVERSIONS:
-        assert row.of in LINE.quantities and row.formula and row.source
-        values = {each.name: float(each.typical) if each.dimension == "number" else each.typical for each in row.inputs}
-        found = read_given(values, INPUT_TABLES[row.geometry or "line"])
-        assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.sentences) == 1
-    assert not set(GIVEN) & set(LINE.quantities)
+def test_every_form_of_an_input_is_taken_in_its_place_and_said_where_it_has_a_formula(tmp_path):
+    path = tmp_path / "case.toml"
+    for form in FORMS:
+        assert bool(form.formula) == bool(form.source)
+        own = {name: None for name in (form.of, LINE.stands_for[form.inputs[0].name])} if not form.joins else {}
+        given = own | {each.name: each.example for each in form.inputs}
+        if form.geometry == "point":
+            given |= {"geometry": '"point"'}
+        path.write_text(case_text(given))
+        case = sb.load_case(path)
+        assert len(case.conversions) == bool(form.formula) and case.contact.modulus > 0
 
 
 @pytest.mark.quick
@@ -221,17 +226,17 @@ def test_errors_that_say_nothing_are_refused():
 def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path, capsys, monkeypatch):
     from stribeck.regimes.margins import RegimeMargins
 
-    monkeypatch.setattr("stribeck.cli.reports.explain.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    monkeypatch.setattr("stribeck.regimes.overview.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
     path = tmp_path / "case.toml"
     path.write_text(case_text({"roughness": None, "ra": '{ value = "0.8 um", error = "0.2 um" }', "speed": '"20 mm/s"'}))
-    answer = call(capsys, "regimes", path)
+    answer = call(capsys, "regimes", path, "-v")
     assert answer.code == 0
     assert "Converted: roughness = 1.003 µm from ra = '0.8 um +- 0.2 um'" in answer.out
     assert "Probability of each regime: boundary 0 %, mixed" in answer.out
     found = json.loads(call(capsys, "regimes", path, "--json").out)
     assert sum(found["uncertainty"]["regime_probabilities"].values()) == pytest.approx(1)
     assert len(found["conversions"]) == 1
-    assert "Converted:" in call(capsys, "solve", path).out
+    assert "Converted:" in call(capsys, "solve", path, "-v").out
 
 
 def test_errors_of_a_contact_on_a_layer_move_the_layer_in_hertz_units_too():
@@ -255,19 +260,19 @@ def test_the_drag_behind_a_ball_whose_film_breaks_is_that_of_its_own_far_film():
     state = sb.solve(contact, rtol=1e-3)
     for definition in ("balanced", "published"):
         viscous = _values(state, definition, contact)[1]
-        assert viscous * contact.beta == pytest.approx(state.friction(definition=definition).viscous, rel=1e-12)
+        assert viscous * contact.beta == pytest.approx(state.friction(definition=definition).fluid, rel=1e-12)
 
 
 @pytest.mark.quick
 def test_what_no_solver_knows_is_printed_as_a_bound():
     def spread(*numbers, dimension="number"):
-        return sb.Spread("share", "share", numbers[0], numbers[0], numbers[1:], numbers[1:], dimension)
+        return sb.results.Spread("share", "share", numbers[0], numbers[0], numbers[1:], numbers[1:], dimension)
 
     assert spread(3e-10, 4.8e-13, 8.9e-8).texts == ("< 1e-06", "< 1e-06")
     assert spread(3e-10, 4.8e-13, 2e-3).texts == ("< 1e-06", "< 1e-06 to 0.002")
     assert spread(3e-10, 1e-10, 1e-9, dimension="length").texts == ("300 pm", "100 pm to 1 nm")
     shares = {"roughness": 0.99, "beta": 0.0099, "load": 1e-4}
-    found = sb.Uncertainty(TRUE, {}, (), {"mixed": 1 - 5e-5, "hydrodynamic": 5e-5}, shares, "atlas")
+    found = sb.results.Uncertainty(TRUE, {}, (), {"mixed": 1 - 5e-5, "hydrodynamic": 5e-5}, shares, "atlas")
     assert found.probabilities == "mixed 100 %, hydrodynamic < 0.1 %"
     assert found.sources == ("Sources of the variance of friction: roughness 99 %, contact-law beta 0.99 %.",)
 

@@ -140,24 +140,32 @@ def names_in_tables():
     return [name.rpartition(".")[2] for name in re.findall(r"`([A-Za-z_.0-9]+)`", "\n".join(lines))]
 
 
-RESULTS = (sb.Groups, sb.LineContact, sb.HertzScales, sb.Friction, sb.Profile, sb.Solution, sb.StribeckCurve)
+RESULTS = (
+    sb.Groups,
+    sb.LineContact,
+    sb.results.HertzScales,
+    sb.results.Friction,
+    sb.results.Profile,
+    sb.results.Solution,
+    sb.results.StribeckCurve,
+)
 RESULTS += (
-    sb.Fit,
-    sb.FittedInput,
+    sb.results.Fit,
+    sb.results.FittedInput,
     sb.FitSettings,
-    sb.Measurements,
-    sb.Landmark,
+    sb.results.Measurements,
+    sb.results.Landmark,
     sb.Case,
-    sb.Sweep,
-    sb.SweepDesign,
-    sb.SweepProgress,
+    sb.results.Sweep,
+    sb.results.SweepDesign,
+    sb.results.SweepProgress,
 )
 
 
 @pytest.mark.parametrize("kind", RESULTS, ids=lambda kind: kind.__name__)
 def test_the_table_of_symbols_names_every_field(kind):
-    parts = {"contact", "viscous", "total", "error"}
-    fields = parts if kind is sb.Friction else {each.name for each in dataclasses.fields(kind) if each.name[0] != "_"}
+    parts = {"asperities", "fluid", "total", "error"}
+    fields = parts if kind is sb.results.Friction else {each.name for each in dataclasses.fields(kind) if each.name[0] != "_"}
     assert fields - set(names_in_tables()) == set()
 
 

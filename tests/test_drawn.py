@@ -33,10 +33,10 @@ def results():
         "uncertainty": sb.propagate(contact, {"roughness": 0.2}),
         "measurements": data,
         "fit": fit,
-        "comparison": sb.Comparison(
+        "comparison": sb.results.Comparison(
             (Candidate("one", fit, 1.0, 0.0, 0.9), Candidate("two", fit, 5.5, 4.5, 0.1)), {"no": "why"}
         ),
-        "plan": sb.Plan((run,), {"roughness": 0.3}, 0.05, (run, other)),
+        "plan": sb.results.Plan((run,), {"roughness": 0.3}, 0.05, (run, other)),
     }
 
 
@@ -69,12 +69,65 @@ def test_every_result_draws_itself_also_into_given_axes(results, kind, tmp_path)
         found.plot(ax="here")
 
 
+@pytest.fixture(scope="module")
+def parts(results, tmp_path_factory):
+    """Return what results are made of, and what belongs to no contact alone."""
+    path, told = tmp_path_factory.mktemp("sweep") / "sweep.toml", []
+    path.write_text("[groups]\nload = 0.1\nroughness = 0\n[vary]\nspeed = [0, 0]\n")
+    done = sb.sweep(path, path.with_suffix(".sqlite"), on_progress=told.append)
+    scan = sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv")
+    return results | {
+        "check": results["checks"].checks[0],
+        "spread": results["uncertainty"]["friction"],
+        "fitted input": results["fit"].inputs[0],
+        "friction": results["solution"].friction,
+        "Hertz scales": results["solution"].contact.hertz,
+        "landmark": results["curve"].minimum,
+        "surface": sb.surfaces.analyse(scan),
+        "design": sb.load_sweep(path),
+        "sweep": done,
+        "progress": told[-1],
+    }
+
+
+OTHERS = (
+    "check",
+    "spread",
+    "fitted input",
+    "friction",
+    "Hertz scales",
+    "landmark",
+    "surface",
+    "design",
+    "sweep",
+    "progress",
+)
+
+
+@pytest.mark.parametrize("kind", (*KINDS, *OTHERS))
+def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(parts, kind, tmp_path):
+    pytest.importorskip("xarray")
+    found = parts[kind].to_dataset()
+    assert found.data_vars and found.attrs["title"]
+    for name, values in found.variables.items():
+        assert values.attrs["units"] and len(values.attrs["long_name"]) > 2, name
+        if name.endswith("_error") and name.removesuffix("_error") in found:
+            assert values.dims == found[name.removesuffix("_error")].dims
+            assert "error" in values.attrs["long_name"]
+    found.to_netcdf(tmp_path / "one.nc")
+
+
+def test_the_results_above_are_all_that_have_numbers(parts):
+    kinds = {type(each) for each in parts.values()}
+    names = {name for name in dir(sb.results) if getattr(sb.results, name) not in kinds}
+    assert names == {"Explanation", "FitOutcome"}  # which are words
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_result_becomes_a_dataset_that_a_file_keeps(results, kind, tmp_path):
     xarray = pytest.importorskip("xarray")
     found = results[kind].to_dataset()
     assert found.sizes and found.attrs["title"]
-    assert all(each.attrs["long_name"] for each in found.variables.values() if each.dims)
     results[kind].to_netcdf(tmp_path / "one.nc")
     with xarray.open_dataset(tmp_path / "one.nc") as kept:
         assert dict(kept.sizes) == dict(found.sizes)

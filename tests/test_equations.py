@@ -1,7 +1,6 @@
 """The coupled equations: the Jacobian and the parameter derivatives against differences, admissible steps."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ import pytest
 from stribeck import Groups
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.unknowns import Layout
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
 
@@ -206,16 +204,16 @@ def test_a_small_step_is_admissible_whole(case):
     assert equations.admissible(y, -1e-3 * y * np.append(np.ones(mesh.size), [0, 1])) == 1.0
 
 
-def test_the_size_of_a_step_is_its_largest_relative_change_of_a_gap():
-    y = np.array([1.0, 1e-6, 2.0, -0.6, 0.5])
-    article = SimpleNamespace(is_base_model=True)
-    layout = SimpleNamespace(
-        layout=Layout(5, slice(0, 3), slice(3, 5), slice(3, 4), slice(4, 5), slice(3, 3), slice(5, 5), slice(5, 5)),
-        operators=article,
-    )
-    assert Equations.size(layout, y, np.array([0.1, 0.0, 0.0, 50.0, 0.01])) == pytest.approx(0.1)
-    assert Equations.size(layout, y, np.array([0.1, -3e-7, 0.0, 0.0, 0.0])) == pytest.approx(0.3)
-    assert Equations.size(layout, y, np.array([0.0, 0.0, 0.0, 0.0, -0.4])) == pytest.approx(0.8)
+def test_the_size_of_a_step_is_its_largest_relative_change_of_a_gap(case):
+    (speed, load, roughness), mesh, y = case
+    equations = equations_of(speed, load, roughness, mesh)
+    step = np.zeros_like(y)
+    step[[3, -2]] = 0.1 * y[3], 50.0
+    assert equations.size(y, step) == pytest.approx(0.1)
+    step[5] = -0.3 * y[5]
+    assert equations.size(y, step) == pytest.approx(0.3)
+    step[-1] = -0.8 * y[-1]
+    assert equations.size(y, step) == pytest.approx(0.8)
 
 
 # Operators
@@ -229,8 +227,8 @@ def test_the_operators_follow_from_deflection_and_running_integral():
     inside = np.arange(mesh.size) < mesh.size - mesh.order
     expected = [
         (operators.deflection_of_gradient @ values, operators.deflection @ pressure),
-        (operators.load_of_gradient @ values, mesh.weights @ pressure),
-        (operators.moment_of_gradient @ values, (mesh.weights * mesh.nodes * pressure)[inside].sum()),
+        (operators.load.of(operators.integral)(values), mesh.weights @ pressure),
+        (mesh.arm.of(operators.integral)(values), (mesh.weights * mesh.nodes * pressure)[inside].sum()),
     ]
     for found, exact in expected:
         assert np.abs(found - exact).max() < 1e-12 * (1 + np.abs(exact).max())

@@ -39,12 +39,12 @@ def state_on(groups, order, tolerance, newton=1e-11, halved=False):
 
 
 def judged(state):
-    """Observables and their estimated relative errors, by part."""
+    """Observables of any film and their estimated relative errors, by part."""
     point = verify(state, state.groups, FineOperators(state.mesh), 1e-6)
     values = np.array([getattr(point.values, name) for name in NAMES])
-    estimate = point.estimate
-    names = ("discretisation", "interpolation", "rounding")
-    parts = {part: getattr(estimate, part) / estimate.scales for part in names}
+    names = ("discretisation", "interpolation", "rounding", "scales")
+    estimate = replace(point.estimate, **{part: getattr(point.estimate, part)[: len(NAMES)] for part in names})
+    parts = {part: getattr(estimate, part) / estimate.scales for part in names[:3]}
     return values, parts, estimate
 
 
@@ -87,7 +87,7 @@ def test_the_defect_measures_the_error_at_the_nodes(case):
 @pytest.mark.parametrize(("load", "kappa"), [(0.001835, 0.5123), (0.007547, 0.4913)])
 def test_the_defect_sees_a_contact_pressure_that_dies_away_on_wide_panels(load, kappa):
     """That of a Gaussian surface falls to nothing at a few roughnesses: finer nodes must resolve it where panels do not."""
-    groups = sb.Groups(3e-3, load, kappa * load, law=sb.GreenwoodTripp())
+    groups = sb.Groups(3e-3, load, kappa * load, law=sb.contact_laws.GreenwoodTripp())
     solution = sb.solve(groups, rtol=1e-9)
     edges = np.array([-8.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 8.0])
     guess = cold_start(groups).states[-1]
@@ -129,7 +129,7 @@ def test_an_iteration_that_stopped_early_is_seen(case):
     change = np.append(gap, [1e-5 * rng.normal(), 1e-4 * state.flux_gap])
     values, parts, estimate = judged(replace(state, y=state.y + change))
     error = np.abs(values - exact) / estimate.scales
-    large = error > 0.03 * error.max()
+    large = (error > 0.03 * error.max()) & (parts["interpolation"] < error)  # what lies between the nodes is no defect
     ratio = (parts["discretisation"] / np.maximum(error, 1e-300))[large]
     assert error.max() > 1e-6
     assert (ratio > 1).all()
@@ -151,13 +151,13 @@ def test_a_difference_of_meshes_bounds_the_defect():
 @pytest.mark.quick
 def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
     s = solved(*STATES["boundary"])
-    assert set(s.errors) == set(NAMES)
+    assert set(s.errors) == {*NAMES, "viscous_upper"}
     assert s.errors["fluid_load_share"] < 1e-6  # of a share that is itself far smaller
     assert s.fluid_load_share < 1e-6
     values, _, estimate = judged(state_on(s.groups, 10, 1e-3))
     assert np.array_equal(estimate.scales[:2], [1.0, 1.0])
     assert np.array_equal(estimate.scales[2:], np.abs(values[2:]))
-    assert s.error_estimate == max(s.errors.values())
+    assert s.error_estimate == max(s.errors[name] for name in NAMES)  # drag counts relative to the larger of both walls
 
 
 def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_errors):
@@ -169,7 +169,7 @@ def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_er
             assert s.error_estimate <= rtol
             assert error.max() <= rtol
             ratios[name, rtol] = error.max() / s.error_estimate
-            singles[name, rtol] = (error / s.relative_errors).max()
+            singles[name, rtol] = (error / [s.errors[each] for each in NAMES]).max()
     assert np.mean([ratio <= 1 for ratio in ratios.values()]) >= 0.85, ratios
     assert max(ratios.values()) < 10, ratios
     assert max(singles.values()) < 30, singles

@@ -16,7 +16,7 @@ import sys
 import time
 import weakref
 from contextlib import closing
-from urllib.parse import parse_qsl, quote
+from urllib.parse import quote
 
 import pytest
 
@@ -76,9 +76,9 @@ def ask(server, path="/", method="GET", body=None, token=True, **headers):
             return answer.status, dict(answer.getheaders()), answer.read().decode("utf-8", "replace")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(server):
-    """Return the name of a page that was opened."""
+    """Return the name of a page that was opened; one that no browser takes closes after a minute."""
     return client_of(ask(server)[2])
 
 
@@ -114,7 +114,7 @@ def test_it_listens_on_this_machine_alone(server):
 
 
 @pytest.mark.parametrize(
-    "query", ["pin=x", "pin=", "pinmodel=x", "model=[", "rest=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]
+    "query", ["pin=x", "pin=", "tables=x", "tables=[", "tables=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]
 )
 def test_no_address_brings_the_server_down(server, query):
     assert ask(server, f"/?{query}")[0] == 200
@@ -150,19 +150,20 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
     from nicegui.client import Client
     from starlette.requests import Request
 
-    from stribeck.explorer import opening, server, tab
+    from stribeck.explorer import server, tab
+    from stribeck.explorer.inputs import url
 
     scope = {"type": "http", "method": "GET", "path": "/", "headers": [], "query_string": b"", "server": ("127.0.0.1", 80)}
 
     async def open_many():
         core.loop = asyncio.get_running_loop()
         start = server.example()
-        opened, shown = await opening.opening([], start)
+        opened = url.decode([], start)
         tasks = []
         for _ in range(tab.MAX_WAITING_PAGES + 3):
             client = Client(ui.page("/"), request=Request(dict(scope)))
             with client:
-                tasks.append(asyncio.create_task(tab.Tab(opened, start, shown).open()))
+                tasks.append(asyncio.create_task(tab.Tab(opened, start).open()))
             await asyncio.sleep(0)
         await asyncio.gather(*tasks[:3])
         waiting, left = len(tab.WAITING_PAGES), sum(not task.done() for task in tasks)
@@ -175,30 +176,19 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
     assert waiting == left == 50
 
 
-def test_a_page_opens_with_the_pinned_curves_of_its_address():
-    from stribeck.explorer import opening, server
-    from stribeck.explorer.inputs import url
-
-    start = server.example()
-    query = [("pin", dict(parse_qsl(url.encode(start, [url.Pin("kept", start.contact, "balanced")])))["pin"])]
-    opened, shown = asyncio.run(opening.opening(query, start))
-    assert opened.problems == {}
-    assert [name for name, _, _ in shown.pins] == ["kept"]
-
-
 def test_a_tab_that_is_closed_is_collected():
     from nicegui import core, ui
     from nicegui.client import Client
 
-    from stribeck.explorer import opening, server, tab
+    from stribeck.explorer import server, tab
+    from stribeck.explorer.inputs import url
 
     async def open_and_close():
         core.loop = asyncio.get_running_loop()
         start = server.example()
-        opened, shown = await opening.opening([], start)
         client = Client(ui.page("/"))
         with client:
-            made = tab.Tab(opened, start, shown)
+            made = tab.Tab(url.decode([], start), start)
         kept = [weakref.ref(each) for each in (client, made, made.page, made.model)]
         client.delete()
         await asyncio.sleep(0)

@@ -22,11 +22,13 @@ from stribeck.fluids import (
     Roelands,
     local_flow,
 )
+from stribeck.fluids.blend import blend
 from stribeck.fluids.effective_medium import PERCOLATION, medium_width
 from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.numerics.trace import Trace
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 RNG_SEED = 4711
@@ -69,47 +71,35 @@ def differences(function, at, step=1e-6):
 # Films
 
 
+FUNCTIONS = {
+    "gradient": lambda film, *of: film.gradient(*of),
+    "drag on the substrate": lambda film, *of: film.tractions(*of)[0],
+    "drag on the cylinder": lambda film, *of: film.tractions(*of)[1],
+    "drag in the cavity": lambda film, *of: film.cavity_traction(*of),
+}
+
+
 @pytest.mark.quick
+@pytest.mark.parametrize("function", FUNCTIONS)
 @pytest.mark.parametrize("name", FILMS)
-def test_slopes_of_a_film_are_differences_of_what_it_returns(name):
-    film = FILMS[name].at(1.3)
-    h, p, m = some_films()
-    p = p if film.uses_pressure else None
-    for values, slopes in (
-        (film.gradient, film.slopes),
-        (lambda *of: film.tractions(*of)[0], lambda *of: film.traction_slopes(*of)[0]),
-        (lambda *of: film.tractions(*of)[1], lambda *of: film.traction_slopes(*of)[1]),
-        (film.cavity_traction, film.cavity_traction_slopes),
-    ):
-        found = slopes(h, p, m)
-        scale = 1e-7 * (1 + np.abs(values(h, p, m)))
-        tolerance = {"rtol": 2e-6, "atol": scale.max()}
-        np.testing.assert_allclose(found.by_gap, differences(lambda x, v=values: v(x, p, m), h), **tolerance)
-        np.testing.assert_allclose(found.by_flux, differences(lambda x, v=values: v(h, p, x), m), **tolerance)
-        if p is None:
-            assert found.by_pressure is None
-        else:
-            np.testing.assert_allclose(found.by_pressure, differences(lambda x, v=values: v(h, x, m), p), **tolerance)
+def test_a_traced_film_has_the_differences_of_what_it_returns(name, function):
+    given = dict(zip(("gap", "pressure", "flux_gap"), some_films(), strict=True)) | {"speed": np.array(1.3)}
+    if not FILMS[name].uses_pressure:
+        given["pressure"] = None
+    if not FILMS[name].uses_speed:
+        del given["speed"]
 
+    def values(speed=1.3, **at):
+        return FUNCTIONS[function](FILMS[name].at(speed), *at.values())
 
-@pytest.mark.quick
-@pytest.mark.parametrize("name", [name for name, film in FILMS.items() if film.uses_speed])
-def test_the_slope_with_the_speed_is_a_difference_of_films_at_two_speeds(name):
-    h, p, m = some_films()
-    p = p if FILMS[name].uses_pressure else None
-    film = FILMS[name].at(1.3)
-
-    def at(log_speed, what):
-        return what(FILMS[name].at(1.3 * np.exp(log_speed)))
-
-    for what, slopes in (
-        (lambda film: film.gradient(h, p, m), film.slopes(h, p, m)),
-        (lambda film: film.tractions(h, p, m)[0], film.traction_slopes(h, p, m)[0]),
-        (lambda film: film.tractions(h, p, m)[1], film.traction_slopes(h, p, m)[1]),
-        (lambda film: film.cavity_traction(h, p, m), film.cavity_traction_slopes(h, p, m)),
-    ):
-        expected = differences(lambda x, what=what: at(x, what), 0.0)
-        np.testing.assert_allclose(slopes.by_speed, expected, rtol=2e-6, atol=1e-8)
+    traced = {each: None if value is None else Trace.number(each, np.asarray(value)) for each, value in given.items()}
+    found, plain = values(**traced), values(**given)
+    np.testing.assert_allclose(found.value, plain, rtol=1e-13, atol=1e-14 * np.abs(plain).max())  # walls differ by rounding
+    tolerance = {"rtol": 2e-6, "atol": 1e-7 * (1 + np.abs(plain).max())}
+    for each, value in given.items():
+        if value is not None:
+            expected = differences(lambda x, each=each: values(**given | {each: x}), value)
+            np.testing.assert_allclose(np.broadcast_to(found.columns.get(each, 0.0), plain.shape), expected, **tolerance)
 
 
 @pytest.mark.quick
@@ -266,19 +256,18 @@ def test_at_rest_a_fluid_with_a_plateau_is_newtonian_and_a_power_law_is_finite()
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", FILMS)
-def test_a_milder_film_goes_from_nearly_newtonian_to_the_film_itself(name):
+def test_a_blend_goes_from_the_newtonian_film_to_the_film_itself(name):
     h, p, m = some_films()
     film = FILMS[name]
     p = p if film.uses_pressure else None
 
     def gradient(part):
-        return film.milder(part).at(1.3).gradient(h, p, m)
+        return blend(film, part).at(1.3).gradient(h, p, m)
 
     np.testing.assert_allclose(gradient(1.0), film.at(1.3).gradient(h, p, m), rtol=1e-12)
-    newtonian = Newtonian(slide=film.slide).gradient(h, None, m)
-    mild, all_of_it = (np.abs(gradient(part) / newtonian - 1).max() for part in (1e-6, 1.0))
-    assert mild < 0.1
-    assert all_of_it > 3 * mild or name == "plain"
+    np.testing.assert_allclose(gradient(0.0), Newtonian().gradient(h, None, m), rtol=1e-12)
+    half = gradient(0.5)
+    assert (np.abs(half - gradient(1.0)) <= np.abs(gradient(0.0) - gradient(1.0))).all()
 
 
 # Pressure and density
@@ -414,18 +403,10 @@ def test_the_friction_factor_is_the_mean_of_one_over_the_width():
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: Carreau("-1 ms", 0.5), "relaxation_time"),
         (lambda: Carreau("1 ms", 1.5), "thicken"),
-        (lambda: Carreau("1 m", 0.5), "is a length"),
         (lambda: Carreau("1 ms", 0.5, "2 Pa*s").scaled(FilmUnits(1, 1, 1, 1.0)), "below the viscosity"),
         (lambda: Cross("1 ms", 1.0), "Carreau"),
-        (lambda: Eyring(0.0), "stress"),
-        (lambda: PowerLaw("1 ms", 0.0), "exponent"),
-        (lambda: Barus(-1.0), "pressure_coefficient"),
-        (lambda: Barus("1 GPa"), "inverse pressure"),
-        (lambda: Roelands(1e-8, reference_pressure=0), "reference_pressure"),
         (lambda: Roelands(1e-8).scaled(FilmUnits(1, 1, 1, 1e-5)), "Barus"),
-        (lambda: DowsonHigginson(density_limit=0.9), "density_limit"),
         (lambda: PatirCheng(2.0, gamma=2.0), "1/9, 1/6"),
         (lambda: PatirCheng(2.0, substrate_share=2), "substrate_share"),
         (lambda: PatirCheng(2.0, 3.0, friction_factors=True), "isotropic"),

@@ -9,8 +9,9 @@ from test_model_parts import REFERENCE, observed, solved
 import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.observables import friction_scale
+from stribeck.equations.drag import friction_scale
 from stribeck.fluids import Barus, Carreau, DowsonHigginson, EffectiveMedium, Eyring, PatirCheng, Roelands
+from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
@@ -62,10 +63,10 @@ def with_friction(state, row):
 
 
 def through(row):
-    """Return the state of a row, found from that of milder fluids."""
+    """Return the state of a row, found from that of a blend with a Newtonian fluid."""
     film, guess = film_of(row), None
     for part in PARTS.get(row["case"], (1.0,)):
-        guess = solved(Model(film.milder(part), Cavitation.EXIT), row["speed"], row["load"], row["kappa"], guess)
+        guess = solved(Model(blend(film, part), Cavitation.EXIT), row["speed"], row["load"], row["kappa"], guess)
     return guess
 
 
@@ -242,10 +243,10 @@ def power_law_states(exponent, time, longer=1e4):
 def test_a_note_says_where_the_drag_of_a_power_law_hangs_on_its_plateau():
     state, lower, notes = power_law_states(0.6, 1.0)
     assert abs(state.central_gap / lower.central_gap - 1) < 1e-8
-    assert 1.03 < lower.friction().viscous / state.friction().viscous < 1.05
+    assert 1.03 < lower.friction().fluid / state.friction().fluid < 1.05
     assert ["far outside the contact" in note for note in notes] == [True]
     state, lower, notes = power_law_states(0.9, 1.0)
-    assert abs(lower.friction().viscous / state.friction().viscous - 1) < 3e-5
+    assert abs(lower.friction().fluid / state.friction().fluid - 1) < 3e-5
     assert notes == []
 
 

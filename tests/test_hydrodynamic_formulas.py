@@ -16,7 +16,7 @@ SPEEDS = np.geomspace(1e-10, 1e8, 55)
 def films():
     """Central gap, flux gap and friction over speeds of 18 decades, three in each."""
     found = sb.solve_batch(sb.Groups(SPEEDS, 0.1, 0.0), rtol=1e-6)
-    return np.array([found.central_gap, found.flux_gap, found.friction.viscous])
+    return np.array([found.central_gap, found.flux_gap, found.friction.fluid])
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_the_next_term_of_slow_speed_is_that_of_the_solver():
         ratio = np.array([getattr(s, name) for s in states]) / u**1.5
         assert np.diff(ratio)[0] / np.diff(u)[0] / C == pytest.approx(slope, abs=within)
     ratio = (
-        np.array([s.friction(boundary_friction=0, beta=1).viscous for s in states])
+        np.array([s.friction(boundary_friction=0, beta=1).fluid for s in states])
         / u
         / (4 * math.sqrt(0.1) / (3 * math.pi * C))
     )

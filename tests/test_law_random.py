@@ -19,10 +19,10 @@ def laws():
     return {
         "persson": persson_law(SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
         "narrow": persson_law(SelfAffine(h_rms=1e-6, q0=1e5, q1=1e6, hurst=0.5, roll_off=2e5), gamma=1.0),
-        "greenwood-williamson": sb.GreenwoodWilliamson(),
-        "greenwood-tripp": sb.GreenwoodTripp(),
-        "table": sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
-        "function": sb.FunctionLaw(lambda s: -s - np.log(s), lambda s: -1 - 1 / s),
+        "greenwood-williamson": sb.contact_laws.GreenwoodWilliamson(),
+        "greenwood-tripp": sb.contact_laws.GreenwoodTripp(),
+        "table": sb.contact_laws.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
+        "function": sb.contact_laws.FunctionLaw(lambda s: -s - np.log(s), lambda s: -1 - 1 / s),
     }
 
 

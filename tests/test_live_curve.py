@@ -15,13 +15,15 @@ from test_browser import LONG, chromium  # noqa: F401
 import stribeck as sb
 from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
 from stribeck.atlas.tables import TABLES
-from stribeck.quantities.inputs import LINE
+from stribeck.contacts.geometries import LINE
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>Live curve</title>
-<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="site.css"></head>
+<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="site.css">
+<link rel="stylesheet" href="chart.css"></head>
 <body><main><h1>Live curve</h1><div id="live-curve"><p>The picture</p></div></main>
-<script defer src="atlas_table.js"></script><script defer src="live_curve.js"></script></body></html>"""
+<script defer src="atlas_table.js"></script><script defer src="chart.js"></script>
+<script defer src="live_curve.js"></script></body></html>"""
 
 
 THEME = """theme => {
@@ -172,6 +174,6 @@ def test_it_is_accessible_and_fits_a_phone(open_live, theme):
     page.evaluate(THEME, theme)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.evaluate("document.getElementById('live-curve-boundary_friction').scrollIntoView()")
-    assert 0 <= page.locator("#live-curve svg").first.bounding_box()["y"] < 500  # the curve stays in sight
+    assert 0 <= page.locator("#live-curve canvas").bounding_box()["y"] < 500  # the curve stays in sight
     found = Axe().run(page, options={"preload": False})
     assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in found.response["violations"]] == []

@@ -121,7 +121,7 @@ def test_errors_that_are_too_small_do_not_make_intervals_narrow(read):
     scatter = 1 + 0.03 * np.random.default_rng(2).normal(size=10)
 
     def width(error):
-        data = sb.Measurements(
+        data = sb.results.Measurements(
             abscissa="speed",
             values=solved.values,
             friction=solved.friction * scatter,

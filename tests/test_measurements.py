@@ -270,7 +270,7 @@ TABLES = {
     "noise": ({"noise": "white"}, "'white'", "'relative' or 'absolute'"),
     "error": ({"relative_error": -1}, "-1", "positive"),
     "robust": ({"robust": "yes"}, "'yes'", "true or false"),
-    "bounds": ({"bounds": {"roughness": ["2 um", "1 um"]}}, "roughness", "the lowest first"),
+    "bounds": ({"bounds": {"roughness": ["2 um", "1 um"]}}, "roughness", "write the lowest value first"),
     "bound unit": ({"bounds": {"roughness": ["2 MPa", "1 um"]}}, "roughness", "a pressure"),
     "prior": ({"priors": {"modulus": "2 MPa"}}, "modulus", "factor"),
     "prior width": ({"priors": {"modulus": {"value": "2 MPa", "factor": 0.5}}}, "0.5", "above 1"),

@@ -109,7 +109,7 @@ def test_a_cavity_on_a_solid_with_a_length_does_not_know_the_frame_in_which_it_i
     for reformation in (0.25, 0.3):
         monkeypatch.setattr(stribeck.equations.state, "_cavity_on_mesh", lambda guess, reformation=reformation: reformation)
         parts = {"cavitation": "reform", "cavity_pressure": -0.02, "solid": solid}
-        found.append(sb.solve(sb.Groups(1e-2, 0.1, 1e-3), **parts).observables.array(in_article=False))
+        found.append(sb.solve(sb.Groups(1e-2, 0.1, 1e-3), **parts).observables.array())
     np.testing.assert_allclose(found[0], found[1], rtol=1e-6)
 
 
@@ -133,7 +133,7 @@ def test_the_two_walls_balance_the_pull_of_the_pressure():
 @pytest.mark.quick
 def test_asperities_drag_with_the_sliding_and_not_in_pure_rolling():
     groups = sb.Groups(1e-5, 0.1, 1e-3)
-    parts = {slide: sb.solve(groups, slide_to_roll=slide).friction(0.5).contact for slide in (2.0, 0.5, 0.002, 0.0, -0.5)}
+    parts = {slide: sb.solve(groups, slide_to_roll=slide).friction(0.5).asperities for slide in (2.0, 0.5, 0.002, 0.0, -0.5)}
     assert parts[2.0] == pytest.approx(parts[0.5], rel=1e-9)
     assert parts[-0.5] == pytest.approx(-parts[0.5], rel=1e-9)
     assert parts[0.0] == 0

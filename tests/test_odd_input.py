@@ -222,8 +222,8 @@ OF_SURFACES = {
     "synthetic": (sb.surfaces.synthetic_topography, {"roughness": SURFACE, "points": (64,), "spacing": 1e-6, "seed": 1}),
     "Topography": (sb.surfaces.Topography, {"heights": HEIGHTS, "spacing": (1e-6,)}),
     "analyse": (sb.surfaces.analyse, {"topography": HEIGHTS}),
-    "FiniteSurface": (sb.FiniteSurface, {"alpha": 2.0, "base": None}),
-    "TableLaw": (sb.TableLaw, {"separation": [0, 1, 2, 3], "pressure": [8, 4, 2, 1]}),
+    "FiniteSurface": (sb.contact_laws.FiniteSurface, {"alpha": 2.0, "base": None}),
+    "TableLaw": (sb.contact_laws.TableLaw, {"separation": [0, 1, 2, 3], "pressure": [8, 4, 2, 1]}),
     "regime_of": (sb.regime_of, {"fluid_load_share": 0.5, "contact_friction_share": 0.5}),
 }
 ARGUMENTS = [(name, key) for name, (_, given) in OF_SURFACES.items() for key in given if key != "seed"]

@@ -11,7 +11,7 @@ from stribeck.atlas import friction, friction_derivatives
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.curves import solved_curve
 from stribeck.plot.curve import plot_curve
-from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.regimes.transition_speeds import transition_speeds
 from stribeck.regimes.weakening import weakening
 
 GROUPS, BALL = sb.Groups(1e-3, 0.1, 1e-3), sb.Groups(1e-2, 1e-3, 1e-4, geometry="point")
@@ -65,7 +65,7 @@ def test_the_minimum_of_a_ball_goes_by_the_size_too(ratio):
     assert 0 < i < len(found) - 1 and found.values[i - 1] < minimum.value < found.values[i + 1]
     assert abs(minimum.friction) <= 1.001 * size.min()
     assert (minimum.friction == 0) is (ratio == -0.5)
-    dry = found.friction.contact
+    dry = found.friction.asperities
     assert dry == pytest.approx(-DRY * found.observable("contact_load_share"), rel=1e-12)
     read = friction(BALL, DRY, BETA, slide_to_roll=ratio)
     assert read == pytest.approx(sb.solve(BALL, slide_to_roll=ratio, rtol=1e-4).friction(DRY, BETA).total, rel=2e-3)
@@ -89,7 +89,7 @@ def test_asperities_of_a_ball_that_hardly_slides_stick_as_on_a_curve():
     )
     solution, found = friction_sensitivities(ball, rtol=1e-3)
     part = 0.5 * 0.4 * (3 - 0.4**2)
-    assert solution.friction().contact == pytest.approx(part * 0.9 * solution.contact_load_share, rel=1e-12)
+    assert solution.friction().asperities == pytest.approx(part * 0.9 * solution.contact_load_share, rel=1e-12)
     ends = [sb.solve(ball.replace(slide_to_roll=0.004 * math.exp(step)), rtol=1e-3).friction().total for step in (1e-3, -1e-3)]
     assert found["slide_to_roll"] == pytest.approx(math.log(ends[0] / ends[1]) / 2e-3, rel=1e-4)
 
@@ -121,5 +121,5 @@ def test_pictures_and_the_explorer_show_sizes():
     axes = drawn.axes[0]
     assert axes.get_ylabel().startswith("size") and axes.get_yscale() == "log"
     assert all((np.asarray(line.get_ydata()) >= 0).all() for line in axes.lines)
-    marks = {mark.name: mark.speed for mark in solved_curve(contact, "balanced", lambda part: None, rtol=1e-3).transitions}
-    assert marks["boundary"] < marks["minimum"] < marks["hydrodynamic"]
+    marks = solved_curve(contact, "balanced", lambda part: None, rtol=1e-3).marks
+    assert marks["boundary"].speed < marks["minimum"].speed < marks["hydrodynamic"].speed

@@ -203,7 +203,7 @@ def test_what_two_states_have_and_no_series_tells_between_them_is_wrong_without_
 
 
 def test_a_path_may_end_itself_and_go_on_from_both_ends():
-    part = follow(Known(), 3.0, -9.0, 1e-6, until=lambda here: here.series[0, 0] > 0.9)
+    part = follow(Known(), 3.0, -9.0, 1e-6, until=lambda found: found.expansions[0].series[0, 0] > 0.9)
     assert -9.0 < part.coordinates[0] < 0.0 and part.outcome.ok
     low = part.joined(follow(part.problem, part.expansions[0], -6.0, 1e-6))
     both = low.joined(follow(part.problem, low.expansions[-1], 5.0, 1e-6))

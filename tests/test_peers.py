@@ -43,7 +43,7 @@ def test_it_finds_our_mixed_state(textbook, load_benchmark, solved):
     found = peers.textbook_mixed("graded grid", 201, runs=1)
     truth = solved(1e-4, 0.1, 1e-4)
     assert abs(found.contact_share / truth.contact_load_share - 1) < 2e-3
-    assert abs(found.viscous / truth.friction(definition=peers.DEFINITION).viscous - 1) < 5e-3
+    assert abs(found.viscous / truth.friction(definition=peers.DEFINITION).fluid - 1) < 5e-3
 
 
 def test_where_its_grid_is_too_coarse_it_says_so(textbook):

@@ -77,7 +77,7 @@ def test_points_are_those_of_cold_solves(diagram):
         assert abs(point["fluid_load_share"] - state.fluid_load_share) <= point["error_estimate"]
         assert float(point["central_gap"]) == pytest.approx(state.central_gap, rel=float(point["error_estimate"]))
         assert float(point["lambda_ratio"]) == pytest.approx(state.lambda_ratio, rel=float(point["error_estimate"]))
-        regime = sb.regime_of(state.fluid_load_share, friction.contact / friction.total)
+        regime = sb.regime_of(state.fluid_load_share, friction.asperities / friction.total)
         assert grid.REGIMES[int(point["regime"])] == regime
     assert (diagram.error_estimate <= 1e-4).all()
     assert (diagram.friction_error <= 1e-4 * np.maximum(diagram.friction, MU0)).all()
@@ -136,7 +136,7 @@ def test_transitions_lie_where_their_shares_are_passed(diagram):
                 state, _ = solved(row[name], load, row["roughness"])
                 assert state.fluid_load_share == pytest.approx(share, abs=1e-7)
             _, friction = solved(row["speed_at_10_percent_contact_friction"], load, row["roughness"])
-            assert friction.contact / friction.total == pytest.approx(0.1, abs=1e-7)
+            assert friction.asperities / friction.total == pytest.approx(0.1, abs=1e-7)
 
 
 def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):

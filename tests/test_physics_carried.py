@@ -9,7 +9,7 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.regimes.phase_grid import Diagram
 from stribeck.sweeps.columns import StateInputs
 
-BALL = sb.Groups(1e-2, 1e-3, 1e-4, law=sb.GreenwoodTripp(), geometry="point")
+BALL = sb.Groups(1e-2, 1e-3, 1e-4, law=sb.contact_laws.GreenwoodTripp(), geometry="point")
 
 
 def groups_of_a_curve():

@@ -86,7 +86,7 @@ def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
 
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
     axes = curve.plot(abscissa="hersey").axes[0]
-    for label, values in (("from asperities", curve.friction_contact), ("from the fluid", curve.friction_viscous)):
+    for label, values in (("from asperities", curve.friction.asperities), ("from the fluid", curve.friction.fluid)):
         np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
         np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
     drawn = set(zip(*line(axes, "friction").get_data(), strict=True))

@@ -37,11 +37,11 @@ def test_a_batch_of_balls_has_the_states_of_its_contacts(found):
 def test_the_friction_of_a_batch_of_balls_is_that_of_the_states(found, arguments):
     many = found.friction(**arguments)
     one = sb.solve(found.contacts[0, 0], rtol=RTOL).friction(**arguments)
-    for part in ("contact", "viscous", "error"):
+    for part in ("asperities", "fluid", "error"):
         assert getattr(many, part)[0, 0] == pytest.approx(getattr(one, part), rel=2 * RTOL), part
     # A smaller disc of liquid drags less; asperities do not know it.
-    assert (many.viscous[0] < many.viscous[1]).all()
-    np.testing.assert_allclose(many.contact[0], many.contact[1], rtol=RTOL)
+    assert (many.fluid[0] < many.fluid[1]).all()
+    np.testing.assert_allclose(many.asperities[0], many.asperities[1], rtol=RTOL)
 
 
 def test_a_batch_of_balls_becomes_a_dataset_and_a_pickle(found):
@@ -59,7 +59,7 @@ def test_a_batch_of_balls_in_a_fluid_that_thins_has_the_friction_of_its_contacts
     one = sb.solve(contact.replace(speed=0.01), rtol=1e-2)
     for arguments in ({}, {"definition": "published"}, {"boundary_friction": 0.1}):
         many = found.friction(**arguments)
-        for part in ("contact", "viscous", "error"):
+        for part in ("asperities", "fluid", "error"):
             assert getattr(many, part)[0] == pytest.approx(getattr(one.friction(**arguments), part), rel=1e-6), part
     with pytest.raises(sb.InputError, match=r"^beta = 0.1: .* a fluid that thins \(carreau\)"):
         found.friction(beta=0.1)
@@ -70,7 +70,7 @@ def test_groups_of_balls_may_be_arrays_and_rest_is_one_of_them():
     found = sb.solve_batch(sb.Groups([0.0, 1e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL)
     assert found.ok.all()
     assert found.contact_load_share[0] == pytest.approx(1.0, abs=RTOL)
-    assert found.friction.viscous[0] == 0.0
+    assert found.friction.fluid[0] == 0.0
     alone = sb.solve(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), rtol=RTOL)
     assert found.friction(1.0, 0.1)[1] == pytest.approx(alone.friction(1.0, 0.1).total, rel=2 * RTOL)
 

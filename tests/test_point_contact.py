@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.quantities.inputs import POINT
+from stribeck.contacts.geometries import POINT
 
 BALL = {
     "radius": "9.5 mm",
@@ -123,15 +123,14 @@ REFUSED = {
         {"speed": "1 mm/s", "entrainment_speed": None},
         "give the mean of both surface",
     ),
-    "a ratio beyond pure sliding": ({"slide_to_roll": 3}, "slide_to_roll = 3 must be between 0 and 2"),
     "a dry contact": ({"wetted_radius": "1 mm"}, "wetted_radius = 1 mm lies inside the contact, whose Hertz radius is 1.8 mm"),
     "half a second body": (
         {"modulus": None, "youngs_modulus": 1e6, "poisson_ratio": 0.5, "poisson_ratio_2": 0.3},
-        "poisson_ratio_2 alone is given; give youngs_modulus_2 and poisson_ratio_2",
+        "youngs_modulus_2 is missing beside .* poisson_ratio_2 = 0.3",
     ),
     "a second body beside the modulus": ({"youngs_modulus_2": 1e6}, "give either modulus, or youngs_modulus"),
     "a slip": ({"wetted_radios": 1}, "is not an input of PointContact; did you mean wetted_radius"),
-    "no load": ({"load": None}, "load missing; a contact needs radius"),
+    "no load": ({"load": None}, 'load is missing; add a force, for example load = "1.3 N"'),
     "groups beyond double precision": ({"beta": 1e-200}, "leave the range of double precision"),
 }
 
@@ -163,7 +162,7 @@ def test_replaced_values_are_checked_too():
 
 @pytest.mark.quick
 def test_a_ball_travels_to_other_processes():
-    c = ball(law=sb.GreenwoodTripp(), alpha=1.0)
+    c = ball(law=sb.contact_laws.GreenwoodTripp(), alpha=1.0)
     assert pickle.loads(pickle.dumps(c)) == c
 
 
@@ -171,7 +170,7 @@ def test_a_ball_travels_to_other_processes():
 def test_the_signature_of_a_ball_names_every_input():
     parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid"]
     assert list(inspect.signature(sb.PointContact).parameters) == [*POINT.quantities, "law", *parts]
-    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law", "parts"}
+    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law", *parts}
 
 
 CASE = """
@@ -201,7 +200,7 @@ def test_a_case_file_holds_a_ball(tmp_path):
     [
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
         (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
-        (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball'; it must be 'line' or 'point'"),
+        (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball' must be 'line' or 'point'"),
         (
             CASE.format(load="1.3 N").replace('load = "1.3 N"', ""),
             r"load is missing; add a force, for example load = \"1.3 N\"",

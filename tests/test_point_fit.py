@@ -20,7 +20,7 @@ FREE = ("boundary_friction", "roughness", "modulus", "load", "beta", "radius", "
 def measured(friction, values=SPEEDS, abscissa="speed", inputs=({},), error=None):
     """Return measurements of one curve for each entry of ``inputs``, all at the same places."""
     n, curves = len(friction), len(inputs)
-    return sb.Measurements(
+    return sb.results.Measurements(
         abscissa=abscissa,
         values=np.tile(values, curves),
         friction=np.asarray(friction, dtype=float),
@@ -92,7 +92,7 @@ def test_many_speeds_of_one_load_are_read_between_fewer_that_are_solved():
     speeds = TRUE.speed * np.geomspace(0.5, 4.0, 25)
     data, solved = measured(np.ones(25), speeds), []
     model = FrictionModel(contact, data, free_inputs(contact, data, ("viscosity", "roughness"), FitSettings(geometry="point")))
-    found = model.predict(np.zeros(2), solved_parts(model, "balanced", 1e-3, solved.append))
+    found = model.predict(np.zeros(2), solved_parts(model, "balanced", 1e-3, lambda: solved.append(1)))
     assert len(solved) < 10
     fine = model.predict(np.zeros(2), solved_parts(model, "balanced", 2e-5))
     assert (np.abs(found.friction - fine.friction) < found.error).all()
@@ -108,13 +108,22 @@ def test_exact_friction_of_a_ball_gives_its_inputs():
         start,
         free=["boundary_friction", "roughness"],
         intervals=False,
-        on_step=lambda what, _: steps.append(what),
+        on_step=lambda *step: steps.append(step),
     )
     assert found.converged
     assert found["boundary_friction"].value == pytest.approx(0.8, rel=2e-3)
     assert found["roughness"].value == pytest.approx(TRUE.roughness, rel=2e-3)
-    assert {"searching", "solving"} <= set(steps)
+    assert {"searching", "solving"} <= {what for what, _, _ in steps}
+    assert all(0 <= done <= total for _, done, total in steps) and steps[-1][1] > 0
     assert found["roughness"].unit == "m" and found.contact.roughness == found["roughness"].value
+
+
+def test_states_are_solved_as_well_as_the_data_are_measured():
+    exact = frictions(TRUE)
+    noisy = measured(exact * np.exp(0.03 * np.random.default_rng(3).standard_normal(5)))
+    good = measured(exact, error=2e-4 * exact)
+    errors = [sb.fit(data, TRUE, free=["boundary_friction"], intervals=False).model_error for data in (noisy, good)]
+    assert errors[1] < 1e-4 < errors[0] < 1e-3
 
 
 @pytest.mark.slow

@@ -1,13 +1,10 @@
 """States of a ball along a curve: what they take over from their neighbours, and that they are those of a cold start."""
 
-import math
-
 import pytest
 
 from stribeck import Groups, Outcome
 from stribeck.contacts.groups import contact_law
-from stribeck.solver.point import refinement, start
-from stribeck.solver.point.refinement import MINIMUM_RTOL_FACTOR_ON_PATH, choose_next_meshes, mesh_for_neighbour
+from stribeck.solver.point import start
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -49,33 +46,19 @@ def test_from_a_neighbour_that_is_far_a_state_costs_no_more_than_a_cold_one(stat
 
 
 def test_a_mesh_far_finer_than_a_tolerance_needs_is_left(state):
-    groups = ball(9e-3)
-    fine = solve_cold(groups, 1e-7)
-    wanted, keeps = mesh_for_neighbour(1e-2, contact_law(groups), fine.work, 1e-3)
-    assert not keeps
-    assert wanted.mesh.size < 0.7 * fine.mesh.size
-    assert mesh_for_neighbour(1e-2, contact_law(groups), state.work, state.work.total) == (state.work.fine.resolution, True)
+    fine = solve_cold(ball(9e-3), 1e-7)
+    left, kept = solve_from(fine, ball(1e-2), 1e-3), solve_from(state, ball(1.01e-2), RTOL)
+    assert left.outcome.ok
+    assert left.mesh.size < 0.7 * fine.mesh.size
+    assert (kept.mesh.size, kept.mesh.degree) == (state.mesh.size, state.mesh.degree)
 
 
-def test_a_state_that_misses_its_tolerance_is_compared_with_the_next_finer_mesh_alone(state, monkeypatch):
-    wanted, coarse = choose_next_meshes(state.work, 0.3 * state.work.total, 5, MINIMUM_RTOL_FACTOR_ON_PATH)
-    assert coarse is state.work.fine
-    assert (wanted.degree, wanted.modes) == (coarse.resolution.degree + 2, 2 * math.ceil(0.7 * coarse.resolution.modes))
-    solved = []
-    at_once = refinement.solve_level
-    monkeypatch.setattr(refinement, "solve_level", lambda found, *rest: solved.append(found) or at_once(found, *rest))
-    pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 0.3 * state.work.total, state.work)
-    assert pair.outcome.ok
-    assert solved == [wanted]
-
-
-def test_refinement_ends_where_no_mesh_is_finer(state, monkeypatch):
-    asked = []
-    monkeypatch.setattr(refinement, "first_resolution", lambda *_: state.work.fine.resolution)
-    monkeypatch.setattr(refinement, "choose_next_meshes", lambda pair, *_: asked.append(pair) or (pair.fine.resolution, None))
-    pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 1e-8)
-    assert not pair.outcome.ok
-    assert len(asked) == 1
+def test_a_state_that_misses_its_tolerance_goes_to_finer_meshes_than_its_neighbour(state):
+    finer = solve_from(state, ball(1e-2), 1e-2 * state.error_estimate)
+    assert finer.outcome.ok
+    assert finer.error_estimate <= 1e-2 * state.error_estimate
+    assert finer.mesh.degree > state.mesh.degree
+    agree(finer, state)
 
 
 def test_where_an_edge_in_the_contact_moves_panels_are_halved_and_meshes_do_not_grow():
@@ -94,12 +77,11 @@ def test_where_an_edge_in_the_contact_moves_panels_are_halved_and_meshes_do_not_
     agree(found, solve_cold(lens(0.108), rtol))
 
 
-def test_a_cold_start_of_a_sharp_rim_tries_few_angles_first(monkeypatch):
+def test_a_cold_start_of_a_sharp_rim_is_found_on_few_angles_at_once(monkeypatch):
     law = persson_law(SelfAffine(h_rms=21e-9, q0=6.3e5, q1=6.3e7, hurst=0.8), 0.45)
     solve_level, tried = start.solve_level, []
     monkeypatch.setattr(start, "solve_level", lambda on, *rest, **more: tried.append(on) or solve_level(on, *rest, **more))
     groups = Groups(1.126e-6, 1531.0, 0.0118027, law=law, geometry="point")
     speed, law = float(groups.speed), contact_law(groups)
-    assert start.first_modes(speed, law, groups.model) > start.FEW_MODES
     assert start.first_state(speed, law, groups.model).outcome.ok
-    assert [each.modes for each in tried] == [start.FEW_MODES]
+    assert [each.modes for each in tried] == [start.MODES]

@@ -109,6 +109,7 @@ def test_along_a_curve_the_film_breaks_where_its_suction_does():
     assert np.abs(less[~np.array(breaks)]).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_towards_ambient_pressure_the_film_is_that_of_a_free_exit():
     free = solve_cold(replace(ball(0.1, 0.1, 0.0), model=Model(cavitation=Cavitation.EXIT)), 1e-3)
     same = solve_cold(ball(0.1, 0.1, 0.0), 1e-3)

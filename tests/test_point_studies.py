@@ -95,16 +95,14 @@ def test_the_command_solves_a_ball(capsys):
     assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["geometry"] == "point"
-    assert found["si"]["units"]["load"] == "N"
-    assert found["si"]["slide_to_roll"] == 1.0
-    assert "wetted_radius" not in found["si"]
-    assert found["si"]["central_film_thickness"] == pytest.approx(
-        found["central_gap"] * found["si"]["hertz_indentation"], rel=1e-12
-    )
+    assert found["units"]["load"] == "N"
+    assert found["inputs"]["slide_to_roll"] == 1.0
+    assert "wetted_radius" not in found["inputs"]
+    assert found["central_film_thickness"] == pytest.approx(found["central_gap"] * found["hertz_indentation"], rel=1e-12)
 
 
 def test_the_command_prints_a_ball(capsys):
-    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3"]) == 0
+    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "-v"]) == 0
     out = capsys.readouterr().out
     assert "slide-to-roll ratio 1" in out
     assert "distance of minimum film" in out

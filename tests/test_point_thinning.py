@@ -177,7 +177,7 @@ def test_a_fluid_that_thins_breaks_behind_the_ball_too():
 def test_batches_keep_the_friction_of_their_contacts_and_refuse_another_beta_by_name():
     thinning = sb.Groups(0.1, 1e-3, 1e-3, geometry="point", model=Model(FILMS["carreau"]))
     batch, alone = sb.solve_batch(thinning, rtol=1e-2), sb.solve(thinning, rtol=1e-2)
-    assert batch.friction().viscous == pytest.approx(alone.friction().viscous, rel=1e-12)
+    assert batch.friction().fluid == pytest.approx(alone.friction().fluid, rel=1e-12)
     with pytest.raises(sb.InputError, match="beta = 0.1: the friction of a ball in a fluid that thins .carreau."):
         batch.friction(beta=0.1)
 

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,12 +11,12 @@ from command_line import EXAMPLES
 
 import stribeck as sb
 from stribeck import cli
+from stribeck.contacts.geometries import LINE
 from stribeck.contacts.regime import friction_share
 from stribeck.curves import sensitivities
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
-from stribeck.curves.stribeck_curve import continued
-from stribeck.quantities.inputs import LINE
+from stribeck.curves.stribeck_curve import begun
 from stribeck.regimes import margin_scan
 from stribeck.regimes import margins as margins_module
 from stribeck.regimes.margin_intervals import with_intervals
@@ -23,6 +24,7 @@ from stribeck.regimes.margin_limits import BOX
 from stribeck.regimes.margin_scan import Crossing, Margin
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.regimes.sentences import ways_to
+from stribeck.solver.path.path import follow
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -96,7 +98,9 @@ def test_at_rest_only_the_dry_friction_coefficient_matters():
 def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
     _, found = friction_sensitivities(CONTACT.replace(roughness=0))
     assert found["roughness"] == found["alpha"] == found["boundary_friction"] == 0
-    assert abs(found["beta"]) < 1e-12  # the fluid's part and the groups' cancel
+    assert (
+        abs(found["beta"]) < 1e-9
+    )  # the fluid's part and the groups' cancel but for the rounding of a solve with the Jacobian
     assert found["speed"] > 0.4
 
 
@@ -115,7 +119,7 @@ def test_a_substrate_that_is_overtaken_has_regimes_too():
     """Both parts of its friction are negative: its states had all counted as hydrodynamic, its errors had no bound."""
     overtaken = CONTACT.replace(slide_to_roll=-1.0)
     friction = sb.solve(overtaken).friction()
-    assert friction.contact < 0 and 0.9 < friction.contact_share < 1
+    assert friction.asperities < 0 and 0.9 < friction.contact_share < 1
     curve = sb.stribeck_curve(overtaken, points=5, rtol=1e-3)
     assert (curve.regimes[0], curve.regimes[-1]) == ("boundary", "hydrodynamic")
     begins = curve.landmark("asperities cause 10 % of the friction")
@@ -133,7 +137,7 @@ def shares(contact, definition="balanced"):
     """Return regime, the fluid's share of the load and the asperities' share of the friction."""
     solution = sb.solve(contact, rtol=1e-8)
     friction = solution.friction(definition=definition)
-    part = friction.contact / friction.total
+    part = friction.asperities / friction.total
     return sb.regime_of(solution.fluid_load_share, part), solution.fluid_load_share, part
 
 
@@ -151,15 +155,15 @@ def mixed():
 
 
 def test_margins_along_the_speed_are_read_off_the_curve_of_the_contact(mixed, monkeypatch):
-    curve, begun = sb.stribeck_curve(CONTACT, points=2, rtol=1e-6), []
+    curve, over = sb.stribeck_curve(CONTACT, points=2, rtol=1e-6), []
 
-    def begin(contact, **settings):
-        begun.extend(set(settings) & {"speed", "load", "roughness"})
-        return sb.stribeck_curve(contact, **settings)
+    def begin(contact, name, *settings):
+        over.append(name)
+        return begun(contact, name, *settings)
 
-    monkeypatch.setattr(margin_scan, "stribeck_curve", begin)
+    monkeypatch.setattr(margin_scan, "begun", begin)
     found = regime_margins(CONTACT, curve=curve)
-    assert begun == ["load", "roughness"] * (len(begun) // 2)
+    assert over == ["load", "roughness"]
     for (name, mark), (_, alone) in zip(crossings(found), crossings(mixed), strict=True):
         assert (name, mark.regime) == (name, alone.regime)
         assert mark.value == pytest.approx(alone.value, rel=1e-6)
@@ -286,22 +290,14 @@ def test_without_dry_friction_nothing_leads_on():
 
 
 def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
-    right = sb.stribeck_curve
+    further = follow
 
-    def fails_far_out(contact, **settings):
-        if "roughness" in settings and max(settings["roughness"]) > 1.2e-6:
-            raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
-        return right(contact, **settings)
+    def loses_rough(problem, start, end, *settings):
+        path = further(problem, start, end, *settings)
+        is_rougher = problem.groups_at(end).roughness > 1.2 * CONTACT.groups.roughness
+        return replace(further(problem, start, start.coordinate, 1e-6), outcome=sb.Outcome.PATH_LOST) if is_rougher else path
 
-    further = continued
-
-    def continues_less_far(curve, end, *rest):
-        if curve.over == "roughness" and end > 1.2e-6:
-            raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
-        return further(curve, end, *rest)
-
-    monkeypatch.setattr("stribeck.regimes.margin_scan.stribeck_curve", fails_far_out)
-    monkeypatch.setattr("stribeck.regimes.margin_scan.continued", continues_less_far)
+    monkeypatch.setattr("stribeck.solver.path.path.follow", loses_rough)
     roughness = regime_margins(CONTACT).margins[2]
     assert roughness.more is None
     assert roughness.searched[1] == CONTACT.roughness
@@ -341,7 +337,7 @@ def command(capsys, tmp_path, *options, **changes):
 
 def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    text = command(capsys, tmp_path)
+    text = command(capsys, tmp_path, "-v")
     assert (
         "To reach boundary lubrication: speed / 2.72 (to 367.9 µm/s), or roughness x 1.68 (to 1.679 µm), or "
         "viscosity / 2.72 (to 18.39 mPa*s); "
@@ -391,7 +387,7 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
     ],
 )
 def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):
-    text = command(capsys, tmp_path, **changes)
+    text = command(capsys, tmp_path, "-v", **changes)
     assert sentence in text
     assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
 
@@ -522,3 +518,17 @@ def test_the_share_of_asperities_has_derivatives_by_complex_steps(contact, visco
     slope = (friction_share(contact + step, viscous) - friction_share(contact - step, viscous)) / (2 * step)
     assert friction_share(contact + 1e-20j, viscous).imag / 1e-20 == pytest.approx(slope, rel=1e-6)
     assert friction_share(0.0, 0.0) == 0.0 and np.isnan(friction_share(contact, np.nan))
+
+
+def test_margins_are_a_dataset():
+    pytest.importorskip("xarray")
+    found = regime_margins(CONTACT)
+    data = with_intervals(CONTACT, found, {"speed": 0.1}).to_dataset()
+    marks = {(margin.name, mark.regime): mark for margin in found.margins for mark in (margin.less, margin.more) if mark}
+    rows = zip(data.input.values.tolist(), data.next_regime.values.tolist(), data.value.values.tolist(), strict=True)
+    assert {(name, regime): value for name, regime, value in rows} == {key: mark.value for key, mark in marks.items()}
+    assert (data.factor_low_95 < data.factor).all() and (data.factor < data.factor_high_95).all()
+    assert {*zip(data.input.values.tolist(), data.unit.values.tolist(), strict=True)} <= {
+        ("speed", "m/s"), ("load", "N/m"), ("roughness", "m"), ("viscosity", "Pa s")
+    }  # fmt: skip
+    assert data.attrs["regime"] == found.regime and "count" in data.attrs["counted"]

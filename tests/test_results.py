@@ -45,7 +45,7 @@ def test_a_result_shows_itself_in_a_screen(result):
 def test_the_state_says_its_regime_friction_and_film(state):
     text = repr(state)
     assert text.startswith("Solution: mixed lubrication\n") and state.regime == "mixed"
-    assert f"friction: {state.friction:.4g} (" in text and "702.2 nm" in text
+    assert f"friction coefficient, balanced: {state.friction:.4g} ± " in text and "702.2 nm" in text
 
 
 def test_the_curve_says_its_range_minimum_and_notes(curve):
@@ -68,7 +68,8 @@ def test_a_contact_a_state_and_a_curve_name_fluid_cavitation_solid_and_motion():
         "fluid carreau, relaxation time 1 ms, exponent 0.6, infinite viscosity 0 Pa*s, solid bonded layer, "
         "layer thickness 1 mm, poisson ratio 0.5, cavitation reform, cavity pressure -80 kPa, slide to roll 0.7"
     )
-    for result in (sb.solve(contact), sb.stribeck_curve(contact, points=5), contact):
+    curve = sb.stribeck_curve(contact, speed=(contact.speed, 1.5 * contact.speed), points=3, rtol=1e-3)
+    for result in (sb.solve(contact), curve, contact):
         assert f"model</th><td style='text-align:left'>{said}<" in result._repr_html_()
         assert result is contact or f"model: {said}\n" in repr(result)
     names = {"LineContact": sb.LineContact, "Fluid": sb.fluids.Fluid, "Carreau": sb.fluids.Carreau, "Layer": sb.solids.Layer}
@@ -83,9 +84,9 @@ def test_a_state_of_groups_names_its_parts_in_hertz_units():
 
 
 def test_a_state_says_the_error_of_its_friction_where_that_is_the_larger(state):
-    friction = sb.Friction(contact=0.1, viscous=0.2, total=0.3, error=0.003)
+    friction = sb.results.Friction(asperities=0.1, fluid=0.2, total=0.3, error=0.003)
     assert friction.relative_error == pytest.approx(0.01, rel=1e-15) and state.friction.relative_error < state.error_estimate
-    assert sb.Friction(contact=-0.1, viscous=-0.2, total=-0.3, error=0.003).relative_error == friction.relative_error
+    assert sb.results.Friction(asperities=-0.1, fluid=-0.2, total=-0.3, error=0.003).relative_error == friction.relative_error
     fast = sb.solve(CONTACT, fluid=PARTS["fluid"])
     assert fast.friction.relative_error > fast.error_estimate
     assert f"of the friction {fast.friction.relative_error:.1e} (rtol 1e-06)" in repr(fast)
@@ -138,14 +139,14 @@ def test_nan_equals_nan_and_no_number():
 @pytest.mark.quick
 def test_friction_means_the_same_on_state_and_curve(state, curve):
     on_curve = sb.stribeck_curve(CONTACT, speed=[1e-3, 2e-3]).friction
-    assert float(state.friction) == state.friction.total == state.friction.contact + state.friction.viscous
+    assert float(state.friction) == state.friction.total == state.friction.asperities + state.friction.fluid
     assert on_curve[0] == pytest.approx(state.friction, rel=2e-6)
     for arguments in ({}, {"boundary_friction": 0.3}, {"definition": "published"}, {"beta": 0.1}):
         one, many = state.friction(**arguments), on_curve(**arguments)
-        for part in ("contact", "viscous", "total"):
+        for part in ("asperities", "fluid", "total"):
             assert getattr(many, part)[0] == pytest.approx(getattr(one, part), rel=2e-6)
-    assert state.friction(0.3)(definition="published").viscous == state.friction(definition="published").viscous
-    np.testing.assert_array_equal(curve.friction, curve.friction_contact + curve.friction_viscous)
+    assert state.friction(0.3)(definition="published").fluid == state.friction(definition="published").fluid
+    np.testing.assert_array_equal(curve.friction, curve.friction.asperities + curve.friction.fluid)
     assert type(curve.friction * 2) is type(curve.friction[1:]) is np.ndarray and type(curve.friction.min()) is np.float64
     assert pickle.loads(pickle.dumps(state.friction)) == state.friction
     with pytest.raises(sb.InputError, match="definition"):
@@ -173,8 +174,24 @@ def test_a_state_is_a_dataset_in_si_units(state):
     fields = state.to_si()
     np.testing.assert_array_equal(data.gap, fields.gap)
     assert (data.gap.units, data.x.units, data.fluid_pressure.units) == ("m", "m", "Pa")
-    assert data.attrs["friction_balanced"] == state.friction.total
+    assert data.friction_balanced == state.friction.total and data.friction_balanced_error == state.friction.error
     assert sb.solve(state.groups).to_dataset().gap.units == "u_Hz"
+
+
+def test_an_error_is_absolute_and_in_the_unit_of_its_number(state, curve):
+    pytest.importorskip("xarray")
+    for data in (state.to_dataset(), curve.to_dataset()):
+        numbers = [name for name in data.data_vars if f"{name}_error" in data]
+        assert {"friction_balanced", "contact_load_share", "central_gap", "minimum_film_thickness", "offset"} <= {*numbers}
+        for name in numbers:
+            error = data[f"{name}_error"]
+            assert error.units == data[name].units and error.long_name.startswith("estimated absolute error of ")
+        of_gap, of_film = data.central_gap_error * CONTACT.hertz.indentation, data.central_film_thickness_error
+        np.testing.assert_allclose(of_gap, of_film, rtol=1e-12)
+    batch = sb.solve_batch(CONTACT, speed=[CONTACT.speed, 2 * CONTACT.speed]).to_dataset()
+    relative = batch.central_gap_error / batch.central_gap
+    assert batch.central_gap_error.units == batch.central_gap.units and (0 < relative).all() and (relative < 1e-6).all()
+    assert state.to_dict()["central_gap_error"] == pytest.approx(state.errors["central_gap"] * state.central_gap, rel=1e-12)
 
 
 def test_a_curve_in_si_units(curve):
@@ -237,7 +254,7 @@ def test_the_words_of_the_regimes_command_are_there_in_python(capsys):
     from stribeck.cli import main
 
     case = Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml"
-    assert main(["regimes", str(case)]) == 0
+    assert main(["regimes", str(case), "-v"]) == 0
     printed = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
     found = sb.explain(sb.load_case(case))
     assert [" ".join(line.split()) for line in str(found).splitlines()] == printed
@@ -321,7 +338,7 @@ def test_a_sweep_shows_itself_and_draws(tmp_path):
     figures = pytest.importorskip("matplotlib.figure")
     (tmp_path / "sweep.toml").write_text("[groups]\nload = 0.1\nroughness = 1e-4\n[vary]\nspeed = [1e-5, 1e-4]\n")
     found = sb.sweep(tmp_path / "sweep.toml", tmp_path / "store")
-    assert "finished: 2 of 2" in repr(found) and sb.open_sweep(tmp_path / "store") != "store"
+    assert "2 of 2 states are finished" in repr(found) and sb.open_sweep(tmp_path / "store") != "store"
     ax = figures.Figure().subplots()
     found.plot(ax=ax)
     assert ax.lines[0].get_xdata().tolist() == pytest.approx([1e-5, 1e-4]) and ax.get_xlabel().startswith("speed")

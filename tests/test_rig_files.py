@@ -108,7 +108,7 @@ def test_units_below_the_names_of_a_tabulated_law_count(written):
     numbers = {"alpha": 2.0, "beta": 0.05, "roughness": 1e-6, "modulus": 2e6}
     in_header = written(f"gap [um],pressure [kPa]\n{rows}\n", "a.csv")
     below = written(f"gap,pressure\num,kPa\n{rows}\n", "b.csv")
-    laws = [sb.TableLaw.read(path, **numbers) for path in (in_header, below)]
+    laws = [sb.contact_laws.TableLaw.read(path, **numbers) for path in (in_header, below)]
     assert dataclasses.replace(laws[1], title=laws[0].title) == laws[0]
 
 

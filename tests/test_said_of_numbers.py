@@ -14,7 +14,7 @@ FAR = ("3e-2", "0.1", "1e-3")
 
 @pytest.mark.parametrize(("mu", "beta"), [(0.6, 0.1), (0.05, 1.0), (1.0, 0.02)])
 def test_notes_of_groups_take_the_coefficients_that_were_given(capsys, mu, beta):
-    answer = call(capsys, "solve", "--groups", *FAR, "--boundary-friction", str(mu), "--beta", str(beta))
+    answer = call(capsys, "solve", "--groups", *FAR, "--boundary-friction", str(mu), "--beta", str(beta), "-v")
     text = " ".join(answer.out.split())
     solution = sb.solve(sb.Groups(*map(float, FAR)))
     share = 100 * solution.friction(mu, beta).contact_share
@@ -37,7 +37,7 @@ def test_an_interval_says_which_inputs_count_as_exact(capsys):
 
 
 def test_the_ways_to_other_regimes_say_it_in_their_line(capsys):
-    answer = call(capsys, "regimes", EXAMPLES / "lip_seal.toml")
+    answer = call(capsys, "regimes", EXAMPLES / "lip_seal.toml", "-v")
     lines = [line for line in answer.out.splitlines() if "95 %:" in line]
     assert lines and all("Intervals count the errors of" in line and "count as exact" in line for line in lines)
 

@@ -7,18 +7,8 @@ import pytest
 
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.hermite import chebyshev_basis, hermite_form, hermite_weights, missed_by
-from stribeck.numerics.series import (
-    along,
-    beyond,
-    exponential,
-    implicit_series,
-    integral_of_product,
-    interval,
-    logarithm,
-    product,
-    radius,
-    reciprocal,
-)
+from stribeck.numerics.jets import Tape, polynomial
+from stribeck.numerics.series import along, beyond, circle, implicit_series, interval, radius
 
 pytestmark = pytest.mark.quick
 
@@ -36,16 +26,54 @@ def coefficients(order):
     return np.convolve(exponential, quotient)[: order + 1]
 
 
-def test_products_quotients_and_exponentials_have_the_coefficients_of_the_closed_form():
-    order = 12
-    factor, below = along(0.7, order), np.zeros(order + 1)
-    below[[0, 2]] = 1.0, SINGULAR**-2
-    np.testing.assert_allclose(product(factor, reciprocal(below)), coefficients(order), rtol=1e-13, atol=1e-16)
-    columns = np.stack([factor, below], axis=1)  # each column is a series of its own
-    for each in columns.T:
-        np.testing.assert_allclose(exponential(logarithm(each)), each, rtol=1e-13, atol=1e-15)
-    np.testing.assert_allclose(product(columns, columns[:, ::-1]), product(factor, below)[:, None] * [1, 1], rtol=1e-13)
-    np.testing.assert_allclose(product(columns, reciprocal(columns))[1:], 0, atol=1e-15)
+def test_jets_have_the_coefficients_of_the_closed_form():
+    tape = Tape(12)
+    t = tape.given(np.eye(13)[:, 1:2])
+    below = 1 + (t / SINGULAR) ** 2
+    columns = np.linspace(0.5, 1.5, 3)  # nodes with a function each
+    for jet in (
+        np.exp(0.7 * t) / below,
+        tape.growth(0.7) * (1 / below),
+        np.exp(0.7 * t - np.log(below)),
+        np.sqrt(np.exp(1.4 * t)) * below**-1.0,
+        (columns * np.exp(0.7 * t) / (below * columns))[..., 1:2],
+        np.maximum(np.exp(0.7 * t) / below, t) @ np.ones(1),
+        np.expm1(np.log1p(np.exp(0.7 * t) / below - 1)) + 1,
+    ):
+        tape.reached = 0
+        for k in range(1, 13):
+            tape.fill(k)
+        np.testing.assert_allclose(jet.coefficients[:, 0], coefficients(12), rtol=1e-12, atol=1e-15)
+
+
+def test_a_jet_that_is_made_late_has_all_orders():
+    tape = Tape(6)
+    t = tape.given(np.eye(7)[:, 1:2])
+    early = np.exp(t)
+    for k in range(1, 7):
+        tape.fill(k)
+    tape.settle()
+    late = early * early + 0.0
+    np.testing.assert_allclose(late.coefficients[:, 0], along(2.0, 6), rtol=1e-14)
+
+
+def test_a_polynomial_of_a_jet_has_its_series():
+    tape, rng = Tape(5), np.random.default_rng(5)
+    inner, outer = rng.standard_normal((6, 2)), rng.standard_normal((4, 2))
+    found = polynomial(outer, tape.given(inner))
+    for k in range(1, 6):
+        tape.fill(k)
+    for column in range(2):
+        exact = np.polynomial.Polynomial(outer[:, column])(np.polynomial.Polynomial(inner[:, column])).coef[:6]
+        np.testing.assert_allclose(found.coefficients[:, column], exact, rtol=1e-12)
+    np.testing.assert_allclose(polynomial(outer, inner[:1]), found.coefficients[:1])
+
+
+def test_values_on_a_circle_give_coefficients_to_rounding():
+    reach = 0.25 * SINGULAR
+    samples = circle(reach, 16)
+    scaled = samples.taylor(function(samples.places), 16) * reach ** np.arange(17.0)
+    np.testing.assert_allclose(scaled, coefficients(16) * reach ** np.arange(17.0), atol=1e-14)
 
 
 def test_coefficients_come_from_real_values_with_fewer_digits():
@@ -63,23 +91,33 @@ def test_a_polynomial_is_its_own_series():
 
 
 def test_the_series_of_a_solution_is_that_of_its_closed_form():
-    """``x**2 = 1 + t`` and ``exp(y) = x``: a power with a binomial series and half of a logarithm."""
+    """``x**2 = 1 + t`` and ``exp(y) = x``: a power with a binomial series and half of a logarithm, by samples and by jets."""
     order, samples = 8, interval(0.35)
     binomial = np.cumprod([1.0, *((0.5 - k) / (k + 1) for k in range(order))])
     logarithm = np.array([0.0, *(-0.5 * (-1) ** k / k for k in range(1, order + 1))])
+    exact = np.stack([binomial, logarithm], axis=1)
     jacobian = np.array([[2.0, 0.0], [-1.0, 1.0]])
     powers = samples.powers(order)
+    found, by_jets = np.zeros((2, order + 1, 2))
+    found[0, 0] = by_jets[0, 0] = 1.0
 
-    def local(k, w):
-        x, y = (powers[:, :k] @ w[:k]).T
-        return np.stack([x**2, np.exp(y) - x], axis=1)
+    def sampled(k):
+        x, y = (powers[:, :k] @ found[:k]).T
+        return samples.weights[k] @ np.stack([x**2 - 1 - samples.places, np.exp(y) - x], axis=1)
 
-    def residual(k, w, v):
-        return v - np.array([float(k == 1), 0.0])
-
-    found = implicit_series(np.array([1.0, 0.0]), samples, local, residual, lambda r: -np.linalg.solve(jacobian, r), order)
-    exact = np.stack([binomial, logarithm], axis=1)
+    implicit_series(found, sampled, lambda r: -np.linalg.solve(jacobian, r))
     np.testing.assert_allclose(found, exact, atol=1e-4)
+    tape = Tape(order)
+    x, y = (tape.given(by_jets[:, k : k + 1]) for k in range(2))
+    rows = x**2 - 1 - tape.given(np.eye(order + 1)[:, 1:2]), np.exp(y) - x
+
+    def coefficient(k):
+        tape.fill(k)
+        return np.concatenate([row.coefficients[k] for row in rows])
+
+    nearly = jacobian + 1e-5  # of another state
+    implicit_series(by_jets, coefficient, lambda r: -np.linalg.solve(nearly, r), refines=True)
+    np.testing.assert_allclose(by_jets, exact, atol=1e-8)
 
 
 def test_the_radius_is_that_of_convergence_and_rounding_is_no_singularity():
@@ -144,13 +182,6 @@ def test_cells_are_the_function_and_its_slope_inside_and_constant_beyond():
     np.testing.assert_allclose(value, [np.sin(x), np.exp(-x)], atol=1e-14)
     np.testing.assert_allclose(slope, [np.cos(x), -np.exp(-x)], atol=1e-11)
     np.testing.assert_array_equal(cells(np.array([-5.0, 7.0])), cells(np.array([0.0, 3.0])))
-
-
-def test_the_integral_of_a_product_is_that_of_its_series():
-    a, b = np.random.default_rng(3).standard_normal((2, 7, 5))
-    weights = np.arange(1.0, 6.0)
-    np.testing.assert_allclose(integral_of_product(a, b, weights), product(a, b) @ weights, rtol=1e-13)
-    assert along(0.7, 4) == pytest.approx([0.7**k / math.factorial(k) for k in range(5)])
 
 
 def test_a_prediction_beyond_the_radius_knows_about_its_error():

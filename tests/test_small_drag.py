@@ -36,6 +36,6 @@ def test_the_stated_error_of_a_drag_that_nearly_vanishes_holds(wall, cavitation)
     assert state.error_estimate <= RTOL
     if wall == "viscous_balanced":
         friction = curve.at(1e-2)
-        assert abs(friction.friction_viscous - true) <= friction.friction_error
+        assert abs(friction.friction.fluid - true) <= friction.friction.error
         of_state = state.friction(boundary_friction=1e-9)  # the errors of asperities would hide that of the drag
-        assert abs(of_state.viscous - true) <= of_state.error
+        assert abs(of_state.fluid - true) <= of_state.error

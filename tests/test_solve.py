@@ -39,7 +39,7 @@ def state(request, solved):
 
 
 def viscous(solution, definition="published"):
-    return solution.friction(beta=1.0, definition=definition).viscous
+    return solution.friction(beta=1.0, definition=definition).fluid
 
 
 # Reference states
@@ -265,7 +265,7 @@ def test_at_speed_zero_the_pressure_depends_on_relative_roughness_alone(solved):
     assert np.abs(light.profile(x).pressure - less_light.profile(x).pressure).max() < 1e-7
     assert np.abs(less_light.profile(x).gap - light.profile(x).gap - shift).max() < 1e-8
     assert less_light.offset - light.offset == pytest.approx(shift, abs=1e-10)
-    assert light.fluid_load_share == light.friction().viscous == 0
+    assert light.fluid_load_share == light.friction().fluid == 0
     assert light.contact_load_share == pytest.approx(1, abs=1e-9)
 
 
@@ -494,10 +494,10 @@ def test_loads_that_asperities_cannot_carry_are_reached_at_low_speed(numbers, so
 def test_friction_adds_contact_and_viscous_parts(solved):
     s = solved(*TYPICAL["mixed"])
     f, g = (s.friction(k * 0.3, k * 0.01, definition) for k, definition in ((1, "published"), (2, "balanced")))
-    assert f.contact == pytest.approx(0.3 * s.contact_load_share, rel=1e-15)
-    assert f.viscous == pytest.approx(0.01 * viscous(s), rel=1e-15)
-    assert g.viscous == pytest.approx(0.02 * viscous(s, "balanced"), rel=1e-15)
-    assert f.total == f.contact + f.viscous
+    assert f.asperities == pytest.approx(0.3 * s.contact_load_share, rel=1e-15)
+    assert f.fluid == pytest.approx(0.01 * viscous(s), rel=1e-15)
+    assert g.fluid == pytest.approx(0.02 * viscous(s, "balanced"), rel=1e-15)
+    assert f.total == f.asperities + f.fluid
     assert 0 < f.error < 1e-6
     assert s.friction() == s.friction(boundary_friction=1.0, beta=1.0, definition="balanced")
 
@@ -617,8 +617,8 @@ def test_a_dictionary_of_a_solution_holds_every_observable(solved):
     values = s.to_dict(boundary_friction=0.4, beta=0.01)
     for name in NAMES[:6]:
         assert values[name] == getattr(s, name)
-    assert values["friction_balanced"]["total"] == s.friction(0.4, 0.01, "balanced").total
-    assert values["friction_published"]["viscous"] == s.friction(0.4, 0.01, "published").viscous
+    assert values["friction_balanced"] == s.friction(0.4, 0.01, "balanced").total
+    assert values["friction_published_fluid"] == s.friction(0.4, 0.01, "published").fluid
     assert values["outcome"] == "CONVERGED"
     assert json.loads(json.dumps(values)) == values
 
@@ -664,7 +664,7 @@ def test_an_unknown_treatment_of_failures_is_refused(on_failure):
     [
         ({"boundary_friction": -0.1}, "boundary_friction = -0.1"),
         ({"beta": 0.0}, "beta = 0"),
-        ({"definition": "both"}, "'balanced', 'published'"),
+        ({"definition": "both"}, "'balanced' or 'published'"),
     ],
 )
 def test_friction_refuses_what_it_does_not_know(arguments, message, solved):

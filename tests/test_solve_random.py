@@ -46,7 +46,7 @@ def check(states, true_errors, rtol=1e-6):
         assert s.error_estimate <= rtol
         errors = true_errors(s)
         ratios.append(np.nanmax(errors) / s.error_estimate)
-        singles.append(np.nanmax(errors / s.relative_errors))
+        singles.append(np.nanmax(errors / [s.errors[name] for name in NAMES]))
         noted = any(note.startswith("Rounding in double precision limits") for note in s.notes)
         assert noted == (s.rounding_floor > 0.1 * rtol)
         bounded += noted

@@ -18,7 +18,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.curves.table import curve_dataset
 from stribeck.files import writing
 from stribeck.files.datasets import write_csv, write_data, write_netcdf
 from stribeck.files.writing import MissingExtraError, atomic_write, check_writable
@@ -45,7 +44,7 @@ def curve():
 
 @pytest.fixture(scope="module")
 def dataset(curve):
-    return curve_dataset(curve, "A title")
+    return curve.to_dataset().assign_attrs(title="A title")
 
 
 @pytest.fixture(scope="module")
@@ -85,15 +84,15 @@ def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
         "error_estimate",
         "outcome",
     }
-    for name in names - {"friction_published", "friction_balanced", "outcome"}:
+    for name in names - {"outcome", "regime"}:
         np.testing.assert_allclose(dataset[name], [s.to_dict()[name] for s in curve.solutions], rtol=1e-14)
     for definition in ("published", "balanced"):
         found = [s.friction(definition=definition) for s in curve.solutions]
         np.testing.assert_array_equal(dataset[f"friction_{definition}"], [f.total for f in found])
-        np.testing.assert_array_equal(dataset[f"friction_{definition}_viscous"], [f.viscous for f in found])
+        np.testing.assert_array_equal(dataset[f"friction_{definition}_fluid"], [f.fluid for f in found])
         np.testing.assert_array_equal(dataset[f"friction_{definition}_error"], [f.error for f in found])
     np.testing.assert_array_equal(dataset.friction, dataset.friction_balanced)
-    np.testing.assert_allclose(dataset.friction, dataset.friction_contact + dataset.friction_viscous, rtol=1e-14)
+    np.testing.assert_allclose(dataset.friction, dataset.friction_asperities + dataset.friction_fluid, rtol=1e-14)
     assert dataset.regime.values.tolist() == list(curve.regimes)
     assert set(dataset.outcome.values.tolist()) == {"CONVERGED"}
     for name in ("speed", "load", "roughness"):
@@ -245,7 +244,7 @@ def test_the_ending_chooses_the_format(dataset, tmp_path):
 
 def test_the_methods_of_a_curve_write_the_same(curve, tmp_path):
     curve.to_csv(tmp_path / "one.csv")
-    write_csv(curve_dataset(curve), tmp_path / "other.csv")
+    write_csv(curve.to_dataset(), tmp_path / "other.csv")
     assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()
 
 

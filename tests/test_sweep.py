@@ -20,7 +20,7 @@ from sweep_files import CONTACT, GRID, RANDOM, finish, kept, same_states, write
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.quantities.inputs import LINE
+from stribeck.contacts.geometries import LINE
 from stribeck.solver import neighbours
 
 LONG = RANDOM.format(kind="sobol", points=1024)
@@ -37,8 +37,8 @@ def test_scattered_states_are_those_that_solve_gives_from_cold(tmp_path):
     for i in range(0, 30, 3):
         state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
         for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap"):
-            error = float(found[f"{name}_error"][i]) + state.errors[name]
-            assert float(found[name][i]) == pytest.approx(getattr(state, name), rel=error, abs=error)
+            error = float(found[f"{name}_error"][i]) + state.to_dict()[f"{name}_error"]
+            assert float(found[name][i]) == pytest.approx(getattr(state, name), abs=error)
         for definition in ("published", "balanced"):
             friction = state.friction(definition=definition)
             error = float(found[f"friction_{definition}_error"][i]) + friction.error
@@ -73,11 +73,12 @@ def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
     )
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     cube = {
-        name: found[name].values.reshape(2, 2, 2) for name in ("central_gap", "friction_published_viscous", "friction_contact")
+        name: found[name].values.reshape(2, 2, 2)
+        for name in ("central_gap", "friction_published_fluid", "friction_asperities")
     }
     assert np.ptp(cube["central_gap"], axis=(0, 1)).tolist() == [0, 0]
-    assert cube["friction_published_viscous"][:, 1] == pytest.approx(0.1 * cube["friction_published_viscous"][:, 0])
-    assert cube["friction_contact"][1] == pytest.approx(2 * cube["friction_contact"][0])
+    assert cube["friction_published_fluid"][:, 1] == pytest.approx(0.1 * cube["friction_published_fluid"][:, 0])
+    assert cube["friction_asperities"][1] == pytest.approx(2 * cube["friction_asperities"][0])
 
 
 def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch):
@@ -182,8 +183,8 @@ def test_failed_states_make_exit_code_1(capsys, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((), "SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.sqlite."),
-        (("FILE",), "out is missing; give the file of the store with --out."),
+        ((), "SWEEP is missing; give it as in: stribeck sweep examples/sweep.toml --out sweep.sqlite"),
+        (("FILE",), "out is missing; give it as in: stribeck sweep"),
         (("FILE", "--out", "s", "--workers", "two"), "workers = 'two' is not a whole number; write, for example, 101."),
         (("FILE", "--out", "s", "--workers", "0"), "workers = 0; it must be a whole number from 1 to 1024."),
         (
@@ -227,12 +228,10 @@ def test_progress_tells_rate_and_time_left(tmp_path):
 
 
 def test_a_batch_job_gets_lines_of_progress(tmp_path, capsys, monkeypatch):
-    from stribeck.cli.reports import sweep as report_sweep
-
-    monkeypatch.setattr(report_sweep, "PROGRESS_INTERVAL", 0.0)
+    monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
     answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store")
     assert answer.code == 0
-    assert re.fullmatch(r"stribeck: 68 of 68 states, [0-9.e+]+ states/s, 0:00:00 left", answer.err.splitlines()[-1])
+    assert re.fullmatch(r"stribeck: [0-9.e+]+ states/s, state 68 of 68, 0:00:00 left", answer.err.splitlines()[-1])
 
 
 # --- stopped ---

@@ -7,7 +7,7 @@ from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
 from stribeck.batches.order import MAX_CHAIN, chains_of, coordinates
-from stribeck.quantities.inputs import LINE
+from stribeck.contacts.geometries import LINE
 
 VARY = """
 [vary]

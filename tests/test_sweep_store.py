@@ -64,7 +64,7 @@ def test_the_dataset_holds_what_solve_gives(filled):
         for definition in ("published", "balanced"):
             friction = state.friction(0.8, 0.05, definition)
             assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, rel=2e-6)
-            assert float(found[f"friction_{definition}_viscous"][i]) == pytest.approx(friction.viscous, rel=2e-6)
+            assert float(found[f"friction_{definition}_fluid"][i]) == pytest.approx(friction.fluid, rel=2e-6)
         assert float(found.hersey_number[i]) == pytest.approx(groups.hersey_number(0.05))
         assert found.regime[i] == sb.regime_of(state.fluid_load_share, friction_share(state))
         assert str(found.outcome[i].item()) == "CONVERGED"
@@ -73,7 +73,7 @@ def test_the_dataset_holds_what_solve_gives(filled):
 
 def friction_share(state):
     friction = state.friction(0.8, 0.05)
-    return friction.contact / friction.total
+    return friction.asperities / friction.total
 
 
 def test_a_grid_has_its_dimensions_and_the_last_axis_is_the_fastest(filled):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.regimes.transition_speeds import transition_speeds
 
 NAMES = {
     "boundary": "fluid carries 5 % of the load",

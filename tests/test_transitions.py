@@ -87,9 +87,7 @@ def test_the_friction_of_the_paper_is_the_printed_equation_with_its_constant():
 def test_the_lean_of_the_contact_pressure_is_what_the_two_definitions_differ_by():
     groups = state(6, 1e-3, 0.1)
     solved = sb.solve(groups, rtol=1e-8)
-    published, balanced = (
-        solved.friction(boundary_friction=1, beta=1, definition=d).viscous for d in ("published", "balanced")
-    )
+    published, balanced = (solved.friction(boundary_friction=1, beta=1, definition=d).fluid for d in ("published", "balanced"))
     lean = mixed.friction.function(groups, 0.0, 1.0) - mixed.friction.function(groups, 0.0, 1.0, "central")
     assert lean == pytest.approx(published - balanced, rel=0.1)
 

@@ -1,4 +1,4 @@
-// The live curve of the front page: the atlas of solved states, evaluated in the browser.
+// The live curve of the front page: the atlas of solved states, evaluated in the browser and drawn by the explorer's chart.js.
 //
 // The table, and the rows of the inputs, are in atlas_table.js, which docs/live_curve.py writes from the package. The
 // coordinates and sums are those of stribeck/atlas/grid.py and table.py; tests/test_live_curve.py compares the numbers.
@@ -159,7 +159,7 @@ function stribeckState(mode, v) {
   const place = document.getElementById("live-curve");
   if (!place || typeof DecompressionStream === "undefined") return;  // the picture stays
   const {inputs} = stribeckAtlas.table, atlas = await stribeckAtlas.load();
-  const NAME = "live-curve", POINTS = 241, REGIMES = ["boundary", "mixed", "hydrodynamic"];
+  const NAME = "live-curve", POINTS = 241;
   const start = Object.fromEntries(Object.values(inputs).flat().map(row => [row.name, row.value]));
   let mode = "si", values = {...start};
 
@@ -178,8 +178,6 @@ function stribeckState(mode, v) {
     return `${number(value / 10 ** power, digits)} ${steps[power].replace("*", "·")}`.trim();
   }
 
-  const powerOfTen = power => power === 0 ? "1" : power === 1 ? "10" : `10${superscript(power)}`;
-  const superscript = power => String(power).replace("-", "⁻").replace(/[0-9]/g, digit => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
   const regimeOf = at => at.solid <= 0.1 * at.friction ? "hydrodynamic" : at.fluidShare <= 0.05 ? "boundary" : "mixed";
 
   // Where a function of ln(speed) changes its sign between two speeds.
@@ -231,15 +229,13 @@ function stribeckState(mode, v) {
   // --- the page ---
 
   function element(tag, attributes = {}, ...children) {
-    const svg = ["svg", "path", "text", "rect", "circle", "g", "line"].includes(tag);
-    const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
+    const made = document.createElement(tag);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
     made.append(...children);
     return made;
   }
 
-  const WIDTH = 640, HEIGHT = 400, LEFT = 70, RIGHT = 12, TOP = 12, BOTTOM = 44;
-  const chart = element("svg", {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img"});
+  const picture = element("div"), chart = new StribeckChart(picture, "Friction over speed");
   const said = element("p", {class: "live-said", role: "status"});
   const modes = element("fieldset", {class: "live-modes"}, element("legend", {}, "Inputs"));
   const sliders = element("div", {class: "live-sliders"});
@@ -278,44 +274,21 @@ function stribeckState(mode, v) {
     }));
   }
 
-  function draw({state, row, points, minimum, bands, at, now}) {
+  function draw({row, points, minimum, bands, now}) {
     const heights = points.flatMap(([, found]) => [found.friction]);
     const low = 10 ** Math.floor(Math.log10(Math.min(...heights)) - 0.3), high = 10 ** Math.ceil(Math.log10(Math.max(...heights) * 1.1));
-    const span = (value, [a, b]) => Math.log(value / a) / Math.log(b / a);
-    const X = value => LEFT + (WIDTH - LEFT - RIGHT) * span(value, [row.low, row.high]);
-    const Y = value => HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * span(Math.max(value, 1e-3 * low), [low, high]);
-    const path = (name, of) => element("path", {class: name, d: points.map(([x, found], i) =>
-      `${i ? "L" : "M"}${X(x).toFixed(2)} ${Y(of(found)).toFixed(2)}`).join("")});
-    const drawn = bands.flatMap(band => {
-      const [x, width] = [X(band.low), X(band.high) - X(band.low)];
-      const shade = element("rect", {class: `live-${band.regime}`, x, y: TOP, width, height: HEIGHT - TOP - BOTTOM});
-      const words = element("text", {x: x + width / 2, y: TOP + 16, class: "live-regime"}, band.regime);
-      return width > 8 * band.regime.length ? [shade, words] : [shade];
-    });
-    const tick = (x, y, words, anchor) => element("text", {x, y, "text-anchor": anchor, class: "live-tick"}, words);
-    const decades = (a, b) => {
-      const [first, last] = [Math.ceil(Math.log10(a) - 1e-9), Math.floor(Math.log10(b) + 1e-9)];
-      const every = Math.ceil((last - first) / 8);
-      return Array.from({length: Math.floor((last - first) / every) + 1}, (_, i) => first + i * every);
-    };
-    for (const power of decades(row.low, row.high)) {
-      drawn.push(element("line", {class: "live-grid", x1: X(10 ** power), x2: X(10 ** power), y1: TOP, y2: HEIGHT - BOTTOM}));
-      drawn.push(tick(X(10 ** power), HEIGHT - BOTTOM + 17, powerOfTen(power), "middle"));
-    }
-    for (const power of decades(low, high)) {
-      drawn.push(element("line", {class: "live-grid", x1: LEFT, x2: WIDTH - RIGHT, y1: Y(10 ** power), y2: Y(10 ** power)}));
-      drawn.push(tick(LEFT - 6, Y(10 ** power) + 4, powerOfTen(power), "end"));
-    }
-    drawn.push(tick((LEFT + WIDTH) / 2, HEIGHT - 8, mode === "si" ? "speed (m/s)" : "speed group", "middle"));
-    const title = tick(14, HEIGHT / 2 - 10, "friction coefficient", "middle");
-    title.setAttribute("transform", `rotate(-90 14 ${HEIGHT / 2 - 10})`);
-    const [width, height] = [WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM];
-    const frame = {x: LEFT, y: TOP, width, height, viewBox: `${LEFT} ${TOP} ${width} ${height}`};  // cuts what lies below
-    drawn.push(title, element("svg", frame, path("live-solid", found => found.solid),
-      path("live-viscous", found => found.viscous), path("live-friction", found => found.friction)));
-    if (minimum) drawn.push(element("circle", {class: "live-minimum", cx: X(minimum), cy: Y(at(minimum).friction), r: 5}));
-    if (now) drawn.push(element("circle", {class: "live-now", cx: X(values[row.name]), cy: Y(now.friction), r: 6}));
-    chart.replaceChildren(...drawn);
+    const unit = mode === "si" ? "m/s" : "", ends = {low: row.low, high: row.high, log: true};
+    const line = (id, name, look, of) => ({id, name, look, type: "line", data: points.map(([x, found]) => [x, of(found)])});
+    const series = [
+      line("friction", "friction", "main", found => found.friction),
+      line("contact", "from asperities", "contact", found => found.solid),
+      line("fluid", "from the fluid", "fluid", found => found.viscous),
+      {id: "bands", name: "regimes", type: "bands", data: bands.map(band => [band.low, band.high, band.regime])},
+    ];
+    if (minimum) series.push({id: "minimum", name: "minimum friction", type: "line", data: [[minimum, low], [minimum, high]]});
+    series.push({id: "point", name: "this contact", type: "points", data: [[values[row.name], now.friction]]});
+    const x = {name: mode === "si" ? "speed (m/s)" : "speed group (–)", unit, ...ends};
+    chart.show({x, y: {name: "friction coefficient µ (–)", unit: "", low, high, log: true}, series});
   }
 
   function sentence({state, row, now, minimum, at}) {
@@ -347,7 +320,6 @@ function stribeckState(mode, v) {
     place.classList.toggle("live-beyond", !shown);
     if (shown) draw(found);
     said.textContent = shown ? sentence(found) : beyond(found.state);
-    chart.setAttribute("aria-label", shown ? `Friction over speed. ${said.textContent}` : "No curve.");
     place.dataset.friction = shown ? found.now.friction : "";
     place.dataset.minimum = shown && found.minimum ? found.minimum : "";
     const query = new URLSearchParams({mode});
@@ -377,10 +349,7 @@ function stribeckState(mode, v) {
   reset.addEventListener("click", () => { values = {...start}; build(); show(); });
   window.addEventListener("hashchange", () => { read(); build(); show(); });
 
-  const key = element("p", {class: "live-key"}, element("span", {class: "live-key-friction"}, "friction"),
-    element("span", {class: "live-key-solid"}, "from asperities"), element("span", {class: "live-key-viscous"}, "from the fluid"),
-    element("span", {class: "live-key-now"}, "this contact"), element("span", {class: "live-key-minimum"}, "minimum"));
-  place.replaceChildren(element("div", {class: "live-left"}, chart, key, said),
+  place.replaceChildren(element("div", {class: "live-left"}, picture, said),
     element("div", {class: "live-right"}, modes, sliders, element("div", {class: "live-buttons"}, link, reset)));
   read();
   build();

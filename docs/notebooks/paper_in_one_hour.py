@@ -73,11 +73,11 @@ curve = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-9, 10.0), points=8
 speed = curve.values
 figure, axes = plt.subplots()
 axes.loglog(speed, curve.friction, label="solved")
-axes.loglog(speed, curve.friction_viscous, "--", label="viscous part")
+axes.loglog(speed, curve.friction.fluid, "--", label="viscous part")
 axes.loglog(speed, uniform.friction(curve.groups), ":", label="closed form for every speed")
 axes.set(xlabel=r"speed group $\lambda$", ylabel=r"$\mu$", ylim=(1e-3, 3))
 _ = axes.legend()
-print(f"minimum friction {curve.minimum.friction:.5f} at speed {curve.minimum.value:.3e}")
+print(f"minimum friction {curve.minimum.friction:.5f} at speed {curve.minimum.speed:.3e}")
 assert abs(curve.minimum.friction - 0.02682) < 1e-5
 
 # %% [markdown]
@@ -139,7 +139,7 @@ _ = axes.legend()
 # %%
 still = sb.solve(sb.Groups(1e-8, 0.1, 1e-4))
 published, balanced = (
-    still.friction(boundary_friction=1, beta=1, definition=name).viscous for name in ("published", "balanced")
+    still.friction(boundary_friction=1, beta=1, definition=name).fluid for name in ("published", "balanced")
 )
 print(f"viscous friction as published {published:.3e}, balanced {balanced:.3e}: {published / balanced:.1f} times")
 assert 65 < published / balanced < 75

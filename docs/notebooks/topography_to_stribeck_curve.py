@@ -30,7 +30,7 @@ found = surface.to_dict()
 for name in ("body_radius", "h_rms", "hurst", "roll_off"):
     print(f"{name:12} {found[name]:.4g} +- {found[name + '_error']:.1g}")
 for name in ("alpha", "beta"):
-    low, high = found[name + "_interval"]
+    low, high = found[name + "_low_95"], found[name + "_high_95"]
     print(f"{name:12} {found[name]:.4g}, {low:.3g} to {high:.3g} at 95 %")
 assert abs(surface.roughness.hurst - 0.8) < 2 * surface.fit.errors["hurst"]
 
@@ -64,7 +64,7 @@ def contact(law, radius=surface.shape.radius):
 
 curve = sb.stribeck_curve(contact(surface.law), speed=("1 um/s", "1 m/s"), points=41)
 print(f"load group {contact(surface.law).groups.load:.2f}")
-print(f"minimum friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.2f} mm/s")
+print(f"minimum friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.speed:.2f} mm/s")
 
 # %% [markdown]
 # ## How sure is that

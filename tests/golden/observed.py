@@ -44,7 +44,9 @@ OF_STATISTICS = 0.02
 CLASSES = {
     **{name: getattr(sb.fluids, name) for name in sb.fluids.__all__ if name[0].isupper() and name != "PRESETS"},
     **{name: getattr(sb.solids, name) for name in sb.solids.__all__ if name[0].isupper()},
-    **{name: getattr(sb, name) for name in ("FiniteSurface", "GreenwoodTripp", "GreenwoodWilliamson", "TableLaw")},
+    **{
+        name: getattr(sb.contact_laws, name) for name in ("FiniteSurface", "GreenwoodTripp", "GreenwoodWilliamson", "TableLaw")
+    },
     "Persson": lambda numbers: sb.surfaces.persson_law(sb.surfaces.SelfAffine(**numbers)),
 }
 PARTS = ("law", "fluid", "cavitation", "cavity_pressure", "flow_factors", "solid", "slide_to_roll")
@@ -109,7 +111,7 @@ def curve(case):
         return {"words": {"outcome": type(error).__name__}, "values": {}}
     values = {}
     for i, solution in enumerate(found.solutions):
-        values[f"friction {i}"] = [float(found.friction[i]), float(found.friction_error[i])]
+        values[f"friction {i}"] = [float(found.friction[i]), float(found.friction.error[i])]
         for name in ("central_gap", "minimum_gap", "fluid_load_share"):
             value = float(found.observable(name)[i])
             values[f"{name} {i}"] = [value, solution.errors[name] * max(abs(value), OWN_SCALE.get(name, 0.0))]
@@ -129,7 +131,7 @@ def fit(case):
     """Return what a fit gives: its inputs with standard errors and intervals, and the friction of its rows."""
     start, _ = problem_of(case)
     rows = len(case["speeds"])
-    data = sb.Measurements(
+    data = sb.results.Measurements(
         abscissa="speed",
         values=np.array(case["speeds"]),
         friction=np.array(case["friction"]),
@@ -203,10 +205,7 @@ def sweep(case):
         found = sb.sweep(file, Path(folder) / "store").to_dataset().load()
     values = {}
     for i in range(found.outcome.size):
-        for name in ("central_gap", "minimum_gap", "contact_load_share"):
-            value, error = float(found[name].values.flat[i]), float(found[f"{name}_error"].values.flat[i])
-            values[f"{name} {i}"] = [value, error * max(abs(value), OWN_SCALE.get(name, 0.0))]
-        for name in ("friction_balanced", "friction_published"):
+        for name in ("central_gap", "minimum_gap", "contact_load_share", "friction_balanced", "friction_published"):
             values[f"{name} {i}"] = [float(found[name].values.flat[i]), float(found[f"{name}_error"].values.flat[i])]
     return {"words": {"outcomes": " ".join(found.outcome.values.flat)}, "values": values}
 

@@ -23,8 +23,9 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import BASE_MODEL
+from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.units import InputError, show
 
 Value = float | Array
 Arguments = ParamSpec("Arguments")

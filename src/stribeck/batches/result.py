@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,19 +14,17 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.geometries import LINE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
-from stribeck.files.datasets import Column, new_dataset
-from stribeck.files.results import Exported
-from stribeck.quantities.inputs import quantity, unit_of
+from stribeck.files.datasets import Column
+from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import OUTPUT_TABLES, OutputTable
+from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable, friction_rows
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
-
-if TYPE_CHECKING:
-    import xarray
+from stribeck.solver.numbers import absolute_error
 
 __all__ = ["BatchSolution"]
 
@@ -34,6 +32,9 @@ __all__ = ["BatchSolution"]
 @dataclass(frozen=True, eq=False, repr=False)
 class BatchSolution(Exported, Shown, ByValue):
     """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
+
+    Its dataset has along :attr:`dims` the inputs that were given, observables, friction by both definitions, films in SI units
+    where there are contacts, errors and outcomes.
 
     Attributes
     ----------
@@ -101,12 +102,12 @@ class BatchSolution(Exported, Shown, ByValue):
 
     @property
     def friction(self) -> FrictionArray:
-        r"""The friction coefficients [-], balanced: an array with its parts ``contact``, ``viscous`` and its ``error``.
+        r"""The friction coefficients [-], balanced: an array with its parts ``asperities``, ``fluid`` and its ``error``.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
 
         The coefficients are those of the contacts, or 1 where only groups are known.  ``friction(boundary_friction, beta,
-        definition)`` is the same for other coefficients, each of which may be left out, as on a :class:`Solution`.
+        definition)`` is the same for other coefficients, each of which may be left out, as on a solution.
         """
         return self._friction()
 
@@ -141,7 +142,7 @@ class BatchSolution(Exported, Shown, ByValue):
     def regime(self) -> np.ndarray[Any, np.dtype[np.str_]]:
         """Lubrication regime of each state, as :func:`stribeck.regime_of` tells it; empty text if there is no state."""
         friction = self.friction
-        part = friction_share(friction.contact, friction.viscous)
+        part = friction_share(friction.asperities, friction.fluid)
         return np.where(self.ok, np.array(REGIMES)[regime_numbers(self.fluid_load_share, part)], "")
 
     def _each(self, of: Callable[[Any], float]) -> float | Array:
@@ -152,7 +153,7 @@ class BatchSolution(Exported, Shown, ByValue):
 
     def _coefficient(self, name: str, given: float | None) -> float | Array:
         if given is not None or self.contacts is None:
-            return quantity(name, 1.0 if given is None else given)
+            return LINE.checked(name, 1.0 if given is None else given)
         return self._each(lambda contact: getattr(contact, name))
 
     def to_si(self) -> dict[str, Array]:
@@ -179,39 +180,29 @@ class BatchSolution(Exported, Shown, ByValue):
         rows = [row for row in self.outputs.rows if row.film and row.name in self.values]
         return {row.film: self.values[row.name] * scales[row.scale] for row in rows}
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return all states as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along :attr:`dims`: inputs that were given, observables, friction by both definitions, films in SI units if there
-            are contacts, errors and outcomes; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
+    def _labelled(self) -> Labelled:
         columns: dict[str, Column] = {}
         for name, about in self.outputs.listed.items():
             if name in self.values or name == "error_estimate":
                 columns[name] = (self.dims, getattr(self, name), *about)
+        for row in self.outputs.rows:
+            if row.listed and row.error and row.name in self.errors:
+                error = absolute_error(row, self.values[row.name], self.errors[row.name])
+                columns[f"{row.name}_error"] = (self.dims, error, "1", f"estimated absolute error of {row.name}")
         for definition in DEFINITIONS:
             found = self.friction(definition=definition)
-            label = f"friction coefficient, definition {definition}"
-            columns[f"friction_{definition}"] = (self.dims, found.total, "1", label)
-            columns[f"friction_{definition}_error"] = (self.dims, found.error, "1", f"{label}: estimated absolute error")
+            rows = zip(friction_rows(definition).items(), (found.total, found.fluid, found.error), strict=True)
+            columns |= {name: (self.dims, values, *about) for (name, about), values in rows}
         if self.contacts is not None:
             for name, values in self.to_si().items():
                 columns[name] = (self.dims, values, *self.outputs.films[name])
-        columns["regime"] = (self.dims, self.regime.astype(object), "1", "lubrication regime")
-        columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), "1", "how the solve ended")
+        columns["regime"] = (self.dims, self.regime.astype(object), *COLUMNS["regime"])
+        columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), *COLUMNS["outcome"])
         coords = {}
         for name in self.varied:
             dims, values = _along(self.dims, self.input(name))
             coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
-        return new_dataset(columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol})
+        return columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol}
 
     def input(self, name: str) -> Array:
         """Return an input of each state.
@@ -247,7 +238,7 @@ class BatchSolution(Exported, Shown, ByValue):
         if self.contacts is None:
             return "1"
         first: Contact = self.contacts.ravel()[0]
-        return unit_of(name, first.INPUTS)
+        return first.INPUTS.unit(name)
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"

@@ -78,8 +78,7 @@ def solve_batch(
     checked_callback("on_progress", on_progress)
     groups, contacts, names = varied(problem, inputs, dims)
     if isinstance(problem, Contact):
-        kept = {name: other.of for other in problem.INPUTS.alternatives for name in other.inputs}
-        given = tuple(dict.fromkeys(kept.get(name, name) for name in inputs))
+        given = tuple(dict.fromkeys(problem.INPUTS.stands_for.get(name, name) for name in inputs))
     else:
         given = tuple(name for name in GROUPS if name in inputs or np.ndim(getattr(problem, name)))
     shape = groups.shape
@@ -110,7 +109,7 @@ def solve_batch(
             estimate[row] = ended.solution.error_estimate
             for definition, pair in own.items():
                 friction = ended.solution.friction(boundary_friction=0.0, definition=definition)
-                pair[:, row] = friction.viscous, friction.error
+                pair[:, row] = friction.fluid, friction.error
             for kept, found in ((values, _observed(ended.solution)), (errors, ended.solution.errors)):
                 for name, value in found.items():
                     kept.setdefault(name, np.full(total, np.nan))[row] = value

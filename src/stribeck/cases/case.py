@@ -6,9 +6,11 @@ from typing import Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.law import Law
+from stribeck.cases.tables import rising_pair
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.quantities.inputs import LINE, InputTable, quantity
+from stribeck.contacts.geometries import LINE
+from stribeck.contacts.inputs import InputTable
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["Case", "CurveSettings", "curve_range"]
@@ -80,19 +82,14 @@ class Case:
 
 def curve_range(value: Any, over: str, inputs: InputTable = LINE) -> tuple[float, float]:
     """Return the ends of a curve in SI units."""
-    if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f"range = {show(value)} must be a list of two values, the lowest and the highest {over}.")
-    low, high = (_range_end(end, over, inputs) for end in value)
-    if not low < high:
-        raise InputError(f"range = {show(value)} must increase; write the lowest {over} first.")
-    return low, high
 
+    def end(value: Any) -> float:
+        try:
+            found = inputs.checked(over, value)
+        except InputError as problem:
+            raise InputError(f"in range, {problem}") from None
+        if found == 0:
+            raise InputError(f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic.")
+        return found
 
-def _range_end(value: Any, over: str, inputs: InputTable) -> float:
-    try:
-        result = quantity(over, value, inputs)
-    except InputError as problem:
-        raise InputError(f"in range, {problem}") from None
-    if result == 0:
-        raise InputError(f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic.")
-    return result
+    return rising_pair("range", value, end, over)

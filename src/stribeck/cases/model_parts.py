@@ -5,22 +5,21 @@ Each becomes one or two arguments of the contact; what a number may be is checke
 
 from __future__ import annotations
 
-import difflib
-import inspect
+import itertools
 import json
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
-from stribeck.contacts.part_inputs import KINDS, PART_LETTERS, Kind
+from stribeck.cases.tables import noted, one_of, unknown
+from stribeck.contacts.geometries import INPUT_TABLES
+from stribeck.contacts.part_inputs import KINDS, LAW_NUMBERS, PART_LETTERS, Kind
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.presets import PRESETS, Liquid
-from stribeck.quantities.conversions import GIVEN
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import INPUT_TABLES
-from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["KEYS", "in_file", "preset_facts", "preset_source_text", "take_parts"]
+__all__ = ["PART_TABLES", "in_file", "preset_facts", "preset_source_text", "take_parts"]
 
 
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
@@ -30,72 +29,74 @@ CONDITIONS = ("weight_fraction", "temperature", "grade")
 KEYS_OF_NAME = ("name", "type", "kind", "law", "fluid", "liquid")  # Keys that people write for the one that says which
 
 
-def keywords_of(law: Any) -> tuple[str, ...]:
-    """Return the arguments of a law in the table that names it; none of what does nothing."""
-    return () if law is None else tuple(inspect.signature(law).parameters)
+def _keys(*kinds: Kind) -> tuple[str, ...]:
+    """Return the keys of a table that names laws of these kinds."""
+    numbers = (key for kind in kinds for law in kind.laws.values() for key in arguments_of(law))
+    return tuple(dict.fromkeys((*(kind.key for kind in kinds), *numbers)))
 
 
-# Table -> its keys.
-KEYS = {
-    "fluid": (
-        *(kind.key for kind in FLUID_KINDS.values()),
-        *dict.fromkeys(key for kind in FLUID_KINDS.values() for law in kind.laws.values() for key in numbers_of(law)),
-        "preset",
-        *CONDITIONS,
-    ),
-    "cavitation": ("model", "cavity_pressure"),
-    "motion": ("slide_to_roll",),
-    "flow_factors": ("model", *dict.fromkeys(key for law in KINDS["flow_factors"].laws.values() for key in keywords_of(law))),
-    "solid": ("model", *dict.fromkeys(key for law in KINDS["solid"].laws.values() for key in numbers_of(law))),
-}
+class PartTable(NamedTuple):
+    """A table of a case that describes a part of a contact."""
+
+    keys: tuple[str, ...]
+    read: Callable[[dict[str, Any], Any], dict[str, Any]]  # Arguments of a contact from the table and that of the contact
+    missing: str = ""  # What to say where the first of its keys is missing; empty if none is needed
 
 
-# Keys of ``[contact]``, for those who write them below another table.
-CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
-
+# Where a key of another table belongs, for those who write it below the wrong one.
+ELSEWHERE = {"contact": (*INPUT_TABLES["point"].quantities, "geometry")}
 
 # Other keys of a table, as they stood in former files -> the key.
 LETTERS = {"pressure": "cavity_pressure", **PART_LETTERS}
 
-# Argument with which the sentence of a problem may begin -> its table of a case, where no table is being read.
-TABLE_OF = {key: table for table, keys in KEYS.items() for key in keys if key != "model"} | {"cavitation": "cavitation"}
-
 
 def in_file(problem: str, table: str) -> str:
-    """Return a sentence on a problem with its place in a case: ``table``, or that of the argument it begins with."""
+    """Return a sentence on a problem with its place in a case: its own, that of the argument it begins with, or ``table``."""
+    if problem.startswith(("[", "the table")):
+        return problem
     name, space, rest = problem.partition(" ")
-    key = "model" if name == "cavitation" else name
-    return f"[{TABLE_OF.get(name, table)}] {key}{space}{rest}"
+    if name == "cavitation":
+        return f"[cavitation] model{space}{rest}"
+    own = (each for each, part in PART_TABLES.items() if name in part.keys and name != "model")
+    return f"[{next(own, table)}] {problem}"
 
 
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Return the tables without those of the model, what these say, and what is wrong with them."""
-    rest = {name: value for name, value in tables.items() if name not in KEYS}
+    rest = {name: value for name, value in tables.items() if name not in PART_TABLES}
     parts: dict[str, Any] = {}
     problems: list[str] = []
     if isinstance(rest.get("contact"), dict):
         rest["contact"] = dict(rest["contact"])
-    for name, read in READERS.items():
-        if name not in tables:
-            continue
-        table, letters = tables[name], dict[str, str]()
+    for name in (name for name in PART_TABLES if name in tables):
+        written: dict[str, str] = {}
         try:
-            if not isinstance(table, dict):
-                raise InputError(f"{name} = {show(table)} must be a table, [{name}].")
-            letters = {LETTERS[key]: key for key in table if LETTERS.get(key) in KEYS[name]}
-            for key, written in letters.items():
-                if key in table:
-                    raise InputError(f"{written} = {show(table[written])} is {key}, which is given too; remove one of them.")
-            table = {LETTERS[key] if key in letters.values() else key: value for key, value in table.items()}
-            unknown = [f"[{name}] {_unknown(key, table[key], KEYS[name])}" for key in table if key not in KEYS[name]]
-            if unknown:
-                problems += unknown
-                continue
-            parts |= read(table, rest.get("contact"))
+            parts |= _read(name, tables[name], rest.get("contact"), written)
         except InputError as problem:
-            problems += [_as_written(in_file(line, name), letters) for line in str(problem).split("\n")]
+            problems += [_as_written(in_file(line, name), written) for line in str(problem).split("\n")]
     problems += _slide_to_roll(rest.get("contact"), parts, geometry)
     return rest, parts, problems
+
+
+def _read(name: str, given: Any, contact: Any, written: dict[str, str]) -> dict[str, Any]:
+    """Return what a table says; ``written`` takes the keys that stand there in the place of others."""
+    part = PART_TABLES[name]
+    if not isinstance(given, dict):
+        raise InputError(f"{name} = {show(given)} must be a table, [{name}].")
+    written |= {LETTERS[key]: key for key in given if LETTERS.get(key) in part.keys}
+    for key, letter in written.items():
+        if key in given:
+            raise InputError(f"{letter} = {show(given[letter])} is {key}, which is given too; remove one of them.")
+    table = {LETTERS[key] if key in written.values() else key: value for key, value in given.items()}
+    problems: list[str] = []
+    for key in table.keys() - set(part.keys):
+        with noted(problems, name):
+            _unknown(key, table[key], part.keys)
+    if problems:
+        raise InputError("\n".join(problems))
+    if part.missing and part.keys[0] not in table:
+        raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
+    return part.read(table, contact)
 
 
 def _as_written(problem: str, letters: dict[str, str]) -> str:
@@ -118,20 +119,11 @@ def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[s
     return []
 
 
-def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
-    near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
-    meant = near or [each for each in ("preset", "model") if key in KEYS_OF_NAME and each in known]
-    advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
-    if key in CONTACT_KEYS:
-        advice = "it belongs in the table [contact]: keys go to the last [table] above them"
-    return f"{key if key.isprintable() else repr(key)} = {show(value)} is not a known key; {advice}."
-
-
-def _one_of(table: dict[str, Any], key: str, known: tuple[str, ...], default: str) -> str:
-    value = table.get(key, default)
-    if value not in known:
-        raise InputError(f"{key} = {show(value)} must be one of {', '.join(map(repr, known))}.")
-    return str(value)
+def _unknown(key: str, value: Any, known: tuple[str, ...]) -> None:
+    meant = [each for each in ("preset", "model") if key in KEYS_OF_NAME and each in known]
+    if meant:
+        raise InputError(f"{key} = {show(value)} is not a known key; did you mean {' or '.join(meant)}.")
+    unknown(key, value, () if key in ELSEWHERE["contact"] else known, ELSEWHERE)
 
 
 def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
@@ -144,31 +136,23 @@ def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) ->
 def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if "preset" in table:
         return _preset(table, contact)
-    _refuse_other_keys(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
+    _refuse_other_keys(table, (*_keys(*FLUID_KINDS.values()), "preset"), "a fluid without preset")
     given = {"viscosity_law": "barus"} | table if "pressure_coefficient" in table else table
     return {"fluid": Fluid(**{name: _law(given, kind) for name, kind in FLUID_KINDS.items()})}
 
 
 def _law(table: dict[str, Any], kind: Kind) -> Any:
     """Return the law that a table names, with its numbers; None for the one that does nothing."""
-    laws, key = kind.laws, kind.key
-    name = _one_of(table, key, tuple(laws), kind.nothing)
-    numbers = numbers_of(laws[name])
-    for other in dict.fromkeys(each for law in laws.values() for each in numbers_of(law)):
-        if other in table and other not in numbers:
-            instead = f"it has {', '.join(numbers)}" if numbers else "remove it"
-            raise InputError(f"{other} = {show(table[other])} is given, but {key} = {name!r} has no such key; {instead}.")
-    for row in numbers.values():
-        if row.name not in table and row.default is None:
-            raise InputError(f"{row.name} is missing, which {key} = {name!r} needs; add {row.name} = {row.example}.")
-    return None if laws[name] is None else laws[name](**{each: table[each] for each in numbers if each in table})
+    name = one_of(*kind.laws)(kind.key, table.get(kind.key, kind.nothing))
+    given = {key: table[key] for key in _keys(kind) if key in table and key != kind.key}
+    return made_of(kind.laws[name], f"{kind.key} = {name!r}", given)
 
 
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     doubled = isinstance(contact, dict) and "viscosity" in contact
     if isinstance(contact, dict) and not doubled:
         contact["viscosity"] = 1.0  # stands for that of the liquid, so that a wrong condition is no lack of a viscosity
-    name = _one_of(table, "preset", tuple(PRESETS), "")
+    name = one_of(*PRESETS)("preset", table["preset"])
     _refuse_other_keys(table, ("preset", *CONDITIONS), "a preset")
     liquid = _liquid(table)
     if doubled:
@@ -202,75 +186,51 @@ def preset_source_text(tables: dict[str, Any], viscosity: float) -> tuple[str, .
     return (f"viscosity = {format_si(viscosity, 'viscosity', 4)} from {given}: {preset.source} ({preset.range}).",)
 
 
-def _cavitation(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    if "model" not in table:
-        raise InputError('model is missing; add model = "exit", "reform" or "none".')
-    return {"cavitation" if key == "model" else key: value for key, value in table.items()}
-
-
-def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    if "slide_to_roll" not in table:
-        raise InputError("slide_to_roll is missing; 2 is pure sliding with the cylinder at rest, 0 pure rolling.")
-    return {"slide_to_roll": table["slide_to_roll"]}
-
-
-def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    laws = KINDS["flow_factors"].laws
-    if "model" not in table:
-        raise InputError(f"model is missing; add model = {' or '.join(map(json.dumps, laws))}.")
-    name = _one_of(table, "model", tuple(laws), "")
-    made, rest = laws[name], {key: value for key, value in table.items() if key != "model"}
-    _refuse_other_keys(rest, keywords_of(made), f"model = {name!r}")
-    return {"flow_factors": None if made is None else made(**rest)}
-
-
 def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    laws = {name: law for name, law in KINDS["solid"].laws.items() if law is not None}
-    numbers = {name: {key: row for key, row in numbers_of(law).items()} for name, law in laws.items()}
-    own = {name: [key for key, row in rows.items() if row.default is None] for name, rows in numbers.items()}
-    given = [name for name, keys in own.items() if set(keys) & table.keys()]
-    if "model" in table:
-        given = list(dict.fromkeys([*given, _one_of(table, "model", tuple(KINDS["solid"].laws), "")]))
-        if given[-1] not in laws and len(table) > 1:
-            other = next(key for key in table if key != "model")
-            raise InputError(f"{other} = {show(table[other])} is given, but model = {given[-1]!r} has no such key; remove it.")
-        given = [name for name in given if name in laws]
-        if not given:
-            return {"solid": None}
-    if not given:
-        given = [name for name, rows in numbers.items() if rows.keys() & table.keys()][:1]
-    if not given:
-        first, *others = own.values()
-        raise InputError(
-            f"{first[0]} is missing; add {first[0]} = {numbers[next(iter(own))][first[0]].example}, or "
-            f"{', or '.join(' and '.join(keys) for keys in others)} of a viscoelastic body, or leave the table out for a "
-            "half-space."
+    """Return the body of a table: a layer, a memory, or a layer that has one; its numbers say which."""
+    kind = KINDS["solid"]
+    laws = {name: law for name, law in kind.laws.items() if law is not None}
+    named = one_of(*kind.laws)("model", table.get("model", next(iter(laws))))
+    if named == kind.nothing:
+        return {"solid": _law(table, kind)}
+    chosen = {name: law for name, law in laws.items() if not table.keys().isdisjoint(needed_of(law))}
+    if "model" in table or not table.keys().isdisjoint(numbers_of(laws[named])) and not chosen:
+        chosen[named] = laws[named]
+    if not chosen:
+        first, *others = map(needed_of, laws.values())
+        memories = ", ".join(" and ".join(keys) for keys in others)
+        advice = (
+            f"{LAW_NUMBERS[first[0]].advice}, or {memories} of a viscoelastic body, or leave the table out for a half-space"
         )
-    bases = [name for name in given if not hasattr(laws[name], "base")]
-    memories = [name for name in given if hasattr(laws[name], "base")]
-    for several in (bases, memories):
-        if len(several) > 1:
-            keys = " and ".join(own[name][0] for name in several)
+        raise InputError(f"{first[0]} is missing; {advice}.")
+    bodies = sorted(chosen.items(), key=lambda each: hasattr(each[1], "base"))  # what the memory is of first
+    for (_, one), (_, other) in itertools.pairwise(bodies):
+        if hasattr(one, "base") == hasattr(other, "base"):
+            keys = " and ".join(needed_of(law)[0] for law in (one, other))
             raise InputError(f"{keys} are two descriptions of the same; give one of them.")
-    for name in given:
-        for key in own[name]:
-            if key not in table:
-                there = next((each for each in numbers[name] if each in table), f"model = {name!r}")
-                raise InputError(f"{key} is missing beside {there}; add {key} = {numbers[name][key].example}.")
-    known = {key for name in given for key in numbers[name]}
-    _refuse_other_keys({key: table[key] for key in table if key != "model"}, tuple(known), f"model = {given[0]!r}")
-    body = None
-    for name in (*bases, *memories):
-        values = {key: table[key] for key in numbers[name] if key in table}
-        body = laws[name](**values) if body is None else laws[name](**values, base=body)
-    return {"solid": body}
+    known = [key for law in chosen.values() for key in arguments_of(law)]
+    _refuse_other_keys(table, ("model", *known), f"model = {bodies[0][0]!r}")
+    base: dict[str, Any] = {}
+    for name, law in bodies:
+        given = {key: table[key] for key in arguments_of(law) if key in table}
+        base = {"base": made_of(law, f"model = {name!r}", given, **base)}
+    return {"solid": base["base"]}
 
 
-# Table -> what makes arguments of a contact of it.
-READERS: dict[str, Callable[[dict[str, Any], Any], dict[str, Any]]] = {
-    "fluid": _fluid,
-    "cavitation": _cavitation,
-    "motion": _motion,
-    "flow_factors": _flow_factors,
-    "solid": _solid,
+PART_TABLES = {
+    "fluid": PartTable((*_keys(*FLUID_KINDS.values()), "preset", *CONDITIONS), _fluid),
+    "cavitation": PartTable(
+        ("model", "cavity_pressure"),
+        lambda table, contact: {"cavitation" if key == "model" else key: value for key, value in table.items()},
+        'add model = "exit", "reform" or "none"',
+    ),
+    "motion": PartTable(
+        ("slide_to_roll",), lambda table, contact: table, "2 is pure sliding with the cylinder at rest, 0 pure rolling"
+    ),
+    "flow_factors": PartTable(
+        _keys(KINDS["flow_factors"]),
+        lambda table, contact: {"flow_factors": _law(table, KINDS["flow_factors"])},
+        f"add model = {' or '.join(map(json.dumps, KINDS['flow_factors'].laws))}",
+    ),
+    "solid": PartTable(_keys(KINDS["solid"]), _solid),
 }

@@ -5,13 +5,18 @@ Source: [Persson05] for the spectrum, [YP08] for the law.
 
 from __future__ import annotations
 
+import inspect
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
-from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, persson_law
+from stribeck.contact_laws.persson import GAMMA, MIN_GAMMA, PerssonLaw, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.contacts.forms import Form
+from stribeck.contacts.inputs import InputTable, read_inputs
+from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
 
 __all__ = ["RoughSurface"]
 
@@ -21,27 +26,6 @@ class RoughSurface:
     r"""Self-affine roughness of both surfaces together, in SI units, as the table ``[surface]`` of a case gives it.
 
     Each cut-off is given once, as a wave number :math:`q` (``"1e5 1/m"``) or as a wavelength :math:`2\pi/q` (``"60 um"``).
-
-    Parameters
-    ----------
-    h_rms : str or float
-        Root mean square of the height [m].
-    hurst : float
-        Hurst exponent, above 0 and at most 1 [-].
-    q0 : str or float, optional
-        Wave number of the longest roughness [1/m]; or give ``longest_wavelength``.
-    q1 : str or float, optional
-        Wave number of the shortest roughness [1/m]; or give ``shortest_wavelength``.
-    roll_off : str or float, optional
-        Wave number from which the spectrum falls [1/m]; or give ``roll_off_wavelength``; without both there is no roll-off.
-    longest_wavelength : str or float, optional
-        Longest roughness [m].
-    shortest_wavelength : str or float, optional
-        Shortest roughness [m].
-    roll_off_wavelength : str or float, optional
-        Wavelength from which on the spectrum is flat [m].
-    gamma : float
-        Reduction of the elastic energy in Persson's theory, from 0.01 to 1 [-].
 
     Attributes
     ----------
@@ -60,40 +44,31 @@ class RoughSurface:
     (2.09, 0.089)
     """
 
-    h_rms: float
-    hurst: float
-    q0: float
-    q1: float
-    roll_off: float
-    gamma: float
+    h_rms: Input = Input(label="rms height", dimension="length", typical="1 um")
+    hurst: Input = Input(label="Hurst exponent", dimension="number", typical="0.8", highest=1.0, reason="it is often near 0.8")
+    q0: Input = Input(label="wave number q₀", dimension="wavenumber", typical="6e4 1/m")
+    q1: Input = Input(label="wave number q₁", dimension="wavenumber", typical="6e7 1/m")
+    roll_off: Input = Input(label="roll-off wave number", dimension="wavenumber", typical="3e5 1/m", optional=True)
+    gamma: Input = Input(
+        label="coefficient γ",
+        dimension="number",
+        typical="0.45",
+        lowest=MIN_GAMMA,
+        zero=True,
+        highest=1.0,
+        reason="0.45 fits simulations",
+        optional=True,
+        default=GAMMA,
+    )
 
-    def __init__(
-        self,
-        *,
-        h_rms: str | float,
-        hurst: float,
-        q0: str | float | None = None,
-        q1: str | float | None = None,
-        roll_off: str | float | None = None,
-        longest_wavelength: str | float | None = None,
-        shortest_wavelength: str | float | None = None,
-        roll_off_wavelength: str | float | None = None,
-        gamma: float = GAMMA,
-    ) -> None:
+    INPUTS: ClassVar[InputTable]
+
+    def __init__(self, **given: str | float | None) -> None:
         """Check the values and bring them to SI units."""
-        first = _cut_off("q0", q0, "longest_wavelength", longest_wavelength)
-        last = _cut_off("q1", q1, "shortest_wavelength", shortest_wavelength)
-        if first is None:
-            raise InputError("q0 is missing; give it as in '6e4 1/m', or longest_wavelength as in '100 um'.")
-        if last is None:
-            raise InputError("q1 is missing; give it as in '6e7 1/m', or shortest_wavelength as in '100 nm'.")
-        bend = _cut_off("roll_off", roll_off, "roll_off_wavelength", roll_off_wavelength)
-        gamma = check_gamma(gamma)
-        height = _length("h_rms", h_rms)
-        checked = SelfAffine(height, first, last, to_si(hurst, "number", "hurst", "0.8"), bend)
-        fields = {"h_rms": height, "hurst": checked.hurst, "q0": first, "q1": last, "roll_off": bend or first, "gamma": gamma}
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
+        values = read_inputs({name: value for name, value in given.items() if value is not None}, self.INPUTS).checked()
+        for name in self.INPUTS.names:
+            object.__setattr__(self, name, values.get(name, values["q0"] if name == "roll_off" else None))
+        _ = self.roughness
 
     @cached_property
     def roughness(self) -> SelfAffine:
@@ -106,22 +81,21 @@ class RoughSurface:
         return persson_law(self.roughness, self.gamma)
 
 
-def _cut_off(name: str, wavenumber: str | float | None, other: str, wavelength: str | float | None) -> float | None:
-    """Return a wave number that may be given as a wavelength, None where neither is given."""
-    if wavenumber is not None and wavelength is not None:
-        raise InputError(f"{name} = {show(wavenumber)} and {other} = {show(wavelength)} mean the same; give one of them.")
-    if wavelength is not None:
-        return 2 * math.pi / _length(other, wavelength)
-    if wavenumber is None:
-        return None
-    value = to_si(wavenumber, "wavenumber", name)
-    if value <= 0:
-        raise InputError(f"{name} = {show(wavenumber)} is not above zero; give the wave number 2 pi/wavelength.")
-    return value
+def _of_wavelength(of: str, which: str, typical: str, without: str = "") -> Form:
+    """Return how a wave number follows from a wavelength."""
+    name, label = f"{which.replace('-', '_')}_wavelength", f"{which} wavelength"
+    length = Input(name=name, label=label, dimension="length", typical=typical, without=without)
+    meaning = "" if without else f"the wave number of the {which} roughness"
+    return Form(of=of, inputs=(length,), value=lambda wavelength: 2 * math.pi / wavelength, meaning=meaning)
 
 
-def _length(name: str, value: str | float) -> float:
-    length = to_si(value, "length", name, "1 um")
-    if length <= 0:
-        raise InputError(f"{name} = {show(value)} is not above zero; give a length such as '1 um'.")
-    return length
+RoughSurface.INPUTS = InputTable(
+    RoughSurface,
+    (
+        _of_wavelength("q0", "longest", "150 um"),
+        _of_wavelength("q1", "shortest", "1.5 um"),
+        _of_wavelength("roll_off", "roll-off", "20 um", without="no roll-off"),
+    ),
+)
+RoughSurface.__signature__ = inspect.Signature(RoughSurface.INPUTS.parameters())  # type: ignore[attr-defined]
+RoughSurface.__doc__ = complete_docstring(RoughSurface, RoughSurface.INPUTS.arguments())

@@ -1,128 +1,157 @@
-"""What the tables of a case file may hold, for pydantic, and the sentences for what it refuses."""
+"""The walk over the tables of a file: which keys they may have, what each may hold, and a sentence for each problem."""
 
-import functools
-from types import SimpleNamespace
-from typing import Annotated, Any, Literal
+from __future__ import annotations
 
-from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
-from stribeck.cases.law import ASPERITY_KEYS, INPUTS_OF_SURFACES, LAWS, SURFACE_KEYS, TABLE_KEYS
-from stribeck.contacts.friction import Definition
-from stribeck.quantities.conversions import GIVEN
-from stribeck.quantities.facts import FACTS
-from stribeck.quantities.hints import MEANT, OTHER_SOURCES, advice_on
-from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, quantity
-from stribeck.quantities.units import DIMENSIONS, show
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, NamedTuple
 
-__all__ = ["error_sentence", "example_of", "file_model", "optional_table", "shared_types"]
+from stribeck.cases.hints import MEANT, advice_on
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, checked_word, show
 
+__all__ = [
+    "AS_GIVEN",
+    "HEAD",
+    "NUMBERS",
+    "TEXT",
+    "TRUTH",
+    "Check",
+    "Key",
+    "Keys",
+    "is_number",
+    "is_real",
+    "must",
+    "noted",
+    "numbers",
+    "one_of",
+    "read_tables",
+    "rising_pair",
+    "tolerance",
+    "unknown",
+    "whole",
+]
 
-@functools.cache
-def optional_table(name: str, keys: tuple[str, ...]) -> Any:
-    """Return the type and the default of a table with optional keys, which its own reader checks, for a pydantic model."""
-    from pydantic import ConfigDict, Field, create_model
-
-    fields: dict[str, Any] = dict.fromkeys(keys, (Any, None))
-    table = create_model("_".join(keys), __config__=ConfigDict(extra="forbid"), **fields)
-    return Annotated[table, Field(description=f"a table, [{name}]")], None
-
-
-@functools.cache
-def shared_types() -> SimpleNamespace:
-    """Return what the pydantic models of cases and sweeps share, made on first use because pydantic is slow to import."""
-    from pydantic import BaseModel, ConfigDict, Field
-
-    class Table(BaseModel):
-        model_config = ConfigDict(extra="forbid")
-
-    # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
-    tolerance = Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes")
-    text = Annotated[str, Field(strict=True, description="text in quotes")]
-    named: Any = Literal[LAWS]
-    return SimpleNamespace(
-        Table=Table,
-        law=(Annotated[named, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law),
-        rtol=(Annotated[float, tolerance], Case.rtol),
-        ends={
-            "table": optional_table("table", TABLE_KEYS),
-            "title": (text, Case.title),
-            "notes": (text, Case.notes),
-        },
-    )
+Check = Callable[[str, Any], Any]  # `check(name, value)` returns what is kept, or refuses it
 
 
-@functools.cache
-def file_model(geometry: str) -> Any:
-    """Return the pydantic model of a case file of a geometry."""
-    from pydantic import BeforeValidator, Field, ValidationInfo, create_model
+class Key(NamedTuple):
+    """A key that a table may have."""
 
-    def check_quantity(value: Any, info: ValidationInfo) -> float:
-        return quantity(str(info.field_name), value, inputs)
-
-    def check_range(value: Any, info: ValidationInfo) -> tuple[float, float] | None:
-        return curve_range(value, info.data["over"], inputs) if "over" in info.data else None
-
-    inputs, shared = INPUT_TABLES[geometry], shared_types()
-    number = Annotated[float, BeforeValidator(check_quantity)]
-    optional = inputs.choices | set(INPUTS_OF_SURFACES)
-    keys: dict[str, Any] = {name: (number | None, None) if name in optional else (number, ...) for name in inputs.quantities}
-    contact = create_model("Contact", __base__=shared.Table, **keys, law=shared.law)
-    over: Any = (Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")], CurveSettings.over)
-    points = Field(strict=True, ge=2, le=100_000, description="a whole number from 2 to 100000")
-    curve = create_model(
-        "Curve",
-        __base__=shared.Table,
-        over=over,
-        range=(Annotated[Any, BeforeValidator(check_range)], None),
-        points=(Annotated[int, points], DEFAULT_POINTS_AND_RTOL[geometry][0]),
-    )
-    definition: Any = (Annotated[Definition, Field(description="'balanced' or 'published'")], Case.definition)
-    rtol = shared.rtol[0], DEFAULT_POINTS_AND_RTOL[geometry][1]
-    solver = create_model("Solver", __base__=shared.Table, rtol=rtol, definition=definition)
-    return create_model(
-        "File",
-        __base__=shared.Table,
-        contact=(contact, Field(description="a table, [contact]")),
-        curve=(curve, Field(description="a table, [curve]", default_factory=curve)),
-        solver=(solver, Field(description="a table, [solver]", default_factory=solver)),
-        surface=optional_table("surface", SURFACE_KEYS),
-        asperities=optional_table("asperities", ASPERITY_KEYS),
-        check=optional_table("check", tuple(FACTS)),
-        **shared.ends,
-    )
+    check: Check
+    default: Any = None  # What stands for one that is not given; None for nothing
 
 
-def error_sentence(file: Any, error: Any, inputs: InputTable = LINE) -> str:
-    """Return the sentence for one of pydantic's errors in a ``file`` of tables."""
-    *tables, key = [str(part) for part in error["loc"][:2]]
-    model = file.model_fields[tables[0]].annotation if tables else file
-    where = f"[{tables[0]}] " if tables else ""
+Keys = Mapping[str, Key]  # The keys of a table by name
+
+
+@contextmanager
+def noted(problems: list[str], table: str = "") -> Iterator[None]:
+    """Note what is refused among the problems of a file, a line each, with its table where it has none."""
+    try:
+        yield
+    except InputError as problem:
+        problems += [line if not table or line.startswith("[") else f"[{table}] {line}" for line in str(problem).splitlines()]
+
+
+def read_tables(given: Mapping[str, Any], file: Mapping[str, Keys], problems: list[str]) -> dict[str, Any]:
+    """Return the tables of a file, and the keys at its top, which are those of the table without a name."""
+    found: dict[str, Any] = {}
+    for name, keys in file.items():
+        table = given.get(name, {}) if name else {key: value for key, value in given.items() if key not in file}
+        if not isinstance(table, dict):
+            problems.append(f"{name} = {show(table)} must be a table, [{name}].")
+            continue
+        read = {key: each.default for key, each in keys.items() if each.default is not None}
+        for key, value in table.items():
+            with noted(problems, name):
+                read[key] = keys[key].check(key, value) if key in keys else unknown(key, value, keys, file)
+        if not name:
+            found |= read
+        elif name in given or read:
+            found[name] = read
+    return found
+
+
+def unknown(key: str, value: Any, known: Iterable[str], file: Mapping[str, Iterable[str]] | None = None) -> Any:
+    """Refuse a key that a table does not have, with what was probably meant, or where in the file it belongs."""
+    tables, names = file or {}, list(known)
+    if known is tables.get(""):
+        names = [*filter(None, tables), *names]
+    advice = advice_on(key, names) or _place_of(MEANT.get(key, key), tables)
     shown = key if key.isprintable() else repr(key)
-    if error["type"] == "missing":
-        return f"{where}{key} is missing; {example_of(key, inputs)}." if tables else f"the table [{key}] is missing."
-    if error["type"] == "extra_forbidden":
-        return f"{where}{shown} = {show(error['input'])} is not a known key; {_nearest(file, model, key)}."
-    if error["type"] == "value_error":
-        return f"{where}{error['ctx']['error']}"
-    return f"{where}{key} = {show(error['input'])} must be {model.model_fields[key].description}."
+    raise InputError(f"{shown} = {show(value)} is not a known key; {advice or 'known are ' + ', '.join(names)}.")
 
 
-def example_of(key: str, inputs: InputTable = LINE) -> str:
-    """Return the advice to add a quantity, with a typical value and where it is from."""
-    wanted = inputs.quantities[key]
-    value = f'"{wanted.typical}"' if DIMENSIONS[wanted.dimension].unit else wanted.typical
-    other = f", {OTHER_SOURCES[key]}" if key in OTHER_SOURCES else ""
-    return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source}){other}"
+def _place_of(key: str, tables: Mapping[str, Iterable[str]]) -> str:
+    """Return where in a file a key belongs, in words; nothing of one that it does not have."""
+    table = next((table for table, keys in tables.items() if key in keys), None)
+    at_top = "it belongs at the top of the file, before the first table"
+    return "" if table is None else f"it belongs in the table [{table}]" if table else at_top
 
 
-def _nearest(file: Any, model: Any, key: str) -> str:
-    known = [*model.model_fields, *(GIVEN if "modulus" in model.model_fields else ())]
-    meant = MEANT.get(key, key)
-    advice = advice_on(key, known)
-    if advice:
-        return advice
-    for name, info in file.model_fields.items():
-        if model is not info.annotation and meant in getattr(info.annotation, "model_fields", {}):
-            return f"it belongs in the table [{name}]"
-    if meant in file.model_fields:
-        return "it belongs at the top of the file, before the first table"
-    return f"known are {', '.join(known)}"
+AS_GIVEN = Key(lambda name, value: value)  # A key that its own reader checks
+
+
+def must(is_right: Callable[[Any], bool], what: str) -> Check:
+    """Return the check of a value that must be ``what``."""
+
+    def check(name: str, value: Any) -> Any:
+        if not is_right(value):
+            raise InputError(f"{name} = {show(value)} must be {what}.")
+        return value
+
+    return check
+
+
+def one_of(*words: str) -> Check:
+    """Return the check of one of several words."""
+    return lambda name, value: checked_word(name, value, words)
+
+
+def whole(low: int, high: int, what: str = "") -> Check:
+    """Return the check of a whole number."""
+    return must(
+        lambda value: isinstance(value, int) and not isinstance(value, bool) and low <= value <= high,
+        what or f"a whole number from {low} to {high}",
+    )
+
+
+def numbers(rows: Mapping[str, Input]) -> Keys:
+    """Return the keys of numbers, each of which its own row checks."""
+    return {name: Key(lambda name, value: rows[name].checked(value)) for name in rows}
+
+
+def is_real(value: Any) -> bool:
+    """Return whether a value is a number without quotes."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def is_number(value: Any) -> bool:
+    """Return whether a value is a finite number without quotes."""
+    return is_real(value) and math.isfinite(value)
+
+
+TEXT = must(lambda value: isinstance(value, str), "text in quotes")
+TRUTH = must(lambda value: isinstance(value, bool), "true or false, without quotes")
+NUMBERS = must(lambda value: isinstance(value, list) and all(map(is_real, value)), "a list of numbers, without quotes")
+
+
+def rising_pair(name: str, value: Any, read: Callable[[Any], float], of: str = "value") -> tuple[float, float]:
+    """Return the ends of a range, each of which ``read`` returns, or refuse what is none."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(f"{name} = {show(value)} must be a list of two values, the lowest and the highest {of}.")
+    low, high = map(read, value)
+    if not low < high:
+        raise InputError(f"{name} = {show(value)} must increase; write the lowest {of} first.")
+    return low, high
+
+
+HEAD = {"title": Key(TEXT, ""), "notes": Key(TEXT, "")}  # Keys at the top of any file
+
+
+def tolerance(default: float) -> Key:
+    """Return the key of a relative tolerance."""
+    what = "a number from 1e-11 to 1e-2, without quotes"
+    return Key(must(lambda value: is_number(value) and 1e-11 <= value <= 1e-2, what), default)

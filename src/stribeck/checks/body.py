@@ -7,8 +7,9 @@ from collections.abc import Mapping
 
 from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_against_limits, verdict_of
 from stribeck.checks.subject import Subject
+from stribeck.contacts.geometries import POINT
+from stribeck.contacts.inputs import InputTable
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.inputs import POINT, InputTable
 from stribeck.solver.notes import (
     HARD_PREFIX,
     MAX_CONTACT_SLOPE,
@@ -74,6 +75,12 @@ def check_sizes(values: Mapping[str, float], table: InputTable) -> Check:
             odd.append(f"{row.label} {format_si(signed, row.dimension)}{about}, usually {' to '.join(ends)}")
     sentence = f"Unusual: {'; '.join(odd)}. Check the units." if odd else "All inputs are of usual size."
     return Check("inputs", worst, USUAL_RANGE_FACTOR, "doubtful" if odd else "fine", sentence)
+
+
+def unusual(values: Mapping[str, float | None], table: InputTable) -> str:
+    """Return the sentence about inputs that are hardly meant, in SI units by name; empty where there is none."""
+    found = check_sizes({name: value for name, value in values.items() if value is not None}, table)
+    return "" if found.verdict == "fine" else found.sentence
 
 
 def adhesion(subject: Subject) -> Check | None:

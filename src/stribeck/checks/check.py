@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import html
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
-from stribeck.files.datasets import Column, listed, new_dataset
-from stribeck.files.results import Exported
-
-if TYPE_CHECKING:
-    import xarray
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.quantities.results import Card, Told
 
 __all__ = ["OUTSIDE", "MIN_STATED_CHANGE", "Check", "Checks", "Verdict", "check_against_limits", "number_text", "verdict_of"]
 
@@ -29,7 +25,7 @@ MIN_HEADLINE_ERROR = 0.05  # Smallest error that the headline names: about what 
 
 
 @dataclass(frozen=True)
-class Check:
+class Check(Record):
     """One check of whether the model applies to a contact.
 
     Attributes
@@ -67,6 +63,19 @@ class Check:
     error: float = 0.0
     notable: bool = False
 
+    _labels = {
+        "name": ("1", "what is checked"),
+        "value": ("", "value for this contact"),
+        "limit": ("", "limit up to which, or from which, it is fine"),
+        "verdict": ("1", "whether the model applies"),
+        "sentence": ("1", "what the verdict means"),
+        "unit": ("1", "unit of value and limit; empty for a bare number"),
+        "at_least": ("1", "whether larger values than the limit are the fine ones"),
+        "condition": ("1", "what must hold for the model to apply, where the check cannot judge it"),
+        "error": ("1", "relative error of the result that the check estimates"),
+        "notable": ("1", "whether outputs print the sentence although the check is fine"),
+    }
+
     @property
     def word(self) -> str:
         """The word with which outputs begin its sentence."""
@@ -85,8 +94,8 @@ class Check:
 
 
 @dataclass(frozen=True, repr=False)
-class Checks(Exported):
-    """The checks of one contact.
+class Checks(Exported, Told):
+    """The checks of one contact; its dataset has them along ``check``.
 
     Attributes
     ----------
@@ -204,20 +213,23 @@ class Checks(Exported):
             sentences = [f"{self._applies}."]
         return " ".join([*sentences, *unusual])
 
-    def covers(self, note: str) -> bool:
+    def covers(self, note: str, *, doubts: bool = False) -> bool:
         """Return whether the first line already contains a note, apart from its numbers.
 
         Parameters
         ----------
         note : str
             A note of a solution, a curve or a fit.
+        doubts : bool
+            Whether the sentences of doubtful checks count too.
 
         Returns
         -------
         bool
             Whether to omit it below that line.
         """
-        sentences = [_without_numbers(each.sentence) for each in self.with_verdict("outside")]
+        said = (*self.with_verdict("outside"), *(self.with_verdict("doubtful") if doubts else ()))
+        sentences = [_without_numbers(each.sentence).rstrip(".") for each in said]
         return any(_without_numbers(note)[: len(text)] in text for text in sentences)
 
     def to_dict(self) -> dict[str, Any]:
@@ -228,56 +240,20 @@ class Checks(Exported):
         dict
             ``applies``, and under ``checks`` a dictionary of each.
         """
-        return {"applies": self.applies, "checks": [asdict(each) for each in self.checks]}
+        return {"applies": self.applies, "checks": [each.to_dict() for each in self.checks]}
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the checks as an xarray Dataset.
+    def _labelled(self) -> Labelled:
+        columns = columns_of_records("check", self.checks, Check._labels)
+        names = {"check": columns.pop("name")}
+        return columns, names, {"title": "Whether the model applies", "headline": self.headline}
 
-        Returns
-        -------
-        xarray.Dataset
-            Along ``check``: value, limit, whether larger values are the fine ones, verdict, sentence and unit; needs the
-            extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        labels = {
-            "value": "value for this contact, in its unit",
-            "limit": "limit up to which, or from which, it is fine, in its unit",
-            "at_least": "whether larger values than the limit are the fine ones",
-            "verdict": "whether the model applies",
-            "sentence": "what the verdict means",
-            "unit": "unit of value and limit",
-        }
-        columns: dict[str, Column] = {
-            name: ("check", listed([getattr(each, name) for each in self.checks]), "1", label)
-            for name, label in labels.items()
-        }
-        names: dict[str, Column] = {"check": ("check", listed([each.name for each in self.checks]), "1", "what is checked")}
-        return new_dataset(columns, names, {"title": "Whether the model applies", "headline": self.headline})
-
-    def __str__(self) -> str:
-        """Return headline and table as text."""
+    def _card(self) -> Card:
         rows = [("check", "value", "fine", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
-        widths = [max(len(row[i]) for row in rows) for i in range(4)]
-        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-        sentences = [each.sentence for each in self.said]
-        return "\n".join([self.headline, "", *lines, *([""] if sentences else []), *sentences])
+        sentences = [f"{each.word}: {each.sentence}" for each in self.said]
+        sentences += [f"Not checked: {each}" for each in self.unchecked]
+        return Card(self.headline, table=rows, right=(1, 2), sentences=sentences)
 
-    __repr__ = __str__
-
-    def _repr_html_(self) -> str:
-        """Return the table for notebooks."""
-        rows = "".join(
-            f"<tr><td>{'</td><td>'.join(html.escape(cell) for cell in (each.name, *each.texts, each.verdict, each.sentence))}"
-            "</td></tr>"
-            for each in self.checks
-        )
-        head = "".join(f"<th>{name}</th>" for name in ("check", "value", "fine", "verdict", "meaning"))
-        return f"<p>{html.escape(self.headline)}</p><table><tr>{head}</tr>{rows}</table>"
+    __repr__ = Told.__str__
 
 
 def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.quantities.facts import FACTS
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solution import Solution
@@ -104,13 +104,9 @@ class Subject:
         """Return a fact that was given, or that the contact's own fluid, solid or cavitation holds; else None."""
         if name in self.facts:
             return self.facts[name]
-        for path in FACTS[name].models:
-            found: Any = self.contact
-            for part in path.split("."):
-                found = getattr(found, part, None)
-            if isinstance(found, int | float) and not isinstance(found, bool) and math.isfinite(found):
-                return float(found)
-        return None
+        kept = PART_LETTERS.get(name, name)
+        found = getattr(self.contact, kept, None) if kept in PART_INPUTS else None
+        return float(found) if found is not None and math.isfinite(found) else None
 
     def note(self, beginning: str) -> str:
         """Return the notes of the state that begin in one way, as one text; empty if there are none."""

@@ -32,7 +32,7 @@ class Row:
     """One check."""
 
     name: str  # Name of the check
-    check: Callable[[Subject], Check | None]  # Returns the :class:`Check` of a :class:`Subject`, or None if it does not apply
+    check: Callable[[Subject], Check | None]  # Returns the check of a :class:`Subject`, or None if it does not apply
     effort: Effort  # States that must be solved for the check
     missing: str = ""  # Fact that the check needs; empty if none
 
@@ -82,7 +82,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     Returns
     -------
     Checks
-        A :class:`Check` for each row of the table: value, limit, verdict and sentence; printed, a table.
+        A :class:`~stribeck.results.Check` for each row of the table: value, limit, verdict and sentence; printed, a table.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     -----
     It solves the state, and its curve over the speed twice, once with the tail of a finite surface: about two seconds, and
     2 to 15 of a ball.
-    What cannot be solved is named among :attr:`Checks.unchecked`.
+    What cannot be solved is named among :attr:`stribeck.results.Checks.unchecked`.
     Source of the limits: docs/checks.md.
     """
     if not hasattr(contact, "hertz"):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import math
 import os
+import re
 import signal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import FrameType
@@ -16,7 +18,8 @@ from stribeck.files.writing import reason_of
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from stribeck.cases.case import Case
+    from stribeck.checks.check import Checks
 
 EXIT_FAILED = 1  # Exit code where a state was not found.
 EXIT_BAD_INPUT = 2  # Exit code where an input is refused.
@@ -37,10 +40,12 @@ def complain(text: str, code: int) -> int:
     return code
 
 
-def write_each(actions: Mapping[Path, Callable[[], object]]) -> tuple[list[str], list[str]]:
-    """Write files; return the names of those that were written, and a sentence about each that was not."""
+def write_each(actions: Mapping[Path | None, Callable[[], object]]) -> tuple[list[str], list[str]]:
+    """Write files; return the names of those that were written, and a sentence about each that was not; none of None."""
     written, problems = [], []
     for path, action in actions.items():
+        if path is None:
+            continue
         try:
             action()
         except InputError as problem:
@@ -93,21 +98,48 @@ def prepare_streams() -> None:
             stream.reconfigure(errors="replace")
 
 
-def stdout_console() -> Console:
-    """Return the console that tables go to."""
-    from rich.console import Console
-
-    class Table(Console):
-        def on_broken_pipe(self) -> None:
-            """Let the command know, instead of ending the process as rich does."""
-            raise BrokenPipeError
-
-    return Table(file=sys.stdout)
+# Colour on a terminal of lines by their first word.
+COLOURS = {"Outside": "1;31", "Doubtful": "33", "Note": "33", "Warning": "1;33"}
 
 
-def say(console: Console, text: str, style: str | None = None) -> None:
-    """Print a sentence as it stands, in one line however narrow the terminal is."""
-    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+def show(lines: Iterable[str]) -> None:
+    """Print lines as they stand, however narrow the terminal is, with warnings in colour."""
+    coloured = sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    for line in lines:
+        colour = COLOURS.get(re.split(r"\W", line, maxsplit=1)[0]) if coloured else None
+        print(f"\x1b[{colour}m{line}\x1b[m" if colour else line)
+
+
+def answer(
+    as_json: bool,
+    content: Callable[[], dict[str, Any]],
+    lines: Callable[[], Iterable[str]],
+    checks: Checks | None = None,
+    case: Case | None = None,
+    written: Iterable[object] = (),
+) -> None:
+    """Print what a command found, as JSON with checks and conversions, or as text with the files that were written."""
+    if not as_json:
+        show([*lines(), *(f"Written: {path}" for path in written if path is not None)])
+        return
+    import json
+
+    found = (checks.to_dict() if checks is not None else {}) | content()
+    found |= {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
+    print(json.dumps(_plain(found), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _plain(content: Any) -> Any:
+    """Return content for JSON; what is not finite becomes null, as JSON knows no nan."""
+    if isinstance(content, dict):
+        return {name: _plain(value) for name, value in content.items()}
+    if hasattr(content, "tolist"):  # of arrays
+        return _plain(content.tolist())
+    if isinstance(content, list | tuple):
+        return [_plain(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content
 
 
 class Interrupted:

@@ -1,4 +1,4 @@
-"""Progress on a terminal, and when Ctrl-C takes effect."""
+"""Progress, as a bar on a terminal and else as a line now and then, and when Ctrl-C takes effect."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ import math
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
 import stribeck as sb
-from stribeck.cli.exits import Interrupted
+from stribeck.cli.exits import Interrupted, complain
 from stribeck.quantities.units import InputError
+
+LINE_INTERVAL = 10.0  # Time between two lines of progress without a terminal, as in the log of a batch job [s].
 
 
 class Progress:
-    """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect."""
+    """A bar on stderr where this is a terminal, lines elsewhere, and the place where Ctrl-C takes effect."""
 
     # Ctrl-C ends work of one process at once, and a second one changes nothing, as it might come between solving and writing;
     # work of several processes ends after the present point, and at once with the second.  Nothing stops the writing.
@@ -28,14 +31,25 @@ class Progress:
         self.started = self.wanted = self.writes = self.timed_out = False
         self.bar: Any = None
         self.task: Any = None
+        self.began = self.said = time.monotonic()
 
-    def __call__(self, done: int, total: int, what: str = "solving") -> None:
-        """Take note of a finished point."""
+    def __call__(self, done: int, total: int, what: str = "solving", left: float | None = None) -> None:
+        """Take note of a finished point, and of the time that is left [s] where it is known."""
         self.started = True
+        now = time.monotonic()
+        if self.bar is None and now - self.said >= LINE_INTERVAL:
+            self.said = now
+            if left is None:  # what is left takes as long as what is done
+                left = (now - self.began) * (total - done) / done if done else math.inf
+            complain(f"{what} {done} of {total}, {_time_text(left)}", 0)
         if self.bar is not None:
             self.bar.update(self.task, completed=done, total=total, description=what)
         if self.wanted and done < total:
             raise KeyboardInterrupt
+
+    def of_fit(self, what: str, done: int, total: int) -> None:
+        """Take note of a state of a fit."""
+        self(done, total, f"{what}, state")
 
     def interrupt(self, number: int, frame: FrameType | None) -> None:
         """Handle Ctrl-C."""
@@ -83,6 +97,14 @@ def interruptible(after_point: bool = False, sigterm: bool = False, time_limit: 
             signal.signal(signal.SIGINT, before_int)
         if before is not None:
             signal.signal(signal.SIGTERM, before)
+
+
+def _time_text(seconds: float) -> str:
+    if not math.isfinite(seconds):
+        return "time left unknown"
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{seconds:02} left"
 
 
 @contextmanager

@@ -7,9 +7,9 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
+from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
 import stribeck as sb
 from stribeck.cli.exits import (
@@ -22,12 +22,10 @@ from stribeck.cli.exits import (
     complain,
     prepare_streams,
     redirect_to_null,
-    stdout_console,
 )
-from stribeck.cli.experiments import compare_command, next_command
-from stribeck.cli.sheets import new_command, report_command
+from stribeck.cli.fits import compare_command, fit_command, next_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
-from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
+from stribeck.cli.studies import explore_command, new_command, report_command, surface_command, sweep_command
 from stribeck.files.writing import reason_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
@@ -38,6 +36,14 @@ Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 
 Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted."""
 
+
+COMMANDS: dict[str, Callable[..., int]] = {
+    command.__name__.removesuffix("_command"): command
+    for command in (
+        *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
+        *(surface_command, fit_command, next_command, compare_command, report_command, explore_command),
+    )
+}
 
 MIN_TERMINAL_WIDTH = 20  # Smallest plausible width of a terminal [columns].
 
@@ -75,12 +81,14 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         sys.stdout.flush()
         return result if isinstance(result, int) else 0
     except CycloptsError as problem:
+        if isinstance(problem.__cause__, InputError):  # of a word that an option does not take
+            return complain(str(problem.__cause__), EXIT_BAD_INPUT)
         return complain(f"{_parsing(problem)} See {_command(tokens)} --help.", EXIT_BAD_INPUT)
     except InputError as problem:
         return complain(str(problem), EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         return complain("Interrupted; nothing was written.", EXIT_INTERRUPTED)
-    except BrokenPipeError:  # the reader, such as head, had enough
+    except (BrokenPipeError, SystemExit):  # the reader, such as head, had enough, for which the help leaves the process
         redirect_to_null(sys.stdout)
         return EXIT_BROKEN_PIPE
     except OutputError as problem:
@@ -116,25 +124,11 @@ def make_app() -> App:
         help=HELP,
         version=lambda: sb.__version__,
         help_format="plaintext",
+        default_parameter=Parameter(negative="", show_default=False),
         suppress_keyboard_interrupt=False,
-        console=stdout_console(),
     )
-    for command in (
-        new_command,
-        check_command,
-        solve_command,
-        curve_command,
-        regimes_command,
-        figures_command,
-        sweep_command,
-        surface_command,
-        fit_command,
-        next_command,
-        compare_command,
-        report_command,
-        explore_command,
-    ):
-        app.command(command, name=command.__name__.removesuffix("_command"))
+    for name, command in COMMANDS.items():
+        app.command(command, name=name)
     app.register_install_completion_command()
     return app
 
@@ -144,14 +138,21 @@ def _parsing(problem: CycloptsError) -> str:
     if isinstance(problem, UnusedCliTokensError) and problem.unused_tokens:
         return f"unexpected argument {problem.unused_tokens[0]!r}."
     if isinstance(problem, MissingArgumentError) and problem.argument is not None:
+        if problem.keyword is None:
+            return f"{problem.argument.name.lstrip('-')} is missing; give it as in: {_example(problem)}."
         count = problem.argument.token_count()[0]
         wanted = f"{count} values" if count > 1 else "a value"
-        name = getattr(problem, "keyword", None) or problem.argument.name
-        return f"{name} needs {wanted}, but {len(problem.tokens_so_far)} given."
+        return f"{problem.keyword} needs {wanted}, but {len(problem.tokens_so_far)} given."
     option = str(problem).removeprefix("Unknown option: ").strip('".')  # the quotes come and go with its versions
     if option in ("-o", "--output") and list(problem.command_chain or ()) == ["new"]:
         return f"Unknown option: {option}. The file is given without an option, as in stribeck new case.toml."
     return _line(problem)
+
+
+def _example(problem: CycloptsError) -> str:
+    """Return the first example in the help of the command that was called."""
+    [command] = problem.command_chain or ()
+    return (COMMANDS[command].__doc__ or "").partition("Example: ")[2].partition("\n")[0]
 
 
 def _line(problem: BaseException) -> str:
@@ -160,11 +161,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = (
-        *("new", "check", "solve", "curve", "regimes", "report", "fit", "next", "compare"),
-        *("figures", "sweep", "surface", "explore"),
-    )
-    return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
+    return " ".join(["stribeck", *(token for token in tokens[:1] if token in COMMANDS)])
 
 
 def _adapt_process() -> None:

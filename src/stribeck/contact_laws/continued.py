@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -15,6 +16,7 @@ from numpy.polynomial import chebyshev
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.numerics.hermite import chebyshev_form
+from stribeck.numerics.jets import polynomial
 
 POLYNOMIAL_DEGREE = 10  # Degree of the polynomial around a separation.
 
@@ -45,11 +47,10 @@ class ContinuedLaw:
         logarithmic, centre, reach, values = _around(shape, separation)
         return cls(shape.name, logarithmic, centre, reach, _to_powers() @ values)
 
-    @classmethod
-    def exponential(cls, separation: Array) -> ContinuedLaw:
-        """Return the continuation of the exponential law, which is linear."""
-        one = np.ones_like(separation)
-        return cls("exponential", False, separation, one, np.stack([-separation, -one]))
+    def log_pressure(self, separation: Any) -> Any:
+        """Return ln(Phi) of a series of separations that begins near these."""
+        place = np.log(separation) if self.logarithmic else separation
+        return polynomial(self.coefficients, (place - self.centre) / self.reach)
 
 
 def _around(shape: AsperityLaw, separation: Array) -> tuple[bool, Array, Array, Array]:

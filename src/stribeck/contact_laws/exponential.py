@@ -27,7 +27,7 @@ class NoContact:
 
     def pressure(self, gap: Array) -> Array:
         """Return zeros."""
-        return np.zeros_like(gap)
+        return 0.0 * gap
 
     def log_pressure(self, gap: Array) -> Array:
         """Return minus infinity."""
@@ -62,11 +62,11 @@ class ExponentialLaw:
 
     def pressure(self, gap: Array) -> Array:
         """Return the contact pressure [p_Hz]."""
-        return np.asarray(np.exp(self.log_pressure(gap)))
+        return np.exp(self.log_pressure(gap))
 
     def log_pressure(self, gap: Array) -> Array:
         """Return ``-h/kappa - e ln(F)``."""
-        return np.asarray(gap / -self.decay_length - self.pressure_exponent * np.log(self.load))
+        return gap / -self.decay_length - self.pressure_exponent * np.log(self.load)
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = -p_c/kappa."""

@@ -25,7 +25,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
 
 MIN_KNOT = -12.0  # Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*.
 
@@ -163,7 +163,7 @@ class GreenwoodWilliamson(_GaussianHeights):
         InputError
             If a value is not positive or its unit is wrong.
         """
-        eta, R, sigma = _asperities(density, radius, deviation)
+        eta, R, sigma = (row.checked(value) for row, value in zip(SUMMITS.values(), (density, radius, deviation), strict=True))
         return {"alpha": 1.0, "beta": 4 / 3 * eta * R * sigma * math.sqrt(sigma / R), "roughness": sigma}
 
 
@@ -215,16 +215,17 @@ class GreenwoodTripp(_GaussianHeights):
         InputError
             If a value is not positive or its unit is wrong.
         """
-        eta, R, sigma = _asperities(density, radius, deviation)
+        eta, R, sigma = (row.checked(value) for row, value in zip(SUMMITS.values(), (density, radius, deviation), strict=True))
         beta = 16 * math.sqrt(2) * math.pi / 15 * (eta * R * sigma) ** 2 * math.sqrt(sigma / R)
         return {"alpha": 1.0, "beta": beta, "roughness": sigma}
 
 
-def _asperities(density: Any, radius: Any, deviation: Any) -> tuple[float, float, float]:
-    given = {"density": density, "radius": radius, "deviation": deviation}
-    kinds = ("per area", ""), ("length", "20 um"), ("length", "1 um")
-    found = [to_si(value, kind, name, example) for (name, value), (kind, example) in zip(given.items(), kinds, strict=True)]
-    for (name, value), number in zip(given.items(), found, strict=True):
-        if not number > 0:
-            raise InputError(f"{name} = {show(value)} must be positive.")
-    return found[0], found[1], found[2]
+# The numbers of a surface of summits, from which a law makes the coefficients of a contact.
+SUMMITS = {
+    row.name: row
+    for row in (
+        Input(name="density", label="summits per area", dimension="per area", typical="1e10 m^-2"),
+        Input(name="radius", label="radius of the summits", dimension="length", typical="10 um"),
+        Input(name="deviation", label="standard deviation of their heights", dimension="length", typical="1 um"),
+    )
+}

@@ -1,4 +1,4 @@
-r"""Contact laws of any shape: scaled to a load and a roughness, shifted, blended with the exponential law, found by name.
+r"""Contact laws of any shape: scaled to a load and a roughness, shifted, found by name.
 
 A law is a small frozen object with a name, the pressure, and its derivatives beside it.  Everything is in Hertz units
 (gap in u_Hz, pressure in p_Hz).  A *shape* is the law without dimensions, :class:`stribeck.contact_laws.law.AsperityLaw`,
@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import AsperityLaw, as_asperity_law
 from stribeck.quantities.registry import laws_of
-from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.schema import made_of
 from stribeck.quantities.units import InputError, show
 
 # Laws by their names; None is the exponential law.
@@ -49,11 +49,11 @@ class ScaledLaw:
 
     def pressure(self, gap: Array) -> Array:
         """Return the contact pressure [p_Hz]."""
-        return np.asarray(np.exp(self.log_pressure(gap)))
+        return np.exp(self.log_pressure(gap))
 
     def log_pressure(self, gap: Array) -> Array:
         """Return ``ln Phi(h/kappa) - e ln(F)``."""
-        return np.asarray(self.shape.log_pressure(gap / self.decay_length) - self.pressure_exponent * np.log(self.load))
+        return self.shape.log_pressure(gap / self.decay_length) - self.pressure_exponent * np.log(self.load)
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = p_c (d ln Phi/ds)/kappa."""
@@ -107,37 +107,6 @@ class ShiftedLaw:
         return self.shape.notes(separation - self.shift)
 
 
-@dataclass(frozen=True)
-class BlendedLaw:
-    """A shape on the way from the exponential law, ``part`` = 0, to another, ``part`` = 1, in the logarithm of Phi."""
-
-    shape: AsperityLaw
-    part: float
-    name: str = "blended"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """Parameters of the shape."""
-        return self.shape.parameters
-
-    @property
-    def lowest(self) -> float:
-        """Lowest separation of the shape."""
-        return self.shape.lowest
-
-    def log_pressure(self, separation: Array) -> Array:
-        """Return ``-(1 - part) s + part ln(Phi)``."""
-        return np.asarray(self.part * self.shape.log_pressure(separation) - (1 - self.part) * separation)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return its derivative."""
-        return np.asarray(self.part * self.shape.log_slope(separation) - (1 - self.part))
-
-    def notes(self, separation: float) -> tuple[str, ...]:
-        """Return none: no result has this law."""
-        return ()
-
-
 def law_of(law: Any) -> AsperityLaw | None:
     """Return a contact law, given itself or by its name; None is the exponential one."""
     return named_law(law) if isinstance(law, str) else as_asperity_law(law)
@@ -148,11 +117,5 @@ def named_law(name: str, **numbers: str | float) -> AsperityLaw | None:
     if name not in NAMED_LAWS:
         known = ", ".join(map(repr, NAMED_LAWS))
         raise InputError(f"law = {show(name)}; names are {known}. A law of a surface or table needs a case file or an object.")
-    law, rows = NAMED_LAWS[name], numbers_of(NAMED_LAWS[name])
-    for key in numbers:
-        if key not in rows:
-            raise InputError(f"{key} = {show(numbers[key])} is given, but law = {name!r} has no such number; remove it.")
-    for row in rows.values():
-        if row.name not in numbers and row.default is None:
-            raise InputError(f"{row.name} is missing, which law = {name!r} needs; add {row.name} = {row.example}.")
-    return None if law is None else as_asperity_law(law(**numbers))
+    law = made_of(NAMED_LAWS[name], f"law = {name!r}", numbers)
+    return None if law is None else as_asperity_law(law)

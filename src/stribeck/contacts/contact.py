@@ -5,43 +5,42 @@ A geometry adds its table of inputs, its groups and its Hertz scales.
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any, ClassVar, Self
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
-from stribeck.contacts.groups import Groups
+from stribeck.contacts.forms import FORMS
+from stribeck.contacts.groups import BETA, Groups
+from stribeck.contacts.inputs import InputTable, check_motion, read_inputs
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.part_inputs import LAW_NUMBERS, PART_INPUTS, PART_LETTERS, part_value, with_part_value
-from stribeck.contacts.parts import BASE_PARTS, PART_KEYWORDS, PURE_SLIDING, Parts
+from stribeck.contacts.parts import BASE_PARTS, PART_KEYWORDS, PURE_SLIDING, Parts, part_parameters
+from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
+from stribeck.files.results import Record
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.description import Fluid
-from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits, FlowFactors
-from stribeck.quantities.contact_values import contact_values, replace_inputs
-from stribeck.quantities.conversions import convert_inputs
+from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
+from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import InputTable, si_text
-from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.outputs import HERTZ
 from stribeck.quantities.results import Card, card_html
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
-from stribeck.solids.solid import Solid
 
-__all__ = ["Contact", "HertzScales", "in_words", "input_texts", "model_words", "part_attributes"]
+__all__ = ["Contact", "HertzScales", "described", "in_words", "input_texts", "model_words", "part_attributes"]
 
-
-# Dimensions of what outputs say of the parts of a contact beside the numbers of laws.
-PART_DIMENSIONS = {"cavity_pressure": "pressure"}
+Kind = TypeVar("Kind", bound="Contact")
 
 
 @dataclass(frozen=True)
-class HertzScales:
+class HertzScales(Record):
     r"""Scales of the dry contact of a smooth cylinder or ball, in SI units.
 
     .. math::
@@ -50,117 +49,243 @@ class HertzScales:
         a = \left(\frac{3 F_N R}{4 E^*}\right)^{1/3}, \quad p_\mathrm{Hz} = \frac{3 F_N}{2 \pi a^2} \text{ on the ball}, \qquad
         u_\mathrm{Hz} = \frac{a^2}{R}
 
-    Parameters
-    ----------
-    half_width : float
-        :math:`a`, half-width of the contact or its radius, the scale of lengths along it [m].
-    indentation : float
-        :math:`u_\mathrm{Hz}`, the scale of gaps [m].
-    pressure : float
-        :math:`p_\mathrm{Hz}`, the largest pressure of the dry contact and the scale of pressures [Pa].
-
     Notes
     -----
     Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the line; K. L. Johnson, Contact Mechanics (1985), for the ball.
     """
+
+    _labels = {name.removeprefix("hertz_"): about for name, about in HERTZ.items()}
 
     half_width: float
     indentation: float
     pressure: float
 
 
-@dataclass(frozen=True, init=False, repr=False)
-class Contact(ABC):
-    """The inputs that contacts of all geometries keep, in SI units; see the contact of a geometry for what they are."""
+HertzScales.__doc__ = complete_docstring(
+    HertzScales, {name: f"float\n    The {meaning} [{unit}]." for name, (unit, meaning) in HertzScales._labels.items()}
+)
 
-    radius: float
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class Contact(Parts):
+    """The inputs that contacts of all geometries keep, in SI units, and their parts; see the contact of a geometry."""
+
+    radius: Input = Input(
+        label="radius",
+        symbol="$R$",
+        dimension="length",
+        typical="10 mm",
+        source="as in the examples of PDMS",
+        usual=(1e-4, 1.0),
+        units=("mm", "cm", "m"),
+        letters=("R",),
+        known=7,
+    )
+    modulus: Input = Input(
+        label="effective modulus",
+        symbol="$E^*$",
+        dimension="pressure",
+        typical="2.7 MPa",
+        source="E* of PDMS Sylgard 184",
+        usual=(1e4, 3e8),
+        units=("kPa", "MPa", "GPa"),
+        letters=("E_star",),
+        known=4,
+    )
     load: float
-    viscosity: float
-    speed: float
-    roughness: float
-    alpha: float
-    beta: float
-    boundary_friction: float
-    modulus: float
+    viscosity: Input = Input(
+        label="viscosity",
+        symbol=r"$\eta$",
+        dimension="viscosity",
+        typical="50 mPa*s",
+        source="81 % glycerol in water at 25 degrees Celsius",
+        usual=(3e-4, 10.0),
+        units=("mPa*s", "Pa*s", "cP"),
+        letters=("eta",),
+        or_else='or that of a liquid by its name, preset = "water" in the table [fluid] of a case',
+        known=5,
+    )
+    speed: Input = Input(
+        label="speed",
+        symbol="$U$",
+        dimension="speed",
+        typical="1 mm/s",
+        source="as in the examples of PDMS",
+        usual=(1e-7, 10.0),
+        units=("µm/s", "mm/s", "m/s"),
+        letters=("U",),
+        zero=True,
+    )
+    roughness: Input = Input(
+        label="roughness",
+        symbol=r"$h_\mathrm{rms}$",
+        dimension="length",
+        typical="1 um",
+        source="rms height of a lightly sandblasted or ground surface",
+        usual=(1e-9, 1e-4),
+        units=("nm", "µm", "mm"),
+        letters=("h_rms",),
+        zero=True,
+        known=1,
+    )
+    alpha: Input = Input(
+        label="contact-law alpha",
+        symbol=r"$\alpha$",
+        dimension="number",
+        typical="2.0",
+        source="Persson's theory gives 1.8 to 2.1",
+        usual=(1.0, 4.0),
+        follows_surface=True,
+        known=3,
+    )
+    beta: Input = BETA
+    boundary_friction: Input = Input(
+        label="dry friction coefficient",
+        symbol=r"$\mu_0$",
+        dimension="number",
+        typical="0.7",
+        source="dry PDMS, 0.5 to 1",
+        usual=(0.01, 2.0),
+        implausible=3.0,
+        letters=("mu0", "mu_0"),
+        zero=True,
+        known=0,
+    )
     law: AsperityLaw | None
-    parts: Parts = field(repr=False)
 
     INPUTS: ClassVar[InputTable]
-    WIDTH: ClassVar[str] = "Hertz half-width"
+    WIDTH: ClassVar[str]
 
-    @answers_typos
     def __init__(self, *, law: str | AsperityLaw | None = None, **inputs: Any) -> None:
+        check_motion(inputs, self.INPUTS)
         self._keep(law, inputs)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        names = self._part_names
         for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
             row = PART_INPUTS[PART_LETTERS.get(name, name)]
             raise InputError(
                 f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
                 f"to the contact as {row.table}."
             )
+        parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
+        values = read_inputs({name: each for name, each in inputs.items() if name not in parts}, self.INPUTS).checked()
         # The numbers are checked with the parts of the article's model first, so that what is wrong with them is said of them.
-        object.__setattr__(self, "parts", BASE_PARTS)
-        numbers = {name: value for name, value in inputs.items() if name not in names and name != "parts"}
-        for name, value in contact_values(convert_inputs(numbers, self.INPUTS), self.INPUTS).items():
-            object.__setattr__(self, name, value)
+        vars(self).update(vars(BASE_PARTS))
+        for name in self.INPUTS.names:
+            object.__setattr__(self, name, values.get(name))
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
-        parts: Parts = inputs.get("parts", BASE_PARTS)
-        given = {name: inputs[name] for name in names & inputs.keys()}
-        object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
+        if parts:
+            super().__init__(**{**self.part_values(), **parts})
         _ = self.groups.model
 
     @classmethod
     def of_kept(cls, inputs: Mapping[str, Any], law: str | AsperityLaw | None) -> Self:
-        """Return the contact that keeps these inputs, in SI units.
-
-        Parameters
-        ----------
-        inputs : mapping of str to float
-            What :meth:`inputs` gives; others by their default.
-        law : str or AsperityLaw or None
-            The contact law, or its name.
-
-        Returns
-        -------
-        LineContact or PointContact
-            The contact.
-        """
+        """Return the contact that keeps these inputs, in SI units; others by their default."""
         contact = object.__new__(cls)
         contact._keep(law, inputs)
         return contact
 
+    @classmethod
+    def from_groups(cls, groups: Groups, **kept: str | float | None) -> Self:
+        r"""Return the contact whose :attr:`groups` are ``groups``.
+
+        .. math::
+
+            F_N = \pi \beta^2 R E^* \bar F_N, \quad
+            U = \frac{4}{3\pi^2} \frac{\lambda F_N^2}{\eta R E^*}, \quad
+            h_\mathrm{rms} = 4 \alpha \beta^2 R \bar h_\mathrm{rms}
+
+        of a cylinder, and of a ball
+
+        .. math::
+
+            F_N = \frac{\pi^3}{6} \beta^3 R^2 E^* \bar F_N, \quad
+            U = \frac{\lambda E^* R}{3\pi \eta} \left(\frac aR\right)^4, \quad
+            h_\mathrm{rms} = \frac{\pi^2}{4} \alpha \beta^2 R \bar h_\mathrm{rms}
+
+        Parameters
+        ----------
+        groups : Groups
+            Groups of one state of this geometry.
+        **kept : str or float
+            The other inputs of the contact: all but load, speed and roughness.
+
+        Returns
+        -------
+        LineContact or PointContact
+            The contact, with load, speed and roughness in SI.
+
+        Raises
+        ------
+        InputError
+            Where the groups hold more than one state or are those of another geometry, or a value is impossible or missing.
+        """
+        if groups.shape != ():
+            raise InputError(f"groups of shape {groups.shape} hold many states; from_groups takes one, without arrays.")
+        scaling = cls.scaling()
+        if groups.geometry != scaling.name:
+            raise InputError(f"groups.geometry = {groups.geometry!r}; a {scaling.body} has {scaling.name!r}.")
+        own = {name: value for name, value in kept.items() if name in cls.INPUTS.quantities and value is not None}
+        given = read_inputs(own, cls.INPUTS, elsewhere=("load", "speed", "roughness")).checked()
+        R, E_star, alpha, beta = given["radius"], given["modulus"], given["alpha"], given["beta"]
+        scale, r = scaling.slope_factor * beta, scaling.dimensions
+        F_N = scale ** (1 + r) * R**r * E_star * float(groups.load) / scaling.hertz_factor
+        U = float(groups.hersey_number(beta)) * (F_N / given["viscosity"]) / R ** (r - 1)
+        moved = {"load": F_N, "speed": U, "roughness": alpha * scale * scale * R * float(groups.roughness)}
+        return cls.of_kept({name: each for name, each in kept.items() if name not in own} | given | moved, groups.law)
+
+    @classmethod
+    def scaling(cls) -> Scaling:
+        """How its groups scale."""
+        return SCALINGS[cls.INPUTS.geometry]
+
     @property
-    @abstractmethod
     def groups(self) -> Groups:
         """The dimensionless groups, see :class:`Groups`."""
+        scaling, slope, scale = self.scaling(), self.slope, self.scaling().slope_factor * self.beta
+        # Quotients one by one: a product of small numbers may underflow where the group itself does not.
+        return Groups(
+            speed=scaling.hersey_divisor * self.hersey_number / slope**scaling.hersey_power,
+            load=self._compression / scale ** (1 + scaling.dimensions),
+            roughness=self.roughness / self.radius / self.alpha / scale / scale,
+            law=self.law,
+            geometry=scaling.name,
+            model=self.model_in(self.film_units, self.hertz.half_width, self.speed) if self.own_parts else BASE_MODEL,
+        )
 
     @property
-    @abstractmethod
+    def own_parts(self) -> dict[str, Any]:
+        """The parts that are neither the article's nor among the inputs."""
+        return {name: value for name, value in super().own_parts.items() if name not in self.INPUTS.names}
+
+    @property
+    def _compression(self) -> float:
+        """Load over the stiffness of the contact, whose power e is the slope a/R."""
+        scaling = self.scaling()
+        return scaling.hertz_factor * (self.load / self.radius**scaling.dimensions / self.modulus)
+
+    @property
     def hertz(self) -> HertzScales:
-        """The Hertz scales, see :class:`HertzScales`."""
+        """The Hertz scales, see :class:`~stribeck.results.HertzScales`."""
+        scaling, slope = self.scaling(), self.slope
+        a = self.radius * slope
+        mean = self.load / (2 if scaling.dimensions == 1 else math.pi * a) / a
+        return HertzScales(half_width=a, indentation=a * slope, pressure=scaling.hertz_pressure * mean)
 
     @property
-    @abstractmethod
     def hersey_number(self) -> float:
-        """The Hersey number [-]: eta U/F_N of a line, eta U R/F_N of a ball."""
+        r"""The Hersey number [-]: :math:`\eta U/F_N` of a line, :math:`\eta U R/F_N` of a ball, U the sum of the speeds."""
+        return self.viscosity * self.speed / self.load * self.radius ** (self.scaling().dimensions - 1)
 
     @property
     def slope(self) -> float:
         """Half-width or radius of the Hertz contact over the radius of curvature, a/R [-]."""
-        return self.hertz.half_width / self.radius
+        return float(self._compression ** self.scaling().pressure_exponent)
 
     def inputs(self) -> Iterator[tuple[str, float]]:
-        """Return name and value of each input that the contact has, in the order in which outputs name them.
-
-        Returns
-        -------
-        iterator of tuple
-            Name, and value in SI units.
-        """
+        """Return name and SI value of each input that the contact has, in the order in which outputs name them."""
         pairs = ((name, getattr(self, name)) for name in self.INPUTS.names)
         return ((name, value) for name, value in pairs if value is not None)
 
@@ -176,24 +301,18 @@ class Contact(ABC):
 
     def __repr__(self) -> str:
         """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
-        shown = {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
-        shown |= {name: value for name, value in self.parts.items().items() if value != getattr(BASE_PARTS, name)}
+        shown = {name: getattr(self, name) for name in (*self.INPUTS.names, "law")} | self.own_parts
         shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
-    @property
-    def _part_names(self) -> frozenset[str]:
-        """The parts that are no inputs of its geometry."""
-        return PART_KEYWORDS - set(self.INPUTS.names)
-
     def __getattr__(self, name: str) -> Any:
         """Return a number of the fluid or the solid by its name, in SI units."""
-        found = part_value(self.parts, name) if name in PART_INPUTS else None
+        found = part_value(self, name) if name in PART_INPUTS else None
         # Of a property that fails Python asks here, and would show none of what failed.
         return object.__getattribute__(self, name) if found is None else found
 
     def _repr_html_(self) -> str:
-        rows = [(self.INPUTS.quantities[name].label, si_text(value, name, 4, self.INPUTS)) for name, value in self.inputs()]
+        rows = [(self.INPUTS.quantities[name].label, self.INPUTS.text(name, value)) for name, value in self.inputs()]
         law = "exponential" if self.law is None else self.law.name
         model = [("model", words)] if (words := model_words(self.groups, self)) else []
         return card_html(type(self).__name__, Card("inputs", [*rows, ("contact law", law), *model]))
@@ -220,12 +339,16 @@ class Contact(ABC):
         """
         numbers = {name: changes.pop(name) for name in PART_INPUTS if name in changes}
         if numbers:
-            parts = Parts(**{**self.parts.items(), **{name: changes.pop(name) for name in self._part_names & changes.keys()}})
+            parts = Parts(**{**self.part_values(), **{name: changes[name] for name in PART_KEYWORDS if name in changes}})
             for name, value in numbers.items():
                 parts = with_part_value(parts, name, value)
-            changes["parts"] = parts
+            changes |= parts.part_values()
         kept = {field.name: getattr(self, field.name) for field in fields(self)}
-        inputs = replace_inputs(kept, changes, self.INPUTS)
+        changed = set(changes)
+        for form in self.INPUTS.forms:  # what is changed in another form is not kept beside it
+            if not changed.isdisjoint(form.names):
+                changed.add(form.of)
+        inputs = {name: value for name, value in kept.items() if name not in changed} | changes
         return self.of_kept(inputs, inputs.pop("law"))
 
     @property
@@ -241,31 +364,6 @@ class Contact(ABC):
             alpha=self.alpha,
         )
 
-    @property
-    def fluid(self) -> Fluid:
-        """The fluid."""
-        return self.parts.fluid
-
-    @property
-    def cavitation(self) -> Cavitation:
-        """How the film ends behind the contact."""
-        return self.parts.cavitation
-
-    @property
-    def cavity_pressure(self) -> float:
-        """Rupture pressure of a film that reforms, above the ambient one [Pa]."""
-        return self.parts.cavity_pressure
-
-    @property
-    def flow_factors(self) -> FlowFactors | None:
-        """What roughness does to the flow."""
-        return self.parts.flow_factors
-
-    @property
-    def solid(self) -> Solid | None:
-        """The soft body; None is a half-space."""
-        return self.parts.solid
-
     def _check_scales(self) -> None:
         """Refuse values, each possible alone, whose groups leave the range of double precision."""
         try:
@@ -280,13 +378,45 @@ class Contact(ABC):
             )
 
 
+# What docstrings say of the arguments of all contacts that are no numbers.
+OTHER_ARGUMENTS = {
+    "law": r"""str or AsperityLaw, optional
+    Contact law, or the name of one that needs no surface,
+    :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.""",
+    "fluid": """Fluid or law of sb.fluids, optional
+    The fluid, whose viscosity at ambient pressure and low rate is ``viscosity``; Newtonian without it.""",
+    "cavitation": """{"none", "exit", "reform"}
+    How the film ends behind the contact.""",
+    "flow_factors": """{"none", "effective-medium", "patir-cheng"} or law of sb.fluids, optional
+    What roughness does to the flow.""",
+    "solid": """solid of sb.solids, optional
+    The soft body; a half-space without it.""",
+    **{name: f"str or float, optional\n    {row.description}" for name, row in numbers_of(Parts).items()},
+}
+
+
+def described(geometry: Geometry) -> Callable[[type[Kind]], type[Kind]]:
+    """Return a decorator that gives a contact its table of inputs, and a signature and a docstring that name them."""
+
+    def complete(kind: type[Kind]) -> type[Kind]:
+        kind.INPUTS = InputTable(kind, tuple(form for form in FORMS if form.geometry in ("", geometry)), geometry)
+        inputs = kind.INPUTS.parameters()
+        law = inspect.Parameter("law", inspect.Parameter.KEYWORD_ONLY, default=None)
+        parts = part_parameters(without=kind.INPUTS.names)
+        kind.__signature__ = inspect.Signature([*inputs, law, *parts])  # type: ignore[attr-defined]
+        kind.__doc__ = complete_docstring(kind, OTHER_ARGUMENTS | kind.INPUTS.arguments())
+        return kind
+
+    return complete
+
+
 def input_texts(contact: Contact | None, *without: str | None) -> list[str]:
     """Return the inputs of a contact in words, but for those that vary."""
     if contact is None:
         return []
     table = contact.INPUTS
     return [
-        f"{table.symbols[name]} = {si_text(value, name, 4, table)}" for name, value in contact.inputs() if name not in without
+        f"{table.kept[name].symbol} = {table.text(name, value)}" for name, value in contact.inputs() if name not in without
     ]
 
 
@@ -328,7 +458,7 @@ def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
     said = []
     for name, value in parameters.items():
         row = LAW_NUMBERS.get(re.sub("^(first|second)_", "", name))
-        kind = (PART_DIMENSIONS.get(name) if row is None else row.dimension) if si else None
+        kind = row.dimension if si and row is not None else None
         text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
         said.append(f"{name.replace('_', ' ')} {text}")
     return ", ".join(said)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, cast
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.regime import friction_share
-from stribeck.quantities.inputs import quantity
-from stribeck.quantities.units import InputError, show
+from stribeck.files.results import Record
+from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.units import checked_word
 
 __all__ = [
     "DEFINITIONS",
@@ -21,6 +22,7 @@ __all__ = [
     "FrictionArray",
     "check_definition",
     "coefficients",
+    "friction_of",
     "sliding_part",
 ]
 
@@ -32,14 +34,14 @@ DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
 FULL_SLIP_RATIO = 0.01  # Slide-to-roll ratio from which asperities slide fully
 
 
-class Friction(float):
+class Friction(Record, float):
     """Friction coefficient of one state, a number with its parts; called, the one for other coefficients.
 
     Parameters
     ----------
-    contact : float
+    asperities : float
         Part from asperities, boundary_friction times their share of the load [-].
-    viscous : float
+    fluid : float
         Part from the fluid [-].
     total : float
         Their sum, the value of the number itself [-].
@@ -51,15 +53,24 @@ class Friction(float):
 
     Examples
     --------
-    >>> friction = Friction(contact=0.3, viscous=0.1, total=0.4, error=1e-7)
-    >>> friction + 1, friction.contact
+    >>> friction = Friction(asperities=0.3, fluid=0.1, total=0.4, error=1e-7)
+    >>> friction + 1, friction.asperities
     (1.4, 0.3)
     >>> round(friction.contact_share, 6)
     0.75
     """
 
-    contact: float
-    viscous: float
+    _labels = {
+        "total": ("1", "friction coefficient"),
+        "asperities": ("1", "contribution of asperities to the friction coefficient"),
+        "fluid": ("1", "contribution of the fluid to the friction coefficient"),
+        "error": ("1", "estimated absolute error of total"),
+        "lower": ("1", "tangential force on the substrate over the load"),
+        "upper": ("1", "tangential force on the cylinder over the load"),
+    }
+
+    asperities: float
+    fluid: float
     error: float
     lower: float
     upper: float
@@ -67,8 +78,8 @@ class Friction(float):
 
     def __new__(
         cls,
-        contact: float,
-        viscous: float,
+        asperities: float,
+        fluid: float,
         total: float,
         error: float,
         lower: float = math.nan,
@@ -77,7 +88,7 @@ class Friction(float):
     ) -> Self:
         """Make the number, which cannot change."""
         made = super().__new__(cls, total)
-        made.contact, made.viscous, made.error, made.lower, made.upper = contact, viscous, error, lower, upper
+        made.asperities, made.fluid, made.error, made.lower, made.upper = asperities, fluid, error, lower, upper
         if _other is not None:
             made._other = _other
         return made
@@ -90,7 +101,7 @@ class Friction(float):
     @property
     def contact_share(self) -> float:
         """Part of the friction that asperities cause [-]; zero without friction."""
-        return float(friction_share(self.contact, self.viscous))
+        return float(friction_share(self.asperities, self.fluid))
 
     @property
     def total(self) -> float:
@@ -104,25 +115,25 @@ class Friction(float):
     def __repr__(self) -> str:
         """Return the parts."""
         total = float(self)
-        return f"Friction(contact={self.contact!r}, viscous={self.viscous!r}, total={total!r}, error={self.error!r})"
+        return f"Friction(asperities={self.asperities!r}, fluid={self.fluid!r}, total={total!r}, error={self.error!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the numbers."""
-        return type(self), (self.contact, self.viscous, float(self), self.error, self.lower, self.upper)
+        return type(self), (self.asperities, self.fluid, float(self), self.error, self.lower, self.upper)
 
 
 class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
     """Friction coefficients of many states, an array with its parts; called, those for other coefficients."""
 
-    contact: Array  # Part from asperities [-]
-    viscous: Array  # Part from the fluid [-]
+    asperities: Array  # Part from asperities [-]
+    fluid: Array  # Part from the fluid [-]
     error: Array  # Estimated absolute error of the sum [-]
     _other: Callable[..., FrictionArray]
 
-    def __new__(cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]) -> Self:
+    def __new__(cls, asperities: Array, fluid: Array, total: Array, error: Array, other: Callable[..., FrictionArray]) -> Self:
         """Make the array of the sums."""
         made = np.asarray(total).view(cls)
-        made.contact, made.viscous, made.error, made._other = contact, viscous, error, other
+        made.asperities, made.fluid, made.error, made._other = asperities, fluid, error, other
         return made
 
     @property
@@ -153,6 +164,14 @@ class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
         return np.asarray(self).__reduce__()
 
 
+def friction_of(terms: Array, other: Callable[..., Any], is_number: bool = False) -> Friction | FrictionArray:
+    """Return friction whose asperity part, fluid part, sum and error are the columns of an array, or of its only row."""
+    if is_number:
+        asperities, fluid, total, error = terms[0].tolist()
+        return Friction(asperities, fluid, total, error, _other=other)
+    return FrictionArray(terms[:, 0], terms[:, 1], terms[:, 2], terms[:, 3], other)
+
+
 def sliding_part(slide_to_roll: float) -> float:
     r"""Return the part of the sliding friction of asperities that acts, with its sign.
 
@@ -164,18 +183,15 @@ def sliding_part(slide_to_roll: float) -> float:
 
 def coefficients(contact: Contact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
     """Return boundary_friction and beta as given, by default of the contact, or 1 without a contact."""
-    if contact is None and boundary_friction is None and beta is None:
-        return 1.0, 1.0
-    if boundary_friction is None:
-        boundary_friction = 1.0 if contact is None else contact.boundary_friction
-    if beta is None:
-        beta = 1.0 if contact is None else contact.beta
-    return quantity("boundary_friction", boundary_friction), quantity("beta", beta)
+
+    def coefficient(name: str, given: float | None) -> float:
+        if given is not None:
+            return numbers_of(Contact)[name].checked(given)
+        return 1.0 if contact is None else float(getattr(contact, name))
+
+    return coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
 
 
 def check_definition(definition: str) -> Definition:
     """Return ``definition`` if it names one of :data:`DEFINITIONS`."""
-    for known in DEFINITIONS:
-        if isinstance(definition, str) and definition == known:
-            return known
-    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")
+    return cast(Definition, checked_word("definition", definition, DEFINITIONS))

@@ -7,7 +7,7 @@ Eq. (Hertz_scales).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
 import numpy as np
 
@@ -17,16 +17,30 @@ from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw, law_of
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
-from stribeck.quantities.inputs import quantity
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, checked_word, show
 
-__all__ = ["MAX_GROUP", "MIN_GROUP", "Geometry", "Groups", "Physics", "check_geometry"]
+__all__ = ["BETA", "MAX_GROUP", "MIN_GROUP", "Geometry", "Groups", "Physics", "check_geometry"]
 
 MIN_GROUP = 1e-300  # Smallest group that is not zero: products and squares of the groups stay in double precision
 MAX_GROUP = 1e300  # Largest group: products and squares of the groups stay in double precision
 
 # Relative excess of a group over its bound that rounding explains: the exponential of its logarithm has some
 BOUND_RTOL = 1e-9
+
+
+BETA = Input(
+    name="beta",
+    label="contact-law beta",
+    symbol=r"$\beta$",
+    dimension="number",
+    typical="0.06",
+    source="about 1.4 q0 h_rms by Persson's theory: 1 um and 150 um for the longest wave",
+    usual=(1e-3, 2.0),
+    follows_surface=True,
+    known=2,
+)
 
 
 class Physics(TypedDict):
@@ -95,7 +109,8 @@ class Groups:
         """Check the groups and make them floats or read-only arrays."""
         if self.law is not None:
             object.__setattr__(self, "law", law_of(self.law))
-        check_geometry(self.geometry)
+        if not (isinstance(self.geometry, str) and self.geometry in SCALINGS):
+            check_geometry(self.geometry)
         if not isinstance(self.model, Model):
             raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
@@ -105,7 +120,10 @@ class Groups:
         except ValueError:
             shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
             raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
-        _check_ratio(self.roughness, self.relative_roughness)
+        relative = self.relative_roughness
+        if not isinstance(relative, float) or not (self.roughness == 0.0 or MIN_GROUP <= relative <= MAX_GROUP):
+            ratio = np.atleast_1d(np.where(np.equal(self.roughness, 0), 0.0, relative))  # of a smooth surface it may be lost
+            _refuse_out_of_range("the relative roughness", ratio, ratio)
 
     @property
     def scaling(self) -> Scaling:
@@ -166,7 +184,6 @@ class Groups:
         InputError
             Where ``beta`` is not a positive number.
         """
-        beta = quantity("beta", beta)
         with np.errstate(all="ignore"):
             return self.speed * self.slope(beta) ** self.scaling.hersey_power / self.scaling.hersey_divisor
 
@@ -193,7 +210,7 @@ class Groups:
         InputError
             Where ``beta`` is not a positive number.
         """
-        return self.scaling.slope_factor * quantity("beta", beta) * self.pressure_scale
+        return self.scaling.slope_factor * BETA.checked(beta) * self.pressure_scale
 
     def __eq__(self, other: object) -> bool:
         """Return whether the groups have the same shapes and values."""
@@ -218,34 +235,26 @@ class Groups:
 def _group(name: str, value: Any, positive: bool) -> float | Array:
     if type(value) is float and (MIN_GROUP <= value <= MAX_GROUP or (value == 0.0 and not positive)):
         return value + 0.0
-    try:
-        raw = np.asarray(value)
-    except ValueError:  # ragged lists
-        raw = np.asarray(None)
-    if raw.dtype.kind not in "iuf":
-        raise InputError(
-            f"{name} = {show(value)} is not a real number; groups are bare numbers or arrays of them, "
-            "for values with units use LineContact."
-        )
-    with np.errstate(over="ignore"):
-        # The sum makes a copy, and no negative zero, which would hash apart from zero.
-        array = np.asarray(raw, dtype=np.float64) + 0.0
+    array = real_array(name, value) + 0.0  # no negative zero, which would hash apart from zero
     wrong = ~np.isfinite(array) | (array <= 0 if positive else array < 0)
-    if np.any(wrong):
-        received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
-        allowed = "positive" if positive else "zero or positive"
-        raise InputError(f"{name} {received} must be finite and {allowed}.")
-    wrong = (array != 0) & ((array < MIN_GROUP * (1 - BOUND_RTOL)) | (array > MAX_GROUP * (1 + BOUND_RTOL)))
-    if np.any(wrong):
-        received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
-        zero = "" if positive else "zero or "
-        raise InputError(
-            f"{name} {received} must be {zero}from {MIN_GROUP:g} to {MAX_GROUP:g}; check the units of the inputs."
-        )
+    _refuse(name, value, wrong, f"finite and {'' if positive else 'zero or '}positive")
+    _refuse_out_of_range(name, value, array, "" if positive else "zero or ")
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
     return array
+
+
+def _refuse_out_of_range(name: str, value: Any, array: Array, zero: str = "zero or ") -> None:
+    wrong = (array != 0) & ((array < MIN_GROUP * (1 - BOUND_RTOL)) | (array > MAX_GROUP * (1 + BOUND_RTOL)))
+    _refuse(name, value, wrong, f"{zero}from {MIN_GROUP:g} to {MAX_GROUP:g}; check the units of the inputs")
+
+
+def _refuse(name: str, value: Any, wrong: Any, allowed: str) -> None:
+    """Refuse the first of the values that are wrong."""
+    if np.any(wrong):
+        received = f"= {show(value)}" if np.ndim(wrong) == 0 else f"has the value {np.asarray(value)[wrong].flat[0]:g} and"
+        raise InputError(f"{name} {received} must be {allowed}.")
 
 
 def contact_law(groups: Groups) -> ContactLaw:
@@ -258,23 +267,6 @@ def contact_law(groups: Groups) -> ContactLaw:
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
 
 
-def _check_ratio(roughness: float | Array, relative: float | Array) -> None:
-    """Refuse a relative roughness that double precision loses although roughness and load are in their ranges."""
-    if isinstance(relative, float) and (roughness == 0.0 or MIN_GROUP <= relative <= MAX_GROUP):
-        return
-    ratio = np.asarray(relative)
-    wrong = np.not_equal(roughness, 0) & ((ratio < MIN_GROUP * (1 - BOUND_RTOL)) | (ratio > MAX_GROUP * (1 + BOUND_RTOL)))
-    if np.any(wrong):
-        raise InputError(
-            f"the relative roughness has the value {ratio[wrong].flat[0]:g} and must be zero or "
-            f"from {MIN_GROUP:g} to {MAX_GROUP:g}; check the units of the inputs."
-        )
-
-
 def check_geometry(geometry: Any) -> Geometry:
     """Return the name of a geometry; refuse what is none."""
-    for known in SCALINGS:
-        if isinstance(geometry, str) and geometry == known:
-            return known
-    names = " or ".join(map(repr, SCALINGS))
-    raise InputError(f"geometry = {show(geometry)}; it must be {names}: a cylinder or a ball.")
+    return cast(Geometry, checked_word("geometry", geometry, SCALINGS, ": a cylinder or a ball"))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_word, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
@@ -30,9 +30,7 @@ class Model:
                 f"film = {show(self.film)}; films are those of the package. A fluid of your own is a law of shear, viscosity "
                 "or density, given as fluid = ... to a contact or to solve: see Add a fluid in for_developers.md."
             )
-        if self.cavitation not in tuple(Cavitation):
-            known = ", ".join(repr(str(each)) for each in Cavitation)
-            raise InputError(f"cavitation = {show(self.cavitation)} must be one of {known}.")
+        checked_word("cavitation", self.cavitation, Cavitation)
         as_solid("solid", self.solid)
 
 

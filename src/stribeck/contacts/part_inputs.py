@@ -7,11 +7,12 @@ Nothing is listed here but the kinds: laws are found in the package of their kin
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, NamedTuple
 
+from stribeck.contacts.inputs import InputTable
+from stribeck.contacts.parts import Parts
 from stribeck.fluids.laws import DensityLaw, FlowFactors, RateLaw, ViscosityLaw
-from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
@@ -23,7 +24,6 @@ __all__ = [
     "PART_INPUTS",
     "PART_LETTERS",
     "Kind",
-    "PartInput",
     "all_input_rows",
     "part_names",
     "part_value",
@@ -59,32 +59,23 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class PartInput(Input):
-    """A number of a law that a fit may free."""
-
-    table: str  # Where a case file has it
-    of: str  # Laws that have such a number, for sentences
-
-
-def _rows() -> Iterator[PartInput]:
+def _numbers() -> Iterator[Input]:
+    """Yield the numbers of laws, each with the table and the laws that have it, and those of motion."""
     for kind in KINDS.values():
         found: dict[str, tuple[Input, list[str]]] = {}
         for name, law in kind.laws.items():
             for row in numbers_of(law).values():
-                if row.is_free:
-                    found.setdefault(row.name, (row, []))[1].append(name)
+                found.setdefault(row.name, (row, []))[1].append(name)
         for row, names in found.values():
             *most, last = map(repr, names)
             of = f"[{kind.table}] with {kind.key} = {' or '.join(filter(None, [', '.join(most), last]))}"
-            yield PartInput(**{each.name: getattr(row, each.name) for each in fields(Input)}, table=kind.table, of=of)
+            yield replace(row, table=kind.table, of=of)
+    yield from numbers_of(Parts).values()
 
 
-# Numbers of laws that a fit may free, by name.
-PART_INPUTS = {row.name: row for row in _rows()}
+LAW_NUMBERS = {row.name: row for row in _numbers()}  # All numbers of laws and of motion by name
 
-# All numbers of laws by name, those too that no fit frees.
-LAW_NUMBERS = {key: row for kind in KINDS.values() for law in kind.laws.values() for key, row in numbers_of(law).items()}
+PART_INPUTS = {name: row for name, row in LAW_NUMBERS.items() if row.table and row.is_free}  # Those that a fit may free
 
 PART_LETTERS = {letter: row.name for row in PART_INPUTS.values() for letter in row.letters}  # Other names of numbers of laws
 

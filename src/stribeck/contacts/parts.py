@@ -1,12 +1,14 @@
-"""The parts of a contact beside its numbers: fluid, cavitation, flow factors, solid and motion, as users give them.
+"""What a contact has beside its inputs: fluid, cavitation, flow factors, solid and motion, as users give them.
 
-The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model` makes them the model
+The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model_in` makes them the model
 that the equations see.
 """
 
 from __future__ import annotations
 
 import inspect
+import math
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -14,11 +16,12 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, checked_word, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
-__all__ = ["BASE_PARTS", "PART_KEYWORDS", "PURE_SLIDING", "Parts", "signature_with_parts"]
+__all__ = ["BASE_PARTS", "PART_KEYWORDS", "PURE_SLIDING", "Parts", "part_parameters"]
 
 PURE_SLIDING = 2.0  # Slide-to-roll ratio with one surface at rest
 MAX_SLIDE_TO_ROLL = 100.0  # Largest slide-to-roll ratio: surfaces that move against each other entrain hardly any fluid
@@ -27,16 +30,35 @@ MAX_SLIDE_TO_ROLL = 100.0  # Largest slide-to-roll ratio: surfaces that move aga
 MIN_SUCTION = 1e-20
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, kw_only=True)
 class Parts:
     r"""Fluid, cavitation, flow factors, solid and motion of a contact."""
 
     fluid: Fluid  # The fluid; Newtonian, of constant viscosity and density, without it
     cavitation: Cavitation  # How the film ends behind the contact
-    cavity_pressure: float
+    cavity_pressure: Input = Input(
+        label="cavity pressure, gauge",
+        dimension="pressure",
+        typical="-101 kPa",
+        lowest=-math.inf,
+        highest=0.0,
+        reason="it is measured from the ambient pressure, so that -0.1 MPa is vacuum",
+        optional=True,
+        default=0.0,
+    )
     flow_factors: FlowFactors | None  # What roughness does to the flow
     solid: Solid | None  # The soft body; a half-space without it
-    slide_to_roll: float
+    slide_to_roll: Input = Input(
+        label="slide-to-roll ratio",
+        dimension="number",
+        typical="0.5",
+        lowest=-MAX_SLIDE_TO_ROLL,
+        zero=True,
+        highest=MAX_SLIDE_TO_ROLL,
+        reason="2 is pure sliding, 0 pure rolling",
+        optional=True,
+        default=PURE_SLIDING,
+    )
 
     def __init__(
         self,
@@ -49,44 +71,38 @@ class Parts:
     ) -> None:
         values = {
             "fluid": as_fluid(fluid),
-            "cavitation": _cavitation(cavitation),
-            "cavity_pressure": 0.0
-            if cavity_pressure is None
-            else to_si(cavity_pressure, "pressure", "cavity_pressure", "-101 kPa"),
+            "cavitation": Cavitation(checked_word("cavitation", "none" if cavitation is None else cavitation, Cavitation)),
+            "cavity_pressure": cavity_pressure,
             "flow_factors": as_flow_factors(flow_factors),
             "solid": None if solid is None else as_solid("solid", solid),
-            "slide_to_roll": PURE_SLIDING if slide_to_roll is None else to_si(slide_to_roll, "number", "slide_to_roll"),
+            "slide_to_roll": slide_to_roll,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
-        if self.cavity_pressure > 0:
-            raise InputError(
-                f"cavity_pressure = {show(cavity_pressure)} must be zero or below: it is measured from the ambient pressure, "
-                "so that -0.1 MPa is vacuum."
-            )
         if self.cavity_pressure < 0 and self.cavitation != "reform":
             raise InputError(
                 f"cavity_pressure = {show(cavity_pressure)} needs cavitation = 'reform': a film that ends at the exit does so "
                 "at the ambient pressure."
             )
-        if not abs(self.slide_to_roll) <= MAX_SLIDE_TO_ROLL:
-            raise InputError(
-                f"slide_to_roll = {show(slide_to_roll)} must lie between -{MAX_SLIDE_TO_ROLL:g} and {MAX_SLIDE_TO_ROLL:g}; "
-                "2 is pure sliding, 0 pure rolling."
-            )
 
-    def items(self) -> dict[str, Any]:
+    def part_values(self) -> dict[str, Any]:
         """Return the parts by name: keywords that make them again."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: getattr(self, name) for name in PART_KEYWORDS}
+
+    @property
+    def own_parts(self) -> dict[str, Any]:
+        """Those that are not the article's."""
+        usual = vars(BASE_PARTS)
+        return {name: value for name, value in self.part_values().items() if value is not usual[name] and value != usual[name]}
 
     @property
     def slide(self) -> float:
         """Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``."""
         return 0.5 * self.slide_to_roll
 
-    def model(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
+    def model_in(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
         """Return the model in Hertz units."""
-        if self is BASE_PARTS or self == BASE_PARTS:
+        if not self.own_parts:
             return BASE_MODEL
         if self.solid is not None and self.slide < -1 and getattr(self.solid, "uses_speed", False):
             raise InputError(
@@ -105,25 +121,13 @@ class Parts:
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
 
 
-def signature_with_parts(signature: inspect.Signature) -> inspect.Signature:
-    """Return the signature of a contact with the parts that are no inputs of it as further keywords."""
-    parts = [
-        each
-        for each in list(inspect.signature(Parts.__init__).parameters.values())[1:]
-        if each.name not in signature.parameters
-    ]
-    keywords = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=inspect.Parameter.empty) for each in parts]
-    return signature.replace(parameters=[*signature.parameters.values(), *keywords])
+def part_parameters(without: Collection[str]) -> list[inspect.Parameter]:
+    """Return the parts as arguments of a contact, but for those that are among its inputs."""
+    parts = list(inspect.signature(Parts.__init__).parameters.values())[1:]
+    keyword, empty = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.empty
+    return [each.replace(kind=keyword, annotation=empty) for each in parts if each.name not in without]
 
 
-def _cavitation(value: str | Cavitation | None) -> Cavitation:
-    try:
-        return Cavitation("none" if value is None else value)
-    except ValueError:
-        known = ", ".join(repr(str(each)) for each in Cavitation)
-        raise InputError(f"cavitation = {show(value)} must be one of {known}.") from None
-
-
-PART_KEYWORDS = frozenset(field.name for field in fields(Parts))  # The keywords of contacts and solvers that are parts
+PART_KEYWORDS = tuple(field.name for field in fields(Parts))  # The keywords of contacts and solvers that are parts
 
 BASE_PARTS = Parts()  # Parts of the article's model

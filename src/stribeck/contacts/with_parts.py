@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -14,6 +13,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.parts import PART_KEYWORDS, Parts
 from stribeck.fluids.laws import FilmUnits
+from stribeck.quantities.keywords import nearest
 from stribeck.quantities.units import InputError, show
 
 __all__ = [
@@ -35,8 +35,8 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
     """Return a contact or groups with the parts that are given."""
     unknown = next((name for name in given if name not in PART_KEYWORDS), None)
     if unknown is not None:
-        near = difflib.get_close_matches(unknown, PART_KEYWORDS, n=1)
-        raise TypeError(f"got an unexpected keyword argument {unknown!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
+        near = nearest(unknown, PART_KEYWORDS)
+        raise TypeError(f"got an unexpected keyword argument {unknown!r}" + (f"; did you mean {near}?" if near else ""))
     given = {name: value for name, value in given.items() if value is not None}
     if given and isinstance(problem, Contact):
         return problem.replace(**given)
@@ -46,7 +46,7 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
                 f"cavity_pressure = {show(given['cavity_pressure'])} is text; with groups it is a plain number, the pressure "
                 "over the Hertz pressure, such as -0.05."
             )
-        return replace(problem, model=Parts(**given).model(hertz_units(problem)))
+        return replace(problem, model=Parts(**given).model_in(hertz_units(problem)))
     return problem
 
 

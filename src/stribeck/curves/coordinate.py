@@ -15,9 +15,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.inputs import InputTable
 from stribeck.equations.sensitivity import GROUPS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
@@ -26,8 +26,8 @@ __all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values",
 
 Over = Literal["speed", "load", "roughness"]
 
-POINTS_RANGE = (2, 100_000)
-"""Fewest and most points of a curve."""
+POINTS_RANGE = (2, 100_000)  # Fewest and most points of a curve
+END_ROUNDING = 1e-12  # Relative rounding of the ends of a curve: a value given as the end is inside
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,10 @@ class Coordinate:
 
     def groups_along(self, values: Array) -> Groups:
         """Return the groups at many values of the coordinate, as arrays."""
-        groups = [self.groups_at(s) for s in np.log(values).tolist()]
-        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), **groups[0].physics)
+        first = self.groups_at(math.log(values[0])) if len(values) else self.groups_at(0.0)
+        ratios = values / values[0] if len(values) else values
+        numbers = (float(getattr(first, name)) * ratios**n for name, n in zip(GROUPS, self.direction.tolist(), strict=True))
+        return Groups(*numbers, **first.physics)
 
     @property
     def geometry(self) -> Geometry:
@@ -75,6 +77,21 @@ class Coordinate:
         """Return whether the model is the same at all values: in Hertz units it may vary with the load."""
         ends = [self.groups_at(math.log(value)).model for value in (values[0], values[-1])]
         return ends[0] == ends[1]
+
+    def inside(self, values: Array, ends: tuple[float, float]) -> Array:
+        """Return those values that lie between two places, but for rounding."""
+        low, high = ends
+        return values[(values >= math.exp(low) * (1 - END_ROUNDING)) & (values <= math.exp(high) * (1 + END_ROUNDING))]
+
+    @property
+    def contact(self) -> Contact | None:
+        """The contact at its own values, None for groups."""
+        return self.base if isinstance(self.base, Contact) else None
+
+    @property
+    def unit(self) -> str:
+        """SI unit of what varies; ``"1"`` of groups."""
+        return self.base.INPUTS.unit(self.over) if isinstance(self.base, Contact) else "1"
 
     def where(self, *values: float) -> str:
         """Return values in words, such as ``"speed 1 mm/s to 1 m/s"``."""

@@ -8,6 +8,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
@@ -23,7 +25,7 @@ from stribeck.solver.point.solution import PointSolution, finish_point
 from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointObservables
 
-__all__ = ["point_sensitivities"]
+__all__ = ["ball_derivatives"]
 
 SMALL = 1e-4
 """Step of the logarithms in finite differences of closed forms."""
@@ -32,8 +34,10 @@ WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
 """Exponents of the inputs in the Hertz radius, the unit of a wetted radius."""
 
 
-def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -> tuple[PointSolution, dict[str, float]]:
-    """Return the state of a ball and the logarithmic derivatives of its friction by each input."""
+def ball_derivatives(
+    contact: Contact, rtol: float, definition: Definition
+) -> tuple[PointSolution, Array, dict[str, float], dict[str, float]]:
+    """Return the state of a ball, and the derivatives of its friction by groups, through the model, and directly."""
     groups, beta, mu0 = contact.groups, contact.beta, contact.boundary_friction
     state = solve_cold(groups, rtol)
     solution = finish_point(state, contact)
@@ -67,13 +71,7 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
     if values._wetted_radius is not None:
         direct["wetted_radius"] = by_edge = slope("_wetted_radius")
         direct |= {name: -exponent * by_edge for name, exponent in WIDTH_EXPONENTS.items()}
-    friction = total(values) or math.nan
-    found = {}
-    exponents_of = {name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}
-    for name, exponents in (exponents_of | dict.fromkeys(part_names(contact), (0.0, 0.0, 0.0))).items():
-        moved = sum(n * slope for n, slope in zip(exponents, by_groups.values(), strict=True))
-        found[name] = (moved + by_model.get(name, 0.0) + direct.get(name, 0.0)) / friction
-    return solution, found
+    return solution, np.array([*by_groups.values()]), by_model, direct
 
 
 def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:

@@ -1,104 +1,158 @@
-"""A solved Stribeck curve: its points, friction and regimes along them, its minimum and its transitions."""
+"""A Stribeck curve: its points, friction and regimes along them, its minimum and its transitions."""
 
 from __future__ import annotations
 
 import math
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Self
+from importlib import import_module
+from numbers import Real
+from typing import Any, Self
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, model_words
-from stribeck.contacts.friction import Definition, sliding_part
+from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
-from stribeck.curves.base_curve import BaseCurve
-from stribeck.curves.coordinate import Coordinate, Over
-from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, observed, rows_of, solved_at
-from stribeck.curves.landmarks import MAX_STATE_RTOL, Landmark, Landmarks, friction_at
-from stribeck.curves.regime import Transition
+from stribeck.contacts.model import BASE_MODEL
+from stribeck.curves.coordinate import Over, check_points, given_values
+from stribeck.curves.friction_path import FrictionPath
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Method, Regime, Transition, check_transition, ranges_of, regimes_along
+from stribeck.curves.source import CurveValues, Readings
+from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, Card
+from stribeck.quantities.outputs import OUTPUT_TABLES
+from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD_PREFIX, law_notes, minimum_note
-from stribeck.solver.path.path import SolvedPath
-from stribeck.solver.solution import Solution
-from stribeck.solver.solve import check_rtol, finish, minimum_estimate
+from stribeck.solver.numbers import si_films
 
-if TYPE_CHECKING:
-    pass
-
-__all__ = ["StribeckCurve"]
+__all__ = ["StribeckCurve", "path_of", "with_contact"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StribeckCurve(BaseCurve, ByValue):
-    """Converged states along one coordinate, and the friction on them.
+class StribeckCurve(Exported, Shown, ByValue):
+    """Friction along one coordinate, off solved states or off the atlas.
+
+    Its dataset has observables, friction, regimes and inputs of each point, with their errors.
 
     Attributes
     ----------
-    over : {"speed", "load", "roughness"}
-        What varies.
     values : ndarray, shape (n,)
         Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
-    contact : Contact or None
-        The contact, at its own speed, load and roughness.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of each state.
-    outcome : Outcome
-        CONVERGED, or why points are missing.
     requested : int
         Points asked for.
     """
 
     _picture = "stribeck.plot.curve.plot_curve"
 
-    over: Over
     values: Array
-    contact: Contact | None
-    boundary_friction: float
-    beta: float
-    definition: Definition
-    rtol: float
-    outcome: Outcome
     requested: int
-    _path: Coordinate = field(repr=False, compare=False)
-    _function: SolvedPath = field(repr=False, compare=False)
+    _path: FrictionPath = field(repr=False)
 
-    @cached_property
-    def _rows(self) -> tuple[Array, Array]:
-        """Observables of the points and their errors."""
-        return rows_of(self._function, np.log(self.values), self.rtol)
+    @property
+    def over(self) -> Over:
+        """What varies: ``"speed"``, ``"load"`` or ``"roughness"``."""
+        return self._path.source.coordinate.over
 
-    @cached_property
-    def solutions(self) -> tuple[Solution, ...]:
-        """The state of each point: its numbers come from the curve, its fields are solved on first use."""
-        path = self._function
-        rows = zip(np.log(self.values).tolist(), *self._rows, strict=True)
-        return tuple(CurvePoint(self._path, path, s, row, errors, self.rtol) for s, row, errors in rows)
+    @property
+    def contact(self) -> Contact | None:
+        """The contact, at its own speed, load and roughness; None where groups were given."""
+        return self._path.source.coordinate.contact
+
+    @property
+    def boundary_friction(self) -> float:
+        """Friction coefficient of the dry contact [-]."""
+        return self._path.boundary_friction
+
+    @property
+    def beta(self) -> float:
+        """Coefficient of the contact law [-]."""
+        return self._path.beta
+
+    @property
+    def definition(self) -> Definition:
+        """Definition of the viscous friction, ``"balanced"`` or ``"published"``."""
+        return self._path.definition
+
+    @property
+    def method(self) -> Method:
+        """Where the numbers come from: ``"solver"`` or ``"atlas"``."""
+        return "solver" if self.states else "atlas"
+
+    @property
+    def rtol(self) -> float:
+        """Relative tolerance of each state; off the atlas the stated error of the table."""
+        return self._path.source.rtol
+
+    @property
+    def outcome(self) -> Outcome:
+        """CONVERGED, or why points are missing."""
+        return self._path.source.outcome
 
     @property
     def states(self) -> int:
-        """How many states were solved and expanded for the curve."""
-        return len(self._function.expansions)
+        """How many states were solved for the curve; none off the atlas."""
+        return self._path.source.states
 
-    @property
+    @cached_property
     def groups(self) -> Groups:
         """Groups of the points, as arrays."""
-        return self._path.groups_along(self.values)
+        return self._path.source.coordinate.groups_along(self.values)
 
     @property
     def law(self) -> AsperityLaw | None:
         """Contact law of all points; None is the exponential one."""
-        return self._path.base.law
+        return self._path.source.coordinate.base.law
+
+    @property
+    def unit(self) -> str:
+        """SI unit of what the curve runs over; ``"1"`` of groups."""
+        return self._path.source.coordinate.unit
+
+    @property
+    def speed(self) -> Array:
+        """Speed of each point [m/s], or its group where the curve has no contact [-]."""
+        return self._input("speed")
+
+    @property
+    def load(self) -> Array:
+        """Load of each point [N/m], of a ball [N], or its group where the curve has no contact [-]."""
+        return self._input("load")
+
+    @property
+    def roughness(self) -> Array:
+        """Roughness of each point [m], or its group where the curve has no contact [-]."""
+        return self._input("roughness")
+
+    def _input(self, name: str) -> Array:
+        if name == self.over:
+            return self.values
+        return np.full(len(self.values), getattr(self.groups if self.contact is None else self.contact, name))
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.values)
+
+    @cached_property
+    def _points(self) -> Readings:
+        """What is known at the points."""
+        return self._path.source.read(np.log(self.values), self.rtol)
+
+    @property
+    def solutions(self) -> tuple[Any, ...]:
+        """The state of each point: its numbers come from the curve, its fields are solved on first use; none off the atlas."""
+        return self._points.solutions
+
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """Names of the observables that the curve has."""
+        return tuple(OUTPUT_TABLES[self.groups.geometry].listed) if self.states else self._points.names
 
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array.
@@ -106,7 +160,7 @@ class StribeckCurve(BaseCurve, ByValue):
         Parameters
         ----------
         name : str
-            Name of a number that :class:`Solution` has, such as ``"central_gap"``.
+            Name of a number that :class:`~stribeck.results.Solution` has, such as ``"central_gap"``.
 
         Returns
         -------
@@ -118,28 +172,54 @@ class StribeckCurve(BaseCurve, ByValue):
         InputError
             If a solution has no number of this name.
         """
-        if name in COLUMNS:
-            return np.array(self._rows[0][:, COLUMNS.index(name)])
-        return observed(self.solutions, name)
+        if isinstance(name, str) and name in self._points.values:
+            return np.array(self._points.values[name])
+        numbers = [getattr(each, name, None) if isinstance(name, str) else None for each in self.solutions]
+        if not (numbers and all(isinstance(number, Real) for number in numbers)):
+            known = OUTPUT_TABLES[self.groups.geometry].names if self.states else self.observables
+            what = "it must be the name of a number of every solution, such as" if self.states else "the atlas has"
+            raise InputError(f"name = {show(name)}; {what} {', '.join(known)}.")
+        return np.array(numbers)
 
-    def _values(self, value: Any, s: Array) -> CurveValues:
-        """Return the values of the curve at coordinates."""
-        plain = CurveValues.of(value, *self._function.at(s), self._sliding, self._least_error)
-        return plain.with_friction(self.boundary_friction, self.beta, self.definition)
+    def at(self, value: Any) -> CurveValues:
+        """Return all observables and the friction anywhere on the curve, with their errors.
 
-    @property
-    def _ends(self) -> tuple[float, float]:
-        low, high = np.exp(self._function.coordinates[[0, -1]]).tolist()
-        return low, high
+        Parameters
+        ----------
+        value : float, str or array_like
+            What the curve runs over, inside its range: groups [-], or SI numbers or text with units where the curve has a
+            contact.
 
-    def _where(self, value: float) -> str:
-        return self._path.where(value)
+        Returns
+        -------
+        CurveValues
+            Numbers for one value, arrays for many.
 
-    def _sampled(self, values: Array) -> Self:
-        return self._along(self._function, values, len(values))
+        Raises
+        ------
+        InputError
+            If a value is outside the curve.
+        SolveError
+            If no states can be solved along the curve.
 
-    def solve_at(self, value: Any) -> Solution:
-        """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
+        Notes
+        -----
+        A curve is about a dozen solved states, expanded into Taylor series.  Between them observables are polynomials in the
+        logarithm of ``value``; their difference from polynomials of lower order is part of the error
+        (``test_curve_function.py``).
+        """
+        values = given_values(self.over, value, self.contact)
+        source = self._path.source
+        if source.coordinate.inside(np.atleast_1d(values), source.ends).size < np.size(values):
+            low, high = np.exp(source.ends).tolist()
+            raise InputError(
+                f"{self.over} = {show(value)} is outside the curve, which runs from {source.coordinate.where(low)} to "
+                f"{source.coordinate.where(high).removeprefix(self.over + ' ')}; compute a curve that contains it."
+            )
+        return self._path.values(values if np.ndim(values) else float(values))
+
+    def solve_at(self, value: Any) -> Any:
+        """Return the solution anywhere on the curve, with its fields: from the states beside it, off the atlas from cold.
 
         Parameters
         ----------
@@ -161,49 +241,122 @@ class StribeckCurve(BaseCurve, ByValue):
         found = self.at(value)
         if np.ndim(found.value):
             raise InputError(f"{self.over} = {show(value)}; give one value: a solution is one state.")
-        return self._solution_at(math.log(found.value))
+        return self._path.source.solution_at(math.log(found.value))
 
-    def _solution_at(self, s: float) -> Solution:
-        point = solved_at(self._function, s)
-        return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
+    def sampled(self, points: int) -> Self:
+        """Return the same curve with other points, evenly in the logarithm; they are read off it.
 
-    def _along(self, path: SolvedPath, values: Array, requested: int) -> Self:
-        """Return the curve on another path, with points at ``values``."""
-        return replace(self, values=values, outcome=path.outcome, requested=requested, _function=path)
+        Parameters
+        ----------
+        points : int
+            Their number, at least 2.
+
+        Returns
+        -------
+        StribeckCurve
+            Between the same ends.
+
+        Raises
+        ------
+        InputError
+            For a number that is none.
+        """
+        check_points(points)
+        return replace(self, values=np.geomspace(self.values[0], self.values[-1], points), requested=points)
 
     @cached_property
-    def _sliding(self) -> float:
-        """Fraction of the sliding friction of asperities that acts, with its sign."""
-        return sliding_part(2 * self._path.groups_at(0.0).model.film.slide)
+    def friction(self) -> FrictionArray:
+        """Friction coefficients [-]: an array with its parts ``asperities``, ``fluid`` and its ``error``.
 
-    @cached_property
-    def _least_error(self) -> float:
-        """Smallest error that is stated."""
-        return minimum_estimate(self.rtol, self._path.groups_at(0.0).model)
-
-    def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
-        found = CurveValues.of(self.values, *self._rows, self._sliding, self._least_error)
-        found = found.with_friction(boundary_friction, beta, definition)
-        return np.stack([found.friction_contact, found.friction_viscous, found.friction, found.friction_error], axis=1)
+        For the coefficients and the definition of the curve; ``friction(boundary_friction, beta, definition)`` returns it for
+        others, each optional.
+        """
+        found = self._path.friction(self._points)
+        assert isinstance(found, FrictionArray)
+        return found
 
     @property
+    def hersey_number(self) -> Array:
+        """Hersey number of the points [-], eta U/F_N of a line and eta U R/F_N of a ball."""
+        return np.asarray(self.groups.hersey_number(self.beta))
+
+    @property
+    def hydrodynamic_friction(self) -> Array:
+        """Friction of smooth surfaces by the article's law, the abscissa of its second plot; nan for other models."""
+        if self.groups.geometry != "line" or self.groups.model != BASE_MODEL:
+            return np.full(len(self), np.nan)
+        return np.asarray(hydrodynamic.friction(self.groups, self.beta))
+
+    @property
+    def regimes(self) -> tuple[Regime, ...]:
+        """Lubrication regime of each point."""
+        return regimes_along(self.observable("fluid_load_share"), self.friction.asperities, self.friction)
+
+    @cached_property
+    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
+        """Regimes along the curve, ascending: name, and the values between which it holds.
+
+        They meet at a located transition where there is one, else in the middle between two points.
+        """
+        return ranges_of(self.values, self.regimes, self.transitions)
+
+    @property
+    def minimum(self) -> Landmark | None:
+        """The minimum of the size of the friction, where it or its slope vanishes; None where the curve has none inside."""
+        return self.landmark(Transition.MINIMUM)
+
+    def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
+        """Return one transition, or the minimum.
+
+        Parameters
+        ----------
+        name : str
+            ``"boundary_end"``, ``"equal_shares"``, ``"hydrodynamic_start"`` or ``"minimum"``, or the name in outputs.
+        rtol : float, optional
+            Error of the observables up to which it is read off the curve: the tolerance of the curve costs no further
+            state.  Beyond, a state is solved there.  1e-6 if omitted, or the tolerance of the curve if that is smaller.
+
+        Returns
+        -------
+        Landmark or None
+            None where the curve does not hold it.
+
+        Raises
+        ------
+        InputError
+            For another name, or a tolerance that is none.
+        """
+        return self._path.landmark(check_transition(name), rtol)
+
+    @cached_property
+    def transitions(self) -> tuple[Landmark, ...]:
+        """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
+
+        As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
+        10 % of the friction, and where friction is at its minimum.
+        """
+        found = [self.landmark(name) for name in Transition]
+        return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
+
+    @cached_property
     def law_in_doubt(self) -> Array:
         """Whether the contact law is outside its range at each point while asperities matter there."""
-        given = self.boundary_friction, self.beta
-        # alpha, beta and dry friction, all that the notes take from a contact, are the same at all points
-        return np.array([bool(law_notes(each.groups, self.contact, each.observables, given)) for each in self.solutions], bool)
+        balanced = self.friction if self.definition == "balanced" else self.friction(definition="balanced")
+        read = [self.observable(name) for name in ("contact_load_share", "central_gap", "minimum_gap")]
+        rows = zip(np.log(self.values).tolist(), *(each.tolist() for each in (*read, balanced.fluid)), strict=True)
+        given, groups_at = (self.boundary_friction, self.beta), self._path.source.coordinate.groups_at
+        return np.array([bool(law_notes(groups_at(s), self.contact, _Read(*each), given)) for s, *each in rows], bool)
 
     @property
     def error_estimate(self) -> float:
         """Largest estimated relative error over all points."""
-        stated = self._rows[1][:, : COLUMNS.index("minimum_position")]
-        return float(np.nanmax(np.maximum(stated, self._least_error), initial=0.0)) if len(stated) else math.nan
+        return self._points.error_estimate
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What to know before using the numbers; each sentence names the points, or the minimum, that it concerns."""
         found: dict[str, list[tuple[float, str]]] = {}
-        for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
+        for value, solution in zip(self.values.tolist(), self.solutions, strict=bool(self.states)):  # off the atlas none
             for note in solution.notes_for(self.boundary_friction, self.beta):
                 # A note holds numbers that differ from point to point; those of the first point are kept.
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
@@ -214,31 +367,16 @@ class StribeckCurve(BaseCurve, ByValue):
     @property
     def minimum_notes(self) -> tuple[str, ...]:
         """The note on a minimum outside the range of the contact law, one of :attr:`notes`; empty if there is none."""
-        if self.minimum is None:
+        if self.minimum is None or self.minimum.solution is None:
             return ()
-        state = self.minimum.solution
+        state, where = self.minimum.solution, self._path.source.coordinate.where(self.minimum.value)
         share = state.friction(self.boundary_friction, self.beta, self.definition).contact_share
-        note = minimum_note(state.groups, state.contact, state.observables, share, self._path.where(self.minimum.value))
+        note = minimum_note(state.groups, state.contact, state.observables, share, where)
         return (note,) if note else ()
 
     def _note(self, points: list[tuple[float, str]]) -> str:
-        where = self._path.where(points[0][0], points[-1][0])
+        where = self._path.source.coordinate.where(*dict.fromkeys((points[0][0], points[-1][0])))
         return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
-
-    @cached_property
-    def _landmarks(self) -> Landmarks:
-        return Landmarks(self._function, self._path, self.rtol)
-
-    def _accepted(self, rtol: float | None) -> float:
-        return check_rtol(min(self.rtol, MAX_STATE_RTOL) if rtol is None else rtol)
-
-    def _find(self, mark: Transition, accepted: float) -> Landmark | None:
-        rubbing = self._sliding * self.boundary_friction
-        place = self._landmarks.place(mark, rubbing, self.beta, self.definition, accepted)
-        if place is None:
-            return None
-        friction = friction_at(place.solution.friction(self.boundary_friction, self.beta, self.definition))
-        return Landmark(mark, math.exp(place.coordinate), friction, place.solution, place.error, self.over)
 
     def to_si(self) -> dict[str, Array]:
         """Return films and Hertz scales of the points in SI units.
@@ -258,20 +396,68 @@ class StribeckCurve(BaseCurve, ByValue):
         films = [si_films(solution) for solution in self.solutions]
         return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return settings, minimum, transitions, regimes and the columns of :meth:`to_dataset`, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers, arrays, text, lists and dictionaries of these.
+        """
+        found: dict[str, Any] = self._tables.curve_dict(self)
+        return found
+
+    def _labelled(self) -> Labelled:
+        found: Labelled = self._tables.curve_table(self)
+        return found
+
+    @property
+    def _tables(self) -> Any:
+        # By name, as pictures are: the table needs the curve.
+        return import_module("stribeck.curves.table")
+
     def _card(self) -> Card:
         if not len(self):
             return Card(f"no points over {self.over}", (), (self.outcome.value,))
+        where, is_solved = self._path.source.coordinate.where, bool(self.states)
         points = f"{len(self)} points" if len(self) == self.requested else f"{len(self)} of {self.requested} points"
         model = model_words(self.groups, self.contact)
+        error = f"{self.error_estimate:.1e} (rtol {self.rtol:g})" if is_solved else f"{self.rtol:.1g}, of the table"
         rows = [
             ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
-            *((mark.name, f"{mark.friction:.4g} at {self._path.where(mark.value)}") for mark in self.transitions),
+            *((mark.name, f"{mark.friction:.4g} at {where(mark.value)}") for mark in self.transitions),
             ("regimes", ", ".join(dict.fromkeys(self.regimes))),
             ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
-            ("contact law", self.solutions[0].law),
+            *([("contact law", self.solutions[0].law)] if is_solved else []),
             *([("model", model)] if model else []),
-            ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})"),
+            ("estimated error" if is_solved else "stated error", error),
         ]
-        ends = self._path.where(float(self.values[0]), float(self.values[-1]))
+        ends = where(float(self.values[0]), float(self.values[-1]))
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
-        return Card(f"{points}, {ends}{outcome}", rows, self.notes)
+        return Card(f"{points}{'' if is_solved else ' off the atlas'}, {ends}{outcome}", rows, self.notes)
+
+
+def path_of(curve: StribeckCurve) -> FrictionPath:
+    """Return the friction of a curve as a function along its path."""
+    return curve._path
+
+
+def with_contact(curve: StribeckCurve, contact: Contact) -> StribeckCurve:
+    """Return the curve with a contact of it at another place."""
+    source: Any = curve._path.source
+    moved = replace(source, coordinate=replace(source.coordinate, base=contact))
+    return replace(curve, _path=replace(curve._path, source=moved))
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The values of a state on which notes on the contact law depend."""
+
+    contact_load_share: float
+    central_gap: float
+    minimum_gap: float
+    viscous: float
+
+    def viscous_friction(self, beta: float) -> float:
+        """Return the viscous friction, which is known for the curve's own beta alone."""
+        return self.viscous

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, Literal, overload
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,29 +13,20 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.geometries import LINE
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.part_inputs import PART_INPUTS, part_names
+from stribeck.contacts.part_inputs import part_names
 from stribeck.contacts.with_parts import models_at_both_sides
-from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import LINE
 from stribeck.quantities.units import InputError
 from stribeck.solver.path.line_path import with_ending_of
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
-
-@overload
-def friction_sensitivities(
-    contact: Contact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
-) -> tuple[Solution, dict[str, float]]: ...
-
-
-@overload
-def friction_sensitivities(
-    contact: Contact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
-) -> tuple[None, dict[str, float]]: ...
+Derivatives = tuple[Any, Array, Mapping[str, float], Mapping[str, float]]
+"""A solved state, and the derivatives of its friction by the logarithms of the groups, of inputs through numbers of fluid and
+solid, and of inputs at fixed groups and numbers."""
 
 
 @one_blas_thread
@@ -44,8 +35,7 @@ def friction_sensitivities(
     *,
     rtol: float = 1e-6,
     definition: Definition = "balanced",
-    method: Method = "solver",
-) -> tuple[Solution | None, dict[str, float]]:
+) -> tuple[Solution, dict[str, float]]:
     r"""Solve a contact and return the sensitivity of its friction to each input.
 
     .. math::
@@ -60,31 +50,14 @@ def friction_sensitivities(
     """
     rtol = check_rtol(rtol)
     definition = check_definition(definition)
-    if check_method(method) == "atlas":
-        return None, _from_atlas(contact, definition)
-    groups = contact.groups
-    if groups.geometry in SENSITIVITIES:
-        return SENSITIVITIES[groups.geometry](contact, rtol, definition)
-    if groups.speed == 0:
-        solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
-        through = dict.fromkeys(part_names(contact), 0.0)
-    else:
-        point = solved_point(groups, rtol)
-        solution = finish(point, groups, contact, rtol)
-        assert point.state is not None
-        names = [name for name in LINE.exponents if getattr(contact, name, None)] + list(part_names(contact))
-        names = names if groups.model != BASE_MODEL else []
-        changes = {name: beside for name in names if (beside := models_at_both_sides(contact, name)) is not None}
-        state = point.state  # of a film that may re-form, with a cavity or without
-        along = [
-            (with_ending_of(state, below), with_ending_of(state, above), width) for below, above, width in changes.values()
-        ]
-        rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
-        slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
-        through = dict.fromkeys((name for name in names if name in PART_INPUTS), 0.0)
-        through |= zip(changes, slopes[3:].tolist(), strict=True)
-    friction = solution.friction(definition=definition)
-    return solution, _sensitivities(slopes[:3], friction.contact, friction.viscous, through)
+    solution, by_groups, through, direct = SENSITIVITIES[contact.groups.geometry](contact, rtol, definition)
+    total = float(solution.friction(definition=definition)) or math.nan
+    exponents = {name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}
+    exponents |= dict.fromkeys(part_names(contact), (0.0, 0.0, 0.0))
+    return solution, {
+        name: (float(by_groups @ np.array(powers)) + through.get(name, 0.0) + direct.get(name, 0.0)) / total
+        for name, powers in exponents.items()
+    }
 
 
 def sensitivities_if_known(
@@ -97,17 +70,40 @@ def sensitivities_if_known(
         return solve(contact, rtol=rtol), {}, str(refusal)
 
 
-def _of_ball(contact: Contact, rtol: float, definition: Definition) -> tuple[Any, dict[str, float]]:
-    from stribeck.curves.point_sensitivities import point_sensitivities
+def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Derivatives:
+    """Return the derivatives of the friction of a cylinder by those of its equations."""
+    groups = contact.groups
+    by_groups, through = np.zeros(3), dict[str, float]()
+    if groups.speed == 0:
+        solution = solve(contact, rtol=rtol)
+    else:
+        point = solved_point(groups, rtol)
+        solution, state = finish(point, groups, contact, rtol), point.state
+        assert state is not None
+        named = [name for name in LINE.exponents if getattr(contact, name, None)] if groups.model != BASE_MODEL else []
+        beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
+        changes = {name: each for name, each in beside.items() if each is not None}
+        # Of a film that may re-form, with a cavity or without.
+        along = [(with_ending_of(state, low), with_ending_of(state, high), width) for low, high, width in changes.values()]
+        rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
+        slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
+        by_groups, through = slopes[:3], dict(zip(changes, slopes[3:].tolist(), strict=True))
+    friction = solution.friction(definition=definition)
+    return solution, by_groups, through, {"boundary_friction": friction.asperities, "beta": friction.fluid}
 
-    return point_sensitivities(contact, rtol, definition)
+
+def _of_ball(contact: Contact, rtol: float, definition: Definition) -> Derivatives:
+    from stribeck.curves.point_sensitivities import ball_derivatives
+
+    return ball_derivatives(contact, rtol, definition)
 
 
-SENSITIVITIES = {"point": _of_ball}
-"""Sensitivities to the inputs, for geometries other than the line."""
+SENSITIVITIES: dict[str, Callable[[Contact, float, Definition], Derivatives]] = {"line": _of_cylinder, "point": _of_ball}
+"""The derivatives of the friction of a solved state, by geometry."""
 
 
-def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
+def atlas_sensitivities(contact: Contact, definition: Definition = "balanced") -> dict[str, float]:
+    """Return the sensitivities of the friction that the atlas holds; raise InputError outside."""
     groups, boundary_friction, rule = contact.groups, contact.boundary_friction, RULES[contact.groups.geometry]
     inputs = rule.of_contact(contact)
     slopes = atlas.friction_derivatives(groups, boundary_friction, contact.beta, definition, **rule.motion(contact))
@@ -123,17 +119,3 @@ def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
     exponents = contact.INPUTS.exponents
     found = {name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0)) / total for name in exponents}
     return {name: value for name, value in found.items() if name in dict(contact.inputs())}
-
-
-def _sensitivities(
-    slopes: Array, contact: float, viscous: float, through: Mapping[str, float] | None = None
-) -> dict[str, float]:
-    """Return the sensitivities from the derivatives of the friction and its two parts, and those through the model."""
-    direct = {"boundary_friction": contact, "beta": viscous}
-    total = (contact + viscous) or math.nan
-    model = through or {}
-    exponents = {**dict.fromkeys(model, (0.0, 0.0, 0.0)), **LINE.exponents}
-    return {
-        name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0) + model.get(name, 0.0)) / total
-        for name in (*LINE.exponents, *(name for name in model if name not in LINE.exponents))
-    }

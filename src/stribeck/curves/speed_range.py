@@ -17,10 +17,14 @@ from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
+from stribeck.numerics.events import first_zero
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, SolvedPath, follow
+from stribeck.solver.point.solution import solution_of
+from stribeck.solver.point.state import PointState
 from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
@@ -40,6 +44,9 @@ plateau."""
 
 BELOW, BEYOND = 10.0, 30.0
 """Factors by which the curve extends below the first state on the plateau, and beyond the start of the branch."""
+
+BALL_SPEEDS = (1e-8, 1e3)  # Speed groups between which a curve of a ball chooses its own range
+BALL_RTOL = 1e-3  # Tolerance of the states on which that is found
 
 LONGEST_EXTENSION = 2
 """Most extensions of a curve whose fast end is not hydrodynamic yet."""
@@ -87,22 +94,24 @@ def grown(
     on_interval: Callable[[float, float], object] | None = None,
 ) -> tuple[SolvedPath, float]:
     """Return a path from the hydrodynamic branch down to the boundary plateau, and its lower end, found on the way."""
+    share = ROW["fluid_load_share"]
 
-    def is_level(slope: float, row: Array) -> bool:
-        return abs(slope) * math.log(10) < PLATEAU and contact_part(row) > 1 - 10 * BRANCH
+    def height(slope: float, row: Array) -> float:
+        """Return how far a state is above the plateau, negative on it."""
+        return max(abs(slope) * math.log(10) - PLATEAU, 1 - 10 * BRANCH - contact_part(row))
 
-    def is_on_plateau(here: Expansion) -> bool:
-        return is_level(float(here.series[1, ROW["fluid_load_share"]]) if here.order else math.inf, here.series[0])
+    def of_state(here: Expansion) -> float:
+        return height(float(here.series[1, share]) if here.order else math.inf, here.series[0])
 
-    path = follow(problem, start, bottom, problem.tolerance, on_interval, until=is_on_plateau)
+    def at(s: float) -> float:
+        row = path.smooth(np.array([s + STEP * 1j]))[0]
+        return height(float(row[share].imag / STEP), row.real)
+
+    path = follow(problem, start, bottom, problem.tolerance, on_interval, until=lambda path: of_state(path.expansions[0]) < 0)
     if not path.outcome.ok:
         return path, float(path.coordinates[0]) if path.expansions else math.nan
-    below, above = float(path.coordinates[0]), next((e.coordinate for e in path.expansions if not is_on_plateau(e)), math.nan)
-    while above - below > LOCATED:
-        middle = 0.5 * (below + above)
-        row = path.smooth(np.array([middle + STEP * 1j]))[0]
-        is_below = is_level(float(row[ROW["fluid_load_share"]].imag / STEP), row.real)
-        below, above = (middle, above) if is_below else (below, middle)
+    event = first_zero(at, path.coordinates, np.array([of_state(each) for each in path.expansions]), LOCATED)
+    below = float(path.coordinates[0]) if event is None else event.place
     margin = math.log(BELOW)
     low = max(bottom, below - margin)
     if low < path.coordinates[0]:
@@ -138,6 +147,8 @@ def automatic_speed_range(
     They are those of a coarse curve with the fluid and the solid of the article: other parts change the load on the film by
     less than the margin.  Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
     """
+    if groups.geometry == "point":
+        return _speeds_of_ball(groups, boundary_friction, beta, definition)
     groups = replace(groups, model=BASE_MODEL)
     if groups.roughness == 0:
         return SMOOTH
@@ -149,3 +160,37 @@ def automatic_speed_range(
     if not path.expansions:
         raise no_range(path.outcome, groups)
     return math.exp(lowest), math.exp(float(path.coordinates[-1]))
+
+
+def _speeds_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
+    """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch.
+
+    They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
+    roughness, or from the first below it that is solved, to the last that is; smooth surfaces have no plateau, and their
+    curve covers eight decades up to speed 10.
+    """
+    kappa = float(groups.relative_roughness)
+    if kappa == 0:
+        return BALL_SPEEDS[0], 10.0
+    neighbours = Neighbours(BALL_RTOL)
+    highest, low, share = BALL_SPEEDS[1], min(BALL_SPEEDS[1], max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
+    high = low
+
+    def contact_part(state: PointState) -> float:
+        return solution_of(state, None).friction(boundary_friction, beta, definition).contact_share
+
+    while low > BALL_SPEEDS[0]:
+        state = neighbours.at(replace(groups, speed=low))
+        if not state.outcome.ok:
+            if share is not None:  # slower ones are not solved
+                low *= 10
+                break
+            highest = low = high = low / 10
+            continue
+        if contact_part(state) < BRANCH:
+            high = low
+        found = float(state.values["fluid_load_share"])
+        if share is not None and abs(share - found) < PLATEAU and state.values["contact_load_share"] > 0.1:
+            break
+        share, low = found, low / 10
+    return max(low, BALL_SPEEDS[0]), min(10 * high, highest)

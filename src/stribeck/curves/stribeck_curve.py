@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, overload
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,61 +15,28 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import refuse_fixed_memory, with_parts
-from stribeck.curves.atlas_curve import AtlasCurve
-from stribeck.curves.base_curve import END_ROUNDING
+from stribeck.curves.atlas_source import AtlasSource
+from stribeck.curves.ball_source import ball_source
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
-from stribeck.curves.function import Progress
+from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.landmarks import Landmark
+from stribeck.curves.line_source import LineSource
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
+from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.reforming_line import line_problem
-from stribeck.solver.path.path import follow
+from stribeck.solver.path.line_path import LineProblem
+from stribeck.solver.path.path import Expansion, SolvedPath, follow
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, finish, with_law
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
-
-
-@overload
-def stribeck_curve(
-    problem: Contact | Groups | None = ...,
-    *,
-    speed: ArrayLike | Sequence[str] | None = ...,
-    load: ArrayLike | Sequence[str] | None = ...,
-    roughness: ArrayLike | Sequence[str] | None = ...,
-    points: int = ...,
-    rtol: float = ...,
-    boundary_friction: float | None = ...,
-    beta: float | None = ...,
-    definition: Definition = ...,
-    on_point: Callable[[int, int], object] | None = ...,
-    law: str | AsperityLaw | None = ...,
-    method: Literal["solver"] = ...,
-    **parts: Any,
-) -> StribeckCurve: ...
-
-
-@overload
-def stribeck_curve(
-    problem: Contact | Groups | None = ...,
-    *,
-    speed: ArrayLike | Sequence[str] | None = ...,
-    load: ArrayLike | Sequence[str] | None = ...,
-    roughness: ArrayLike | Sequence[str] | None = ...,
-    points: int = ...,
-    rtol: float = ...,
-    boundary_friction: float | None = ...,
-    beta: float | None = ...,
-    definition: Definition = ...,
-    on_point: Callable[[int, int], object] | None = ...,
-    law: str | AsperityLaw | None = ...,
-    method: Literal["atlas"],
-    **parts: Any,
-) -> AtlasCurve: ...
+__all__ = ["Landmark", "StribeckCurve", "begun", "stribeck_curve"]
 
 
 @answers_typos
@@ -89,7 +56,7 @@ def stribeck_curve(
     law: str | AsperityLaw | None = None,
     method: Method = "solver",
     **parts: Any,
-) -> StribeckCurve | AtlasCurve:
+) -> StribeckCurve:
     """Solve the contact along speed, load or roughness.
 
     Parameters
@@ -107,7 +74,7 @@ def stribeck_curve(
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
     definition : {"balanced", "published"}
-        Definition of the viscous friction, see :meth:`Solution.friction`.
+        Definition of the viscous friction, see :meth:`stribeck.results.Solution.friction`.
     on_point : callable, optional
         ``on_point(done, points)`` is called after each point, for progress.
     law : str or AsperityLaw, optional
@@ -124,8 +91,8 @@ def stribeck_curve(
     Returns
     -------
     StribeckCurve
-        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED. From the atlas an
-        :class:`stribeck.curves.atlas_curve.AtlasCurve`, with the same values, friction, observables, minimum and transitions.
+        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED.  Off the atlas it has no
+        solutions.
 
     Raises
     ------
@@ -150,29 +117,30 @@ def stribeck_curve(
         refuse_fixed_memory(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     check_points(points)
+    given_friction: Coefficients = boundary_friction, beta, definition
     coordinate = Coordinate(over, base)
-    grows = ends is None and check_method(method) == "solver" and coordinate.geometry not in CURVES
-    grows = grows and bool(coordinate.groups_at(0.0).roughness > 0)
+    is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
+    grows = ends is None and is_solved and is_line and bool(coordinate.groups_at(0.0).roughness > 0)
     if ends is None:
-        values = _automatic(coordinate, boundary_friction, beta, definition, points, grows)
+        values = _automatic(coordinate, given_friction, points, grows)
     elif len(ends) == 2:
         values = np.geomspace(ends[0], ends[1], points)
     else:
         values = ends
     check_inside(coordinate, values)
-    if check_method(method) == "atlas":
-        return AtlasCurve(over, values, coordinate.groups_along, contact, boundary_friction, beta, definition)
-    if coordinate.geometry in CURVES:
-        trace, _ = CURVES[coordinate.geometry]()
-        settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
-        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
-        return found_curve
+    if not is_solved:
+        source = AtlasSource(coordinate, *values[[0, -1]].tolist())
+        return StribeckCurve(values, len(values), FrictionPath(source, *given_friction))
+    if not is_line:
+        of_ball, reached, read = ball_source(coordinate, values, rtol, beta, on_point)
+        curve = StribeckCurve(reached, len(values), FrictionPath(of_ball, *given_friction))
+        vars(curve)["_points"] = read
+        return curve
     places = np.log(values)
     progress = Progress(places, on_point)
-    direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
-    line = line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
+    line = _line(coordinate, values, rtol)
     if grows:
-        contact_part = part_of_contact(boundary_friction, beta, definition)
+        contact_part = part_of_contact(*given_friction)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)
         if path.expansions:
             done = progress.done
@@ -188,71 +156,56 @@ def stribeck_curve(
     if not done:
         if path.outcome is Outcome.INTERRUPTED and grows:
             raise KeyboardInterrupt
-        groups = coordinate.groups_at(float(places[-1]))
         if grows:
-            raise no_range(path.outcome, groups)
-        if line.failure is not None:
-            finish(line.failure, groups, contact, rtol)
-        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-    return StribeckCurve(
-        over=over,
-        values=values[len(values) - done :],
-        contact=contact,
-        boundary_friction=boundary_friction,
-        beta=beta,
-        definition=definition,
-        rtol=rtol,
-        outcome=path.outcome,
-        requested=points if grows else len(values),
-        _path=coordinate,
-        _function=path,
-    )
+            raise no_range(path.outcome, coordinate.groups_at(float(places[-1])))
+        _refuse(line, path, coordinate.groups_at(float(places[-1])), contact)
+    along = FrictionPath(LineSource(coordinate, rtol, path), *given_friction)
+    return StribeckCurve(values[len(values) - done :], points if grows else len(values), along)
+
+
+def _line(coordinate: Coordinate, values: Array, rtol: float) -> LineProblem:
+    """Return the states of a line along a coordinate, between values of it."""
+    direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
+    return line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
+
+
+def _refuse(line: LineProblem, path: SolvedPath, groups: Groups, contact: Contact | None) -> NoReturn:
+    """Raise the error of a path that has no state where it begins."""
+    if line.failure is not None:
+        finish(line.failure, groups, contact, line.tolerance)
+    raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
 
 
 @one_blas_thread
-def continued(
-    curve: StribeckCurve,
-    end: float,
-    points: int,
-    on_point: Callable[[int, int], object] | None = None,
-    span: float = math.inf,
-) -> StribeckCurve:
-    """Continue a curve from its nearer end towards ``end``, without a cold start."""
-
-    def report(low: float, high: float) -> None:
-        if on_point is not None:
-            on_point(0, points)
-
-    path = curve._function.continued(math.log(end), curve.rtol, report, math.log(span))
-    begin = math.exp(path.coordinates[0 if end > curve.values[0] else -1])
-    low, high = np.exp(path.coordinates[[0, -1]]) if path.outcome.ok else sorted((begin, end))
-    values = np.geomspace(low, high, points)
-    reached = np.exp(path.coordinates[[0, -1]]) * (1 - END_ROUNDING, 1 + END_ROUNDING)
-    inside = values[(values >= reached[0]) & (values <= reached[1])]
-    return curve._along(path, inside, points)
-
-
-def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float, float]]]:
-    from stribeck.curves.point_curve import point_curve, point_speeds
-
-    return point_curve, point_speeds
+def begun(
+    contact: Contact,
+    over: Over,
+    ends: tuple[float, float],
+    rtol: float,
+    definition: Definition,
+    state: RefinedState | None = None,
+) -> FrictionPath:
+    """Return the path of a contact's own state alone, which may be continued to ``ends``; of a cylinder it may be known."""
+    coordinate, value = Coordinate(over, contact), float(getattr(contact, over))
+    given: Coefficients = contact.boundary_friction, contact.beta, definition
+    if coordinate.geometry != "line":
+        return FrictionPath(ball_source(coordinate, np.array([value]), rtol, contact.beta, ends=np.array(ends))[0], *given)
+    line, here = _line(coordinate, np.array(ends), rtol), math.log(value)
+    known = None if state is None or contact.groups.model.cavitation is not Cavitation.NONE else line.begin(here, state)
+    path = follow(line, known if isinstance(known, Expansion) else here, here, rtol)
+    if not path.expansions:
+        _refuse(line, path, coordinate.groups_at(here), contact)
+    return FrictionPath(LineSource(coordinate, rtol, path), *given)
 
 
-CURVES = {"point": _of_ball}
-"""How curves are traced, and where they begin and end, for geometries other than the line."""
-
-
-def _automatic(
-    coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int, grows: bool
-) -> Array:
+def _automatic(coordinate: Coordinate, given: Coefficients, points: int, grows: bool) -> Array:
     """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm.
 
     If the curve ``grows`` until it finds its ends, the first speed is the lowest that it may reach.
     """
     groups = coordinate.groups_at(0.0)
     if grows:
-        low, high = SPEEDS[0], fastest(groups, boundary_friction, beta)
+        low, high = SPEEDS[0], fastest(groups, *given[:2])
     else:
-        ends = CURVES[coordinate.geometry]()[1] if coordinate.geometry in CURVES else automatic_speed_range
-        low, high = ends(groups, boundary_friction, beta, definition)
+        low, high = automatic_speed_range(groups, *given)
     return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

@@ -3,55 +3,38 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import NamedTuple
 
 from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
-from stribeck.checks.subject import Subject
-from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import model_words
 from stribeck.contacts.part_inputs import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.sensitivities import sensitivities_if_known
-from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margin_limits import scanned_rtol
-from stribeck.regimes.margins import regime_margins
+from stribeck.regimes.levers import MAX_FACTOR, Lever, cheapest_levers
+from stribeck.regimes.overview import Overview, overview_of
 from stribeck.regimes.sentences import regime_sentence, ways_to
+from stribeck.solver.numbers import main_rows
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import solve
-from stribeck.solver.solve_error import SolveError
-from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["Content", "InputLine", "Lever", "content_of"]
-
-CURVE_POINTS = 41  # Points of the curve on the page
-
-LEVER_FRICTION_RATIO = 0.8  # Friction that a lever should reach, relative to the present one
-
-MAX_LEVER_FACTOR = 100.0  # Largest change of an input by a lever
+__all__ = ["Content", "InputLine", "Section", "content_of"]
 
 # What a report says of its certainty if no input has an error.
 NO_ERRORS_TEXT = (
     'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.'
 )
 
-# Inputs that a designer may change
-DESIGN_INPUTS = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "boundary_friction")
+NO_LEVERS_TEXT = f"No single input lowers friction by a fifth within a factor of {MAX_FACTOR:g}."
 
 
-@dataclass(frozen=True)
-class InputLine:
+class InputLine(NamedTuple):
     """One input: label, value, error, and source as stated in the file."""
 
     label: str
@@ -60,26 +43,25 @@ class InputLine:
     source: str
 
 
-@dataclass(frozen=True)
-class Lever:
-    """One input that lowers friction: its new value, and the friction solved there."""
+class Section(NamedTuple):
+    """A part of the page: a heading, a table whose first row names its columns, and paragraphs below."""
 
-    label: str
-    change: str
-    friction: str
+    heading: str
+    table: Sequence[Sequence[str]] = ()
+    paragraphs: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class Content:
     """Content of a report."""
 
-    title: str  # Headline, and whether the model applies
-    headline: str  # Headline, and whether the model applies
-    inputs: tuple[InputLine, ...]  # The inputs
+    title: str
+    headline: str  # Whether the model applies
+    inputs: tuple[InputLine, ...]
     conversions: tuple[str, ...]  # Conversions of data-sheet inputs
-    checks: Checks  # The checks
+    checks: Checks
     sentences: tuple[str, ...]  # Regime, friction and load share
-    films: tuple[tuple[str, str, str], ...]
+    films: tuple[tuple[str, str, str], ...]  # Label, value and 95 % interval of friction, films and transitions
     uncertainty: Uncertainty | None  # The propagated errors of the inputs
     margins: tuple[str, ...]  # Margins to the next regimes
     levers: tuple[Lever, ...]  # The two inputs that lower friction by a fifth with the smallest change
@@ -89,60 +71,67 @@ class Content:
     solution: Solution  # The state
     data: Measurements | None = None  # Measured friction
 
+    @property
+    def sections(self) -> list[Section]:
+        """The parts of the page below its picture."""
+        interval = slice(3 if self.uncertainty else 2)
+        films = [("Quantity", "Value", "95 %"), *self.films]
+        levers = [("To lower friction by about a fifth", "Change", "Friction solved there")]
+        levers += [(lever.label, *lever.texts) for lever in self.levers]
+        checks = [("Check", "Value", "Fine", "Verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
+        said = [f"{each.word}: {each.sentence}" for each in self.checks.said]
+        read = f"{len(self.data)} rows of {self.data.path or 'measured friction'}, drawn as read." if self.data else ""
+        found = [
+            Section("Friction, films and transitions", [row[interval] for row in films]),
+            Section("Margins to the next regimes", (), self.margins or ["There is no other regime in reach."]),
+            Section("The two cheapest levers", levers if self.levers else (), () if self.levers else [NO_LEVERS_TEXT]),
+            Section(
+                "Inputs",
+                [("Input", "Value", "Error", "Source, from the case file"), *self.inputs],
+                [f"Converted: {each}" for each in self.conversions],
+            ),
+            Section("Does the model apply?", checks, said + [f"Not checked: {each}" for each in self.checks.unchecked]),
+            Section("Data", (), [read, *self.data.notes] if self.data else ()),
+            Section("Notes", (), self.notes),
+        ]
+        return [each for each in found if each.table or each.paragraphs]
+
 
 def content_of(
     case: Case, data: str | Path | Measurements | None = None, on_step: Callable[[int, int], object] | None = None
 ) -> Content:
     """Solve the content of a report."""
-    step = on_step or (lambda done, total: None)
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
-    contact, definition = case.contact, case.definition
-    solution, slopes, _ = sensitivities_if_known(contact, rtol=case.rtol, definition=definition)
-    curve = stribeck_curve(contact, points=CURVE_POINTS, rtol=scanned_rtol(contact, case.rtol), definition=definition)
-    step(1, 5)
-    checks = checks_of(Subject(contact, case.facts, definition, solution, curve))
-    step(2, 5)
-    found = propagate(contact, case.errors, definition=definition) if case.errors else None
-    step(3, 5)
-    margins = with_intervals(
-        contact, regime_margins(contact, rtol=case.rtol, definition=definition, curve=curve), case.errors, definition
-    )
-    step(4, 5)
-    levers = _levers(case, solution, slopes)
-    step(5, 5)
+    found = overview_of(case, on_step, is_whole=True)
+    solution, checks, errors, friction = found.solution, found.checks, found.errors, found.friction
+    assert checks is not None
+    certainty = [NO_ERRORS_TEXT] if errors is None else [errors.probability_sentence, *errors.sources]
     return Content(
         title=case.title or case.path.name,
         headline=checks.headline,
         inputs=_inputs(case),
         conversions=case.conversions,
         checks=checks,
-        sentences=_sentences(case, solution, curve, found),
-        films=_films(solution, curve, found),
-        uncertainty=found,
-        margins=tuple(ways_to(margins)),
-        levers=levers,
-        notes=tuple(note for note in (*solution.notes, *margins.notes) if not _is_in_checks(note, checks)),
+        sentences=(regime_sentence(solution, friction), *certainty),
+        films=_films(found),
+        uncertainty=errors,
+        margins=tuple(ways_to(found.margins)),
+        levers=cheapest_levers(case.contact, friction.total, found.sensitivities, case.definition, case.rtol),
+        notes=tuple(note for note in dict.fromkeys(found.notes) if not checks.covers(note, doubts=True)),
         versions=_versions(case),
-        curve=curve,
+        curve=found.curve,
         solution=solution,
         data=measured,
     )
 
 
-def _is_in_checks(note: str, checks: Checks) -> bool:
-    """Return whether a check contains a note."""
-    return checks.covers(note) or any(note in each.sentence for each in checks)
-
-
 def _inputs(case: Case) -> tuple[InputLine, ...]:
     sources = _sources(case.path)
-    through = {"modulus": ("youngs_modulus", "shore_a", "shore_d"), "speed": ("entrainment_speed", "rotational_speed")}
-    through |= {"roughness": ("ra", "rq", "h_rms"), "viscosity": ("kinematic_viscosity",), "load": ("force",)}
     lines = []
     for name, value in case.contact.inputs():
-        row = case.contact.INPUTS.quantities[name]
-        names = (name, *through.get(name, ()))
-        error = next((case.errors[each] for each in names if each in case.errors), None)
+        table = case.contact.INPUTS
+        row, error = table.kept[name], case.errors.get(name)
+        names = (name, *(each for each, of in (table.stands_for | {"h_rms": "roughness"}).items() if of == name))
         source = next((sources[each] for each in names if each in sources), "")
         shown = "" if error is None else f"± {format_percent(error)}"
         lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
@@ -172,66 +161,11 @@ def _sources(path: Path) -> dict[str, str]:
     return {name: text for name, text in found.items() if text}
 
 
-def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[str, ...]:
-    first = regime_sentence(solution, case.definition)
-    if found is None:
-        return first, NO_ERRORS_TEXT
-    return (first, f"Probability of each regime: {found.probabilities}.", *found.sources)
-
-
-def _films(solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[tuple[str, str, str], ...]:
-    if found is not None:
-        return tuple((each.label, *each.texts) for each in found.spreads)
-    assert solution.contact is not None
-    height = solution.contact.hertz.indentation
-    marks = tuple((str(mark.name), format_si(mark.value, "speed"), "") for mark in curve.transitions)
-    return (
-        ("central film", format_si(solution.central_gap * height, "length"), ""),
-        ("minimum film", format_si(solution.minimum_gap * height, "length"), ""),
-        ("Lambda (minimum film over h_rms)", f"{solution.lambda_ratio:.3g}", ""),
-        *marks,
-    )
-
-
-def _levers(case: Case, solution: Solution, slopes: dict[str, float]) -> tuple[Lever, ...]:
-    """Return the two inputs that lower friction by a fifth with the smallest change, with the friction that is then solved."""
-    contact = case.contact
-    before = solution.friction(definition=case.definition).total
-    factors = {
-        name: float(np.exp(np.log(LEVER_FRICTION_RATIO) / slopes[name]))
-        for name in DESIGN_INPUTS
-        if abs(slopes.get(name, 0.0)) > 0.01
-    }
-    nearest = sorted(factors, key=lambda name: abs(np.log(factors[name])))
-    found: list[Lever] = []
-    for name in nearest:
-        factor = factors[name]
-        # Speed and viscosity enter as a product: two names of one lever.
-        twin = {"speed": "viscosity", "viscosity": "speed"}.get(name)
-        if (
-            len(found) == 2
-            or not 1 / MAX_LEVER_FACTOR < factor < MAX_LEVER_FACTOR
-            or any(twin == each.label for each in found)
-        ):
-            continue
-        row = contact.INPUTS.quantities[name]
-        value = getattr(contact, name) * factor
-        changes: dict[str, Any] = {name: value}
-        if name == "roughness" and contact.law is not None and contact.law.name == "persson":
-            changes["beta"] = contact.beta * factor
-        try:
-            after = solve(contact.replace(**changes), rtol=case.rtol).friction(definition=case.definition).total
-        except SolveError:
-            continue
-        factor_text = f"x {factor:.3g}" if factor > 1 else f"/ {1 / factor:.3g}"
-        found.append(
-            Lever(
-                row.label,
-                f"{factor_text} (to {format_si(value, row.dimension)})",
-                f"{after:.3g} ({100 * (after / before - 1):+.0f} %)",
-            )
-        )
-    return tuple(found)
+def _films(found: Overview) -> tuple[tuple[str, str, str], ...]:
+    if found.errors is not None:
+        return tuple((each.label, *each.texts) for each in found.errors.spreads)
+    numbers = ((each.label, each.texts[0], "") for each in main_rows(found.solution, definition=found.curve.definition))
+    return (*numbers, *((str(mark.name), format_si(mark.value, "speed"), "") for mark in found.curve.transitions))
 
 
 def _versions(case: Case) -> str:

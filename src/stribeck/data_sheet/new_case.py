@@ -7,16 +7,14 @@ import math
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLUID_KINDS
-from stribeck.contacts.geometries import check_geometry
+from stribeck.contacts.geometries import INPUT_TABLES, check_geometry
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.part_inputs import KINDS
 from stribeck.fluids.presets import PRESETS
-from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.schema import Input, numbers_of
+from stribeck.quantities.schema import Input, needed_of, numbers_of
 from stribeck.quantities.units import DIMENSIONS
 
 __all__ = ["new_case"]
@@ -100,23 +98,16 @@ def new_case(geometry: Geometry = "line") -> str:
         "[contact]",
         *([f'geometry = "{geometry}"', ""] if geometry != "line" else []),
     ]
-    for row in table.rows:
-        if row.derived:
-            continue
+    for row in table.kept.values():
         left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
         lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {_value(row)}"]
-        for other in table.alternatives:
-            if other.of == row.name:
-                given = [table.quantities[name] for name in other.inputs]
-                lines.append("# Or instead: " + "; ".join(f"{each.name} = {_value(each)}" for each in given))
-                if other.other:
-                    second = "; ".join(f"{name} = {_value(table.quantities[name])}" for name in other.other)
-                    lines.append(f"#   and, if the other body is not rigid, {second}")
-        wanted = {row.name, *(name for other in table.alternatives if other.of == row.name for name in other.inputs)}
-        for conversion in CONVERSIONS:
-            if conversion.of in wanted and conversion.geometry in ("", geometry):
-                shown = "; ".join(f"{each.name} = {_quoted(each.typical, each.dimension)}" for each in conversion.inputs)
-                lines.append(f"# Or instead: {shown}   ({conversion.formula})")
+        for form in reversed(table.forms):
+            if table.stands_for.get(form.inputs[0].name) != row.name or form.joins:
+                continue
+            formula = f"   ({form.formula})" if form.formula else ""
+            lines.append(f"# Or instead: {_values(form.inputs)}{formula}")
+            if form.second:
+                lines.append(f"#   and, if the other body is not rigid, {_values(form.second)}")
         if row.name == "radius":
             lines.append(f"# radius_2 = {_value(table.quantities['radius_2'])}   # if the other body is curved too")
         lines.append("")
@@ -163,7 +154,7 @@ def _parts() -> str:
 
 def _needed(law: type) -> str:
     """Return the numbers that a law needs, with examples."""
-    return "; ".join(f"{row.name} = {row.example}" for row in numbers_of(law).values() if row.default is None)
+    return "; ".join(f"{key} = {numbers_of(law)[key].example}" for key in needed_of(law))
 
 
 def _about(row: Input) -> list[str]:
@@ -171,6 +162,10 @@ def _about(row: Input) -> list[str]:
     unit = DIMENSIONS[row.dimension].unit or "no unit"
     usual = f", usually {format_si(low, row.dimension)} to {format_si(high, row.dimension)}" if high < math.inf else ""
     return [f"# {row.label[0].upper()}{row.label[1:]} [{unit}]{usual}. Here: {row.source}."]
+
+
+def _values(rows: tuple[Input, ...]) -> str:
+    return "; ".join(f"{row.name} = {_value(row)}" for row in rows)
 
 
 def _value(row: Input) -> str:

@@ -6,14 +6,15 @@ import io
 import os
 import re
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
 
 from stribeck.cases.case import Case
 from stribeck.cases.reading import load_case
+from stribeck.checks.check import VERDICTS
 from stribeck.data_sheet.content import Content, content_of
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, path_of
+from stribeck.files.writing import PathLike, atomic_write, check_writable, need_extra, path_of
 from stribeck.fits.measurements import Measurements
 from stribeck.plot.curve import draw_report
 from stribeck.quantities.keywords import answers_typos
@@ -67,7 +68,8 @@ def write_report(
         If matplotlib or jinja2 is not installed.
     """
     target = check_writable(path, REPORT_ENDINGS, force=force)
-    _check_libraries(target.suffix.lower())
+    for library in ("matplotlib", *(["jinja2"] if target.suffix.lower() == ".html" else [])):
+        need_extra("a report", "report", library)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file or a Case.")
@@ -89,7 +91,8 @@ def page_of(content: Content) -> str:
 
     template = files("stribeck.data_sheet").joinpath("page.html").read_text(encoding="utf-8")
     page = Environment(autoescape=True, trim_blocks=True).from_string(template)
-    return page.render(c=content, picture=Markup(_svg(content)))  # noqa: S704 - our own drawing
+    picture = Markup(_svg(content))  # noqa: S704 - our own drawing
+    return page.render(c=content, picture=picture, verdicts=VERDICTS)
 
 
 def _svg(content: Content) -> str:
@@ -123,55 +126,28 @@ def _write_pdf(content: Content, path: Path) -> None:
 
 def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     """Yield the lines of the PDF, and whether each is a heading."""
-
-    def wrapped(text: str, indent: str = "") -> Iterator[tuple[str, bool]]:
-        for line in textwrap.wrap(text, PAGE_COLUMNS, subsequent_indent=indent) or [""]:
-            yield line, False
-
-    def heading(text: str) -> Iterator[tuple[str, bool]]:
-        yield "", False
-        yield text, True
-
     for line in textwrap.wrap(content.headline, PAGE_COLUMNS):
         yield line, True
-    if content.checks.first_line:
-        yield from wrapped(content.checks.first_line)
-    yield from heading(content.title)
-    for each in content.sentences:
-        yield from wrapped(each)
-    yield from heading("Friction, films and transitions")
-    for name, value, interval in content.films:
-        yield f"{name:<52}{value:<14}{interval}", False
-    yield from heading("Margins to the next regimes")
-    for each in content.margins:
-        yield from wrapped(each)
-    yield from heading("The two cheapest levers: to lower friction by about a fifth")
-    for lever in content.levers:
-        yield f"{lever.label:<30}{lever.change:<34}friction {lever.friction}", False
-    yield from heading("Inputs")
-    for given in content.inputs:
-        yield from wrapped(f"{given.label:<28}{given.value:<14}{given.error:<9}{given.source}", " " * 51)
-    for each in content.conversions:
-        yield from wrapped(f"Converted: {each}")
-    yield from heading("Does the model apply?")
-    for check in content.checks:
-        value, limit = check.texts
-        yield f"{check.name:<32}{value:<18}fine {limit:<18}{check.verdict}", False
-    for check in content.checks.said:
-        yield from wrapped(f"{check.word}: {check.sentence}")
-    for each in content.checks.unchecked:
-        yield from wrapped(f"Not checked: {each}")
-    if content.notes:
-        yield from heading("Notes")
-        for each in content.notes:
-            yield from wrapped(each)
+    yield from _wrapped(content.checks.first_line)
+    yield from _part(content.title, (), content.sentences)
+    for section in content.sections:
+        yield from _part(*section)
     yield "", False
-    yield from wrapped(content.versions)
+    yield from _wrapped(content.versions)
 
 
-def _check_libraries(ending: str) -> None:
-    from importlib.util import find_spec
+def _part(heading: str, table: Sequence[Sequence[str]], paragraphs: Sequence[str]) -> Iterator[tuple[str, bool]]:
+    """Yield the lines of a part of the page; the last column of a table is wrapped."""
+    yield "", False
+    yield heading, True
+    widths = [max(map(len, column)) + 2 for column in [*zip(*table, strict=True)][:-1]]
+    for *cells, last in table:
+        before = "".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+        yield from _wrapped(before + last, " " * sum(widths))
+    for each in paragraphs:
+        yield from _wrapped(each)
 
-    for library in ("matplotlib", *(["jinja2"] if ending == ".html" else [])):
-        if find_spec(library) is None:
-            raise MissingExtraError("a report", "report", library)
+
+def _wrapped(text: str, indent: str = "") -> Iterator[tuple[str, bool]]:
+    for line in textwrap.wrap(text, PAGE_COLUMNS, subsequent_indent=indent):
+        yield line, False

@@ -21,23 +21,22 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.equations.drag import Nodal, viscous_friction
+from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.enriched import FineOperators
-from stribeck.equations.film import gradient_in_film, slopes_in_film
+from stribeck.equations.film import gradient_in_film
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import (
     DRAG_ROWS,
     ROW,
     Observables,
     drag_scales,
-    friction_integrals,
-    friction_scale,
     gradients,
 )
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.trace import Matrix, Trace
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
 
@@ -72,13 +71,12 @@ GAP_FLOOR = 1e-3  # At speed zero the gap crosses zero too: its error is relativ
 
 SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
 GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
-FRICTION_ROWS = [ROW["viscous_published"], ROW["viscous_balanced"]]
 POSITION_ROWS = [ROW[row.name] for row in RUPTURE_ROWS]
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Estimated errors of the observables, each an array over NAMES, for other films than the article's over ALL_NAMES."""
+    """Estimated errors of the observables, each an array over ALL_NAMES, nan where there are none."""
 
     discretisation: Array = field(repr=False)
     interpolation: Array = field(repr=False)
@@ -93,7 +91,7 @@ class ErrorEstimate:
 
     @property
     def relative(self) -> Array:
-        """Relative errors of the observables in the order of :data:`observables.NAMES`."""
+        """Relative errors of the observables."""
         # Rounding makes nodal gaps uneven, and the polynomials between them measure just that: the larger of both counts, not
         # the sum.
         return np.asarray((self.discretisation + np.maximum(self.interpolation, self.rounding)) / self.scales)
@@ -131,13 +129,14 @@ class Perturbations:
     """Changes of unknowns and friction by defect and rounding: the possible errors of states."""
 
     unknowns: Array = field(repr=False)  # The defect first, then the patterns of rounding: (1 + SIGN_PATTERNS, rows, unknowns)
-    friction: Array = field(repr=False)  # Of the friction integrals on the finer nodes: (2 for the base model, else 3, rows)
+    friction: Array = field(repr=False)  # Of the friction integrals on the finer nodes: (3, rows)
 
 
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
     """Return the changes of states by defect, quadrature and rounding; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
-    coarse, mesh, film, far_gap = fine.coarse, fine.mesh, states.equations.film, states.equations.far_gap(states.y)
+    coarse, mesh, film, u = fine.coarse, fine.mesh, states.equations.film, equations.fields(y)
+    far_gap = equations.far_gap(u)
     integral, d = fine.integral(op.reformation), equations.cavity_stretch(y)
     h, z0, h_star = y[:, at.gap], y[:, at.offset], y[:, at.flux_gap]
     balance, net = at.offset.start, at.flux_gap.start
@@ -158,8 +157,9 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         elif not is_rough(film):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
-            conducted = states.slopes.by_flux
-            finer_conducted = slopes_in_film(film, integral, gap, fluid, h_star).by_flux
+            by_flux = Trace.number("flux_gap", h_star)
+            conducted = gradient_in_film(film, op.integral, h, known, by_flux).columns["flux_gap"]
+            finer_conducted = gradient_in_film(film, integral, gap, fluid, by_flux).columns["flux_gap"]
             missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
             smooth = coarse.to_order(missing, mesh.order) * finer_conducted
         slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
@@ -176,7 +176,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     else:  # what the nodes hold of it is a row of its own; through infinity it may have a kink
         unresolved = fluid + integrated - coarse.to_order(lowered * coarse.stretch, mesh.order) / mesh.stretch
         fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
-    pressure = equations.law.pressure(gap) + unresolved
+    contact = equations.law.pressure(gap)
+    pressure = contact + unresolved
     deflection = fine.deflection(pressure, op, d)
     residual = np.empty((1 + SIGN_PATTERNS, *y.shape))
     parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
@@ -202,14 +203,11 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    known_friction = observed[:, FRICTION_ROWS if op.is_base_model else DRAG_ROWS].T
-    if not equations.is_sliding:
-        friction = known_friction
-    elif op.is_base_model:
-        integrals = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
-        friction = np.ravel(friction_scale(states.load, equations.speed)) * integrals
-    else:
-        friction = viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights, clip))
+    known_friction = observed[:, DRAG_ROWS].T
+    friction = known_friction
+    if equations.is_sliding:
+        film_on_mesh = FilmOnMesh(integral, gap, fluid, contact, Matrix(weights[None]), clip)
+        friction = np.stack([each[:, 0] for each in viscous_friction(equations, u, states.load, film_on_mesh)])
     return Perturbations(unknowns, np.abs(friction - known_friction))
 
 
@@ -237,7 +235,9 @@ def _of_ends(
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
     of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
     h = y[:, at.gap][:, left]
-    of_exit = equations.slopes_of_ends(y, states.slopes)[1].by_gap
+    pressure = y[:, at.pressure] if equations.film.uses_pressure else None
+    by_gap = Trace.number("gap", y[:, at.gap])
+    of_exit = gradient_in_film(equations.ending, op.integral, by_gap, pressure, y[:, at.flux_gap]).columns["gap"]
     steep = np.abs(of_exit[:, left.stop - 1] * h[:, -1])
     missed = interpolation_error(np.log(h / coarse.far[left]))
     at_edge = at_end[:, of_fine] @ reference(mesh.order).left_end[::-1]
@@ -289,10 +289,9 @@ def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
 def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
     """Return the estimated errors of the observables ``observed``."""
     # At speed zero the values may be those of the same state under another load, see stribeck.solver.at_rest.
-    values = np.array([one.array(states.equations.operators.is_base_model) for one in observed])
+    values = np.array([one.array() for one in observed])
     changed = perturbations(states, values, fine)
-    needed = not (states.equations.operators.is_base_model or states.equations.film.uses_pressure)
-    rows = gradients(states.equations, states.y, states.load, states.slopes if needed else None)
+    rows = gradients(states.equations, states.y, states.load)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
     centres, stretch = np.zeros(len(values)), np.ones(len(values))
@@ -300,13 +299,12 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
         d, exits = states.equations.cavity_stretch(states.y), states.y[:, states.equations.layout.exit.start]
         stretch = stretch if d is None else d[:, 0]
         centres, positions = -exits / stretch, (positions - exits) / stretch
-    effects[:, FRICTION_ROWS if op.is_base_model else DRAG_ROWS, 0] += changed.friction.T
+    effects[:, DRAG_ROWS, 0] += changed.friction.T
     interpolation = np.zeros_like(values)
     interpolation[:, GAP_ROWS] = interpolation_errors(states, positions, centres).T
     scales = np.abs(values)
-    if not op.is_base_model:
-        scales[:, POSITION_ROWS] = np.maximum(1.0, scales[:, POSITION_ROWS])
-        scales[:, DRAG_ROWS] = drag_scales(values)
+    scales[:, POSITION_ROWS] = np.maximum(1.0, scales[:, POSITION_ROWS])
+    scales[:, DRAG_ROWS] = drag_scales(values)
     scales[:, SHARE_ROWS] = 1.0
     scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
     if not states.equations.is_sliding:
@@ -321,10 +319,9 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     discretisation = DEFECT_SAFETY * effects[:, :, 0]
     if op.has_exit:
         places = places + (discretisation + rounding)[:, ROW["exit_position"]]
-    if not op.is_base_model:
-        missing = np.isnan(values)
-        missing[:, : len(NAMES)] = False
-        for part in (discretisation, interpolation, rounding):
-            part[missing] = math.nan
+    missing = np.isnan(values)
+    missing[:, : len(NAMES)] = False
+    for part in (discretisation, interpolation, rounding):
+        part[missing] = math.nan
     parts = (discretisation, interpolation, rounding, scales, places.tolist())
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

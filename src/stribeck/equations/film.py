@@ -1,46 +1,65 @@
-"""The film at the nodes of a mesh: its pressure gradient where it is full, zero in the cavity."""
+"""The film at the nodes of a mesh: functions of the gap where it is full, zero in the cavity."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
 import numpy as np
 
-from stribeck._types import Array, Indices, Numbers
-from stribeck.fluids.fluid import Film, Slopes
+from stribeck._types import Flags, Indices
+from stribeck.fluids.fluid import Film
+from stribeck.numerics.jets import Jet
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.trace import Trace, pointwise, value_of
 
-__all__ = ["by_pressure_of", "gradient_in_film", "slopes_in_film"]
+__all__ = ["NODAL", "Nodes", "at_nodes", "gradient_in_film"]
 
+NODAL = ("gap", "pressure")  # Unknowns that have a value at every node
 
-def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
-    """Return G at the nodes where the film is full, zero in the cavity."""
-    if integral.reformation == 0.0:
-        return film.gradient(h, p, flux_gap)
-    wet = integral.filled
-    return scattered(film.gradient(h[..., wet], None if p is None else p[..., wet], flux_gap), wet, h)
+Nodes: TypeAlias = Indices | Flags | slice
+"""Some of the nodes of a mesh."""
 
 
-def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Slopes:
-    """Return the derivatives of G at the nodes where the film is full, zero in the cavity."""
-    if integral.reformation == 0.0:
-        return film.slopes(h, p, flux_gap)
-    wet = integral.filled
-    by_gap, by_pressure, by_flux, by_speed = film.slopes(h[..., wet], None if p is None else p[..., wet], flux_gap)
-    return Slopes(
-        scattered(by_gap, wet, h),
-        None if by_pressure is None else scattered(by_pressure, wet, h),
-        scattered(by_flux, wet, h),
-        None if by_speed is None else scattered(by_speed, wet, h),
-    )
+def at_nodes(
+    film: Film,
+    functions: Callable[[Film, Any, Any, Any], Sequence[Any]],
+    nodes: Nodes | None,
+    gap: Any,
+    pressure: Any,
+    flux_gap: Any,
+    speed: Any = None,
+) -> list[Any]:
+    """Return functions of a film at some nodes, zero at the others, of values or of traces; of a traced speed too."""
+    given = {"gap": gap, "pressure": pressure, "flux_gap": flux_gap, "speed": speed}
+    column = {}
+    for name, one in given.items():
+        value = value_of(one)
+        if nodes is not None and value is not None and name in NODAL:
+            value = value[..., nodes]
+        column[name] = Trace.number(name, value) if isinstance(one, Trace) else value
+    found: list[Any] = []
+    traced = column.pop("speed")
+    for each in functions(film if traced is None else film.at(traced), *column.values()):
+        value, slopes = value_of(each), each.columns if isinstance(each, Trace) else {}
+        if nodes is not None:
+            value = scattered(value, nodes, value_of(gap))
+            slopes = {name: scattered(slope, nodes, value_of(gap)) for name, slope in slopes.items()}
+        known = tuple(slopes.values())
+        found.append(pointwise(lambda *_: (value, *known), *(given[name] for name in slopes)) if slopes else value)  # noqa: B023
+    return found
 
 
-def by_pressure_of(slopes: Slopes) -> Array:
-    """Return the derivative by pressure of a film that has one."""
-    assert slopes.by_pressure is not None
-    return slopes.by_pressure
+def gradient_in_film(film: Film, integral: RunningIntegral, h: Any, p: Any, flux_gap: Any, speed: Any = None) -> Any:
+    """Return G at the nodes where the film is full, zero in the cavity, of values or of traces."""
+    nodes = None if integral.reformation == 0.0 else integral.filled
+    return at_nodes(film, lambda film, *at: (film.gradient(*at),), nodes, h, p, flux_gap, speed)[0]
 
 
-def scattered(values: Array, where: Indices, like: Array) -> Array:
+def scattered(values: Any, where: Nodes, like: Any) -> Any:
     """Return nodal values that are ``values`` at some nodes and zero at the others."""
-    found = np.zeros(like.shape)
+    if isinstance(values, Jet):
+        return values.mapped(lambda each: scattered(each, where, like.value))
+    found = np.zeros((*values.shape[:-1], like.shape[-1]), values.dtype)
     found[..., where] = values
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -46,9 +47,9 @@ def central_gap(mesh: Mesh, h: Array) -> Array:
     return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
 
 
-def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[float, float, slice, Array]:
+def gap_beside(mesh: Mesh, h: Array, x: Any) -> tuple[Any, Any, slice, Array]:
     """Return the gap and its slope at a coordinate in the contact, the nodes of its panel, and the row of ln(gap) there."""
-    k = min(max(int(np.searchsorted(mesh.edges, x, side="right")) - 1, 0), mesh.panels - 2)
+    k = min(max(int(np.searchsorted(mesh.edges, x.real, side="right")) - 1, 0), mesh.panels - 2)
     width, nodes = float(mesh.half_widths[k]), slice(k * mesh.order, (k + 1) * mesh.order)
     s, before, last = (x - float(mesh.centres[k])) / width, 0.0, 1.0
     legendre_of_s = [last]
@@ -57,8 +58,8 @@ def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[float, float, slice, Arr
         legendre_of_s.append(last)
     row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
     logs, far = np.log(h[nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
-    value = float(np.exp(row @ logs)) * far
-    slope = float(row @ (_slope_at_nodes(mesh.order) @ logs)) / width
+    value = np.exp(row @ logs) * far
+    slope = row @ (_slope_at_nodes(mesh.order) @ logs) / width
     return value, value * (slope + 2 * x / far), nodes, row
 
 

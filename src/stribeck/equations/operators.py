@@ -15,16 +15,17 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Indices, Numbers
+from stribeck._types import Array
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.trace import Matrix, Trace, act, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 from stribeck.solids.solid import Solid, deflecting
@@ -37,16 +38,6 @@ STRETCH_CELL = 0.05  # Range of ln(cavity stretch) on which the deflection of a 
 STRETCHES_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
 
 MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
-
-
-class Dilated(NamedTuple):
-    """Operators in x at a cavity stretch d."""
-
-    deflection: Array
-    deflection_of_gradient: Array | None
-    weights: Array
-    load_of_gradient: Array
-    ends: tuple[Array, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +72,6 @@ class Operators:
     def reformation(self) -> float:
         """Where the integral from plus infinity ends."""
         return self.mesh.reformation if self.has_reformation else math.inf if self.has_exit else 0.0
-
-    @cached_property
-    def parts(self) -> tuple[Indices, Indices]:
-        """The nodes in the full film and those in the cavity."""
-        return np.flatnonzero(self.integral.outside_gap), np.flatnonzero(~self.integral.outside_gap)
 
     @cached_property
     def in_cavity(self) -> Array:
@@ -127,39 +113,10 @@ class Operators:
             found[:, -order:] = of_density * self.mesh.stretch[-order:]
         return found
 
-    @cached_property
+    @property
     def deflection_of_gradient(self) -> Array:
         """D A: nodal pressure gradients -> deflection."""
-        return self.integral.after(self.deflection)
-
-    @cached_property
-    def load_of_gradient(self) -> Array:
-        """Row w A: nodal pressure gradients -> load."""
-        return np.asarray(self.integral.after(self.weights[None, :])[0])
-
-    @cached_property
-    def moment(self) -> Array:
-        """Row w xi: nodal pressures -> first moment on the panels in x."""
-        row = self.mesh.weights * self.mesh.nodes
-        row[-self.mesh.order :] = 0.0
-        return row
-
-    @cached_property
-    def moment_beyond(self) -> Array:
-        """Row: nodal pressure gradients -> first moment of the pressure beyond the panels in x, by parts."""
-        order, edge = self.mesh.order, self.mesh.edges[-1]
-        row = np.zeros(self.mesh.size)
-        if self.tail is None:
-            row[-order:] = 0.5 * (edge**2 - self.mesh.nodes[-order:] ** 2) * self.mesh.weights[-order:]
-        else:
-            leverage = 0.5 * (edge**2 - self.tail.nodes**-2.0) * self.tail.weights
-            row[-order:] = leverage @ self.tail.interpolation(order) * self.mesh.stretch[-order:]
-        return row
-
-    @cached_property
-    def moment_of_gradient(self) -> Array:
-        """Row w xi A: nodal pressure gradients -> first moment of the pressure on the panels in x."""
-        return np.asarray(self.integral.after(self.moment[None, :])[0])
+        return self.deflecting.of(self.integral).matrix
 
     @cached_property
     def parabola(self) -> Array:
@@ -175,43 +132,51 @@ class Operators:
         return row
 
     @cached_property
-    def ends(self) -> tuple[Array, ...]:
-        """Rows of the gradient that must vanish: its integral, the value at the exit, the integral beyond the cavity."""
-        if not self.has_exit:
-            return (self.integral.weights,)
-        if not self.has_reformation:
-            return self.integral.weights, self.at_exit
-        return self.integral.weights, self.at_exit, self.integral.weights_beyond
+    def deflecting(self) -> Matrix:
+        """D as an operator, which keeps its product with A."""
+        return Matrix(self.deflection)
 
-    def stretched(self, d: float | None, of_gradient: bool = True) -> Dilated:
-        """Return the operators in x; None stands for a frame without cavity stretch."""
+    @cached_property
+    def load(self) -> Matrix:
+        """Nodal pressures -> load."""
+        return Matrix(self.weights[None])
+
+    @cached_property
+    def panel_load(self) -> Matrix:
+        """Nodal pressures of asperities -> load."""
+        return Matrix(self.mesh.weights[None])
+
+    @cached_property
+    def net(self) -> Matrix:
+        """Nodal gradients -> their whole integral."""
+        return Matrix(self.integral.weights[None])
+
+    @cached_property
+    def net_beyond(self) -> Matrix:
+        """Nodal gradients -> their integral beyond the cavity."""
+        return Matrix(self.integral.weights_beyond[None])
+
+    @cached_property
+    def exit_value(self) -> Matrix:
+        """Nodal values -> the value at the exit, from the left."""
+        return Matrix(self.at_exit[None])
+
+    def deflected(self, pressure: Any, d: Any) -> Any:
+        """Return the deflection under rows of nodal pressure, or under a traced one, at a cavity stretch."""
         if d is None:
-            of = self.deflection_of_gradient if of_gradient else None
-            return Dilated(self.deflection, of, self.weights, self.load_of_gradient, self.ends)
-        shift = d * math.log(d) / math.pi
-        first, at_exit, second = self.ends
-        kernel = self.kernel(d)
-        of = None
-        if of_gradient:
-            of = self.deflection_of_gradient if kernel is self.deflection else self.integral.after(kernel)
-        return Dilated(
-            d * kernel - shift * self.weights,
-            None if of is None else d * of - shift * self.load_of_gradient,
-            d * self.weights,
-            d * self.load_of_gradient,
-            (d * first, at_exit, d * second),
-        )
+            return act(self.deflecting, pressure)
+        d_log_d = pointwise(lambda d: (d * np.log(d) / math.pi, (np.log(d) + 1) / math.pi), d)
+        return d * self.by_kernel(pressure, d) - d_log_d * act(self.load, pressure)
 
-    def deflected(self, pressure: Array, d: Numbers | None) -> Array:
-        """Return the deflection under rows of nodal pressure."""
-        if d is None:
-            return pressure @ self.deflection.T
-        return d * self.by_kernel(pressure, d) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]
-
-    def by_kernel(self, pressure: Array, d: Numbers) -> Array:
+    def by_kernel(self, pressure: Any, d: Any) -> Any:
         """Return D p for each row of pressure and its cavity stretch d; nan where d is not positive."""
         if isinstance(self.model.solid, HalfPlane):
-            return np.asarray(pressure @ self.deflection.T)
+            return act(self.deflecting, pressure)
+        if isinstance(pressure, Trace):
+            here = float(value_of(d)[0])
+            slope = self.kernel(here, derivative=True) @ pressure.value / here
+            fixed = act(Matrix(self.kernel(here)), pressure)
+            return pointwise(lambda value, _: (value, None, slope), fixed, d)
         stretches = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
         found = np.full((*pressure.shape[:-1], self.mesh.size), np.nan)
         for row in np.argwhere((stretches > 0) & (stretches < np.inf)):
@@ -246,7 +211,7 @@ class OperatorsOfRows(Operators):
     def _deflecting(self) -> Callable[[Array], Array]:
         return deflecting(self.solids, self.mesh)
 
-    def deflected(self, pressure: Array, d: Numbers | None) -> Array:
+    def deflected(self, pressure: Any, d: Any) -> Any:
         """Return the deflection of each row under its nodal pressure."""
         assert d is None
         return self._deflecting(pressure)

@@ -16,12 +16,11 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.film import slopes_in_film
 from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Decay, Film, Slopes
+from stribeck.fluids.fluid import Decay, Film
 from stribeck.numerics.newton import ROUNDING_STEP, Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
 from stribeck.quantities.lazy import cached_property
@@ -109,15 +108,6 @@ class StackedStates:
     y: Array  # The unknowns of each
     load: Numbers  # Load group; a column of them where there are several states
     correction: Callable[[Array], Array]
-
-    @cached_property
-    def slopes(self) -> Slopes:
-        """The derivatives of the pressure gradient at the nodes."""
-        equations, at = self.equations, self.equations.layout
-        pressure = self.y[:, at.pressure] if equations.film.uses_pressure else None
-        return slopes_in_film(
-            equations.film, equations.operators.integral, self.y[:, at.gap], pressure, self.y[:, at.flux_gap]
-        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
@@ -19,8 +17,7 @@ from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.files.datasets import Column, listed, new_dataset
-from stribeck.files.results import Exported
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
@@ -29,12 +26,9 @@ from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.results import Card, Shown
+from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve_error import SolveError
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 
@@ -49,7 +43,7 @@ EXCLUDED_AICC = 10.0  # Difference of AICc from which a law is practically exclu
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Candidate(Record):
     """One law or model, fitted.
 
     Attributes
@@ -72,10 +66,23 @@ class Candidate:
     difference: float
     weight: float
 
+    _labels = {
+        "name": ("1", "law or model"),
+        "aicc": ("1", "corrected information criterion of Akaike"),
+        "difference": ("1", "excess over the smallest"),
+        "weight": ("1", "relative probability among what is compared"),
+        "noise": ("1", "scatter of the data about the fit"),
+    }
+
+    @property
+    def noise(self) -> float:
+        """Scatter of the data about the fit, see :class:`Fit`."""
+        return self.fit.noise
+
 
 @dataclass(frozen=True, repr=False)
-class Comparison(Exported, Shown):
-    """Laws or models fitted to the same data, the preferred first.
+class Comparison(Exported, Told):
+    """Laws or models fitted to the same data, the preferred first; its dataset has their criteria along ``law``.
 
     Attributes
     ----------
@@ -104,20 +111,12 @@ class Comparison(Exported, Shown):
         return f"The data prefer {best.name}, by {others[0].difference:.1f} in AICc over {others[0].name}{excluded}."
 
     def _card(self) -> Card:
-        rows = [
-            (each.name, f"AICc {each.aicc:.1f}, difference {each.difference:.1f}, weight {each.weight:.2g}")
-            for each in self.candidates
-        ]
-        return Card(self.sentence, [*rows, *self.failed.items()], CAVEATS)
-
-    def __str__(self) -> str:
-        """Return the table as text."""
-        lines = [f"{'law':<24}{'noise':<9}{'AICc':<10}{'difference':<12}weight"]
+        rows = []
         for each in self.candidates:
-            size = format_percent(each.fit.noise) if each.fit.logarithmic and math.isfinite(each.fit.noise) else ""
-            lines.append(f"{each.name:<24}{size:<9}{each.aicc:<10.1f}{each.difference:<12.1f}{each.weight:.2g}")
-        failed = [f"{name}: {why}" for name, why in self.failed.items()]
-        return "\n".join([*lines, *failed, self.sentence, *CAVEATS])
+            noise = format_percent(each.noise) if each.fit.logarithmic and math.isfinite(each.noise) else ""
+            rows.append((each.name, f"{each.aicc:.1f}", f"{each.difference:.1f}", f"{each.weight:.2g}", noise))
+        head = "law", "AICc", "difference", "weight", "noise"
+        return Card(self.sentence, [*self.failed.items()], CAVEATS, [head, *rows])
 
     def to_dict(self) -> dict[str, Any]:
         """Return the laws with their criteria and values, ready for JSON.
@@ -127,43 +126,14 @@ class Comparison(Exported, Shown):
         dict
             ``laws``, ``failed``, ``sentence`` and ``caveats``.
         """
-        laws = [
-            {
-                "law": each.name,
-                "aicc": each.aicc,
-                "difference": each.difference,
-                "weight": each.weight,
-                "noise": each.fit.noise,
-                "values": {value.label: value.value for value in each.fit.inputs},
-            }
-            for each in self.candidates
-        ]
+        laws = [each.to_dict() | {"values": each.fit.to_si()} for each in self.candidates]
         return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the laws with their criteria as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``law``, the preferred first: criterion, difference, weight and noise; the sentence and what could not be
-            fitted as attributes; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        values = {
-            "aicc": ("corrected information criterion of Akaike", [each.aicc for each in self.candidates]),
-            "difference": ("excess over the smallest", [each.difference for each in self.candidates]),
-            "weight": ("relative probability among what is compared", [each.weight for each in self.candidates]),
-            "noise": ("scatter of the data about the fit", [each.fit.noise for each in self.candidates]),
-        }
-        columns: dict[str, Column] = {name: ("law", np.array(row), "1", label) for name, (label, row) in values.items()}
-        names: dict[str, Column] = {"law": ("law", listed([each.name for each in self.candidates]), "1", "law or model")}
+    def _labelled(self) -> Labelled:
+        columns = columns_of_records("law", self.candidates, Candidate._labels)
+        names = {"law": columns.pop("name")}
         failed = "\n".join(f"{name}: {why}" for name, why in self.failed.items())
-        return new_dataset(columns, names, {"title": "Comparison of fits", "sentence": self.sentence, "failed": failed})
+        return columns, names, {"title": "Comparison of fits", "sentence": self.sentence, "failed": failed}
 
 
 @answers_typos
@@ -174,7 +144,7 @@ def compare(
     laws: Mapping[str, AsperityLaw | None] | None = None,
     models: str | Mapping[str, Mapping[str, Any]] | None = None,
     free: tuple[str, ...] | None = None,
-    on_step: Callable[[str, int], object] | None = None,
+    on_step: Callable[[str, int, int], object] | None = None,
 ) -> Comparison:
     """Fit measured friction with several contact laws or models, and return which it prefers, and by how much.
 
@@ -195,7 +165,8 @@ def compare(
     free : sequence of str, optional
         Inputs to fit; those of the case.  ``beta`` is freed with each law, as it has another meaning in each.
     on_step : callable, optional
-        As in :func:`stribeck.fit`.
+        ``on_step(what, done, total)`` is called as the work goes on, as by :func:`stribeck.fit`: the name of the law or model
+        stands before what it does, and states are those of all fits.
 
     Returns
     -------
@@ -220,12 +191,21 @@ def compare(
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")
     found: dict[str, Fit] = {}
     failed: dict[str, str] = {}
-    for name, model in (_of_laws(contact, laws) if models is None else _models(models, contact, rows)).items():
+    compared = _of_laws(contact, laws) if models is None else _models(models, contact, rows)
+    solved: dict[str, int] = {}  # by the fits so far
+    for number, (name, model) in enumerate(compared.items(), 1):
+
+        def step(what: str, done: int, total: int, name: str = name, number: int = number) -> None:
+            solved[name] = done
+            before = sum(solved.values()) - done
+            if on_step is not None:
+                on_step(f"{name}: {what}", before + done, before + total * (1 + len(compared) - number))
+
         changed = contact.replace(**{key: value for key, value in model.items() if key != "free"})
         problem = replace(loaded, contact=changed) if isinstance(loaded, Case) else changed
         inputs = tuple(dict.fromkeys((*names, *model.get("free", ()))))
         try:
-            each = fit(rows, problem, free=inputs, intervals=False, on_step=on_step)
+            each = fit(rows, problem, free=inputs, intervals=False, on_step=step)
         except (InputError, SolveError) as why:
             failed[name] = str(why)
             continue

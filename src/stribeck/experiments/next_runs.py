@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -19,31 +19,17 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
-from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.files.datasets import Column, listed, new_dataset
-from stribeck.files.results import Exported
+from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
+from stribeck.files.datasets import Column
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.inputs import quantity
-from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import DIMENSIONS, InputError, checked_callback, checked_kind, show
+from stribeck.quantities.results import Card, Told
+from stribeck.quantities.units import InputError, checked_callback, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 
-if TYPE_CHECKING:
-    import xarray
-
 __all__ = ["NextRun", "Plan", "next_runs"]
-
-COLUMN_LABELS = {
-    "curve": "curve whose contact it is",
-    "speed": "sum of the surface speeds",
-    "load": "load",
-    "viscosity": "viscosity",
-    "friction": "friction coefficient to expect",
-    "gain": "growth of half the logarithm of the determinant of the information",
-    "cost": "cost",
-}
 
 CANDIDATE_SPEEDS = 17  # Speeds from the slowest measured to the fastest, and a factor of SPEED_MARGIN to both sides
 SPEED_MARGIN = 3.0  # Ratio of speeds
@@ -59,7 +45,7 @@ MAX_RUNS = 50  # Runs that are chosen in one call
 
 
 @dataclass(frozen=True)
-class NextRun:
+class NextRun(Record):
     """One run worth measuring.
 
     Attributes
@@ -76,6 +62,8 @@ class NextRun:
         Its cost.
     errors : dict of str to float
         Standard errors of the logarithms of the fitted inputs after this run and those before it.
+    unit : str
+        SI unit of the load.
     """
 
     curve: str
@@ -86,11 +74,22 @@ class NextRun:
     gain: float
     cost: float
     errors: dict[str, float]
+    unit: str = "N/m"
+
+    _labels = {
+        "curve": ("1", "curve whose contact it is"),
+        "speed": ("m s-1", "sum of the surface speeds"),
+        "load": ("", "load"),
+        "viscosity": ("Pa s", "viscosity"),
+        "friction": ("1", "friction coefficient to expect"),
+        "gain": ("1", "growth of half the logarithm of the determinant of the information"),
+        "cost": ("1", "cost"),
+    }
 
 
 @dataclass(frozen=True, repr=False)
-class Plan(Exported, Shown):
-    """Runs worth measuring, the best first.
+class Plan(Exported, Told):
+    """Runs worth measuring, the best first; its dataset has them along ``run``.
 
     Attributes
     ----------
@@ -115,26 +114,14 @@ class Plan(Exported, Shown):
     load_dimension: str = "load"
 
     def _card(self) -> Card:
-        rows = [
-            (
-                f"run {i}",
-                f"{format_si(each.speed, 'speed')}, {format_si(each.load, self.load_dimension)}, "
-                f"{format_si(each.viscosity, 'viscosity')}: gain {each.gain:.2g}, then {_percents(each.errors)}",
-            )
-            for i, each in enumerate(self.runs, 1)
-        ]
-        return Card(f"{len(self.runs)} runs worth measuring, the best first", [("now", _percents(self.before)), *rows])
-
-    def __str__(self) -> str:
-        """Return the table as text."""
-        columns = (("run", 5), ("speed", 14), ("load", 14), ("viscosity", 14), ("friction", 11), ("gain", 8), ("cost", 7))
-        lines = ["".join(f"{name:<{width}}" for name, width in columns) + "standard errors after it"]
+        table = [("run", "speed", "load", "viscosity", "friction", "gain", "cost", "standard errors after it")]
         for i, each in enumerate(self.runs, 1):
-            place = f"{format_si(each.speed, 'speed'):<14}{format_si(each.load, self.load_dimension):<14}"
-            place += f"{format_si(each.viscosity, 'viscosity'):<14}"
-            lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{_percents(each.errors)}")
+            place = format_si(each.speed, "speed"), format_si(each.load, self.load_dimension)
+            numbers = f"{each.friction:.3g}", f"{each.gain:.2g}", f"{each.cost:.3g}"
+            table.append((str(i), *place, format_si(each.viscosity, "viscosity"), *numbers, _percents(each.errors)))
         noise = f"a run is assumed to be accurate to {format_percent(self.noise)}"
-        return "\n".join([*lines, f"Standard errors now: {_percents(self.before)}; {noise}."])
+        now = "now", f"standard errors {_percents(self.before)}; {noise}"
+        return Card(f"{len(self.runs)} runs worth measuring, the best first", [now], (), table)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON.
@@ -144,33 +131,20 @@ class Plan(Exported, Shown):
         dict
             ``runs``, ``errors_before`` and ``noise``.
         """
-        return {"runs": [asdict(each) for each in self.runs], "errors_before": self.before, "noise": self.noise}
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the runs as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``run``, the best first: curve, speed, load, viscosity, friction to expect, gain, cost, and the standard
-            error of the logarithm of each fitted input after it; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        units = {"speed": "m s-1", "load": DIMENSIONS[self.load_dimension].unit, "viscosity": "Pa s"}
-        columns: dict[str, Column] = {
-            name: ("run", listed([getattr(each, name) for each in self.runs]), units.get(name, "1"), label)
-            for name, label in COLUMN_LABELS.items()
+        return {
+            "runs": [each.to_dict() | {"errors": each.errors} for each in self.runs],
+            "errors_before": self.before,
+            "noise": self.noise,
         }
+
+    def _labelled(self) -> Labelled:
+        columns = columns_of_records("run", self.runs, NextRun._labels)
         for name in self.before:
             after = np.array([each.errors[name] for each in self.runs])
             columns[f"error_{name}"] = ("run", after, "1", f"standard error of the logarithm of {name} after the run")
         number: dict[str, Column] = {"run": ("run", np.arange(1, len(self.runs) + 1), "1", "number of the run")}
         before = {f"error_before_{name}": error for name, error in self.before.items()}
-        return new_dataset(columns, number, {"title": "What to measure next", "noise": self.noise, **before})
+        return columns, number, {"title": "What to measure next", "noise": self.noise, **before}
 
 
 @one_blas_thread
@@ -249,7 +223,7 @@ def next_runs(
         shift = covariance @ best[2]
         covariance = covariance - np.outer(shift, shift) / (noise**2 + best[2] @ shift)
         run = _run(best, covariance, noise, _errors(fit, covariance))
-        chosen.append(NextRun(**(asdict(run) | {"gain": gain})))
+        chosen.append(replace(run, gain=gain))
         if (run.load, run.viscosity) not in known:  # the next run there needs no other load or fluid
             known.append((run.load, run.viscosity))
             rows = [
@@ -283,7 +257,7 @@ def _places(
     """Return the states that may be measured, each with the curve that it belongs to."""
     table = fit.contacts[0].INPUTS
     given = {
-        name: None if values is None else [quantity(name, value, table) for value in values]
+        name: None if values is None else [table.checked(name, value) for value in values]
         for name, values in (("speed", speeds), ("load", loads), ("viscosity", viscosities))
     }
     low, high = _speed_range(fit)
@@ -312,7 +286,7 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
     """Return the derivatives of ln(friction) with respect to the fitted inputs, and the friction; None if unsolvable."""
     try:
         if bool(atlas.covers(contact.groups)):
-            _, slopes = friction_sensitivities(contact, definition=fit.definition, method="atlas")
+            slopes = atlas_sensitivities(contact, fit.definition)
             friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition))
         else:
             solution, slopes = friction_sensitivities(contact, rtol=STATE_RTOL, definition=fit.definition)
@@ -348,4 +322,5 @@ def _errors(fit: Fit, covariance: Array) -> dict[str, float]:
 def _run(row: tuple[str, Contact, Array, float, float], covariance: Array, noise: float, errors: dict[str, float]) -> NextRun:
     curve, contact, j, friction, price = row
     gain = _gain(j, covariance, noise)
-    return NextRun(curve, contact.speed, contact.load, contact.viscosity, friction, gain, price, errors)
+    place = contact.speed, contact.load, contact.viscosity
+    return NextRun(curve, *place, friction, gain, price, errors, contact.INPUTS.unit("load"))

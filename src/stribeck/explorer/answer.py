@@ -1,29 +1,28 @@
-"""The answer to a tab's inputs: the solved state with its fields, the curve through it and the phase diagram around it.
+"""The answer to a tab's inputs: the solved state with its fields, the curve through it and the map of regimes around it.
 
-The state is solved anew for each change, from the last one. Curve and diagram are kept until something other than the speed
-changes; outside the atlas both are solved when the inputs rest, and those before stand there meanwhile, marked stale.
+The state is solved anew for each change, from the last one. What takes longer is solved when the inputs rest, part by part;
+what belongs to the inputs before stands there meanwhile and is marked stale.
 """
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics import FORMULAS
 from stribeck.checks.check import Checks
 from stribeck.checks.law import add_range_along_curve
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.model import BASE_MODEL
 from stribeck.curves.regime import Regime, regime_of
+from stribeck.curves.stribeck_curve import StribeckCurve
 from stribeck.explorer.curves import (
     FIRST_RTOL,
     SOLVED_ROWS,
@@ -31,20 +30,22 @@ from stribeck.explorer.curves import (
     Curve,
     Diagram,
     Report,
-    Transition,
     axis_speeds,
     curve_from_atlas,
-    curve_notes,
     decade_of_roughness,
+    decades_around,
     diagram_from_atlas,
     in_atlas,
+    round_up,
     solved_curve,
     solved_diagram,
     transition_marks,
 )
-from stribeck.explorer.inputs.carried import errors_of, facts_of
 from stribeck.explorer.inputs.inputs import Inputs
+from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError
+from stribeck.regimes.margin_intervals import with_intervals
+from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.point.solution import Field, PointSolution
@@ -55,34 +56,30 @@ from stribeck.uncertainty.band import friction_band
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down", "round_up", "asymptotic_fields"]
+__all__ = ["Answer", "Answerer", "Pinned"]
 
-STATE_RTOL = 1e-6  # Relative tolerance of the state that the page shows.
-PIN_RTOL = 1e-4  # Relative tolerance of the curve of a pinned contact.
+PIN_RTOL = 1e-4  # Relative tolerance of the state of a pinned contact.
 KEPT_STATES = 8  # States from which the next one may start; those of balls hold megabytes
-MAX_CACHED_ANSWERS = 64  # Answers that are kept for inputs that come back.
-NEGLIGIBLE_SHARE = 0.01  # Load share below which asperities, or the fluid, count as absent when formulas are chosen.
-
-FIELDS_DRAWN = ("gap", "pressure", "contact_pressure", "fluid_pressure")
+MAX_KEPT = 64  # Parts of answers that are kept for inputs that come back.
 
 MAP_HALF_SIDE = 1.6  # Half the side of the map of a ball [a].
 MAP_POINTS = 49  # Points along a side of that map.
 
-# Ends of axes, times powers of ten: few, so that axes stay still while a slider moves.
-AXIS_ENDS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
+NO_MARGINS_OF_BALLS = "Margins of a ball take ten seconds to a minute; run stribeck regimes."
 
 T = TypeVar("T")
+Part = Callable[[Report], Iterator[None]]  # Slow work, which stops whenever there is something new to show
 
 
 @dataclass(frozen=True, eq=False)
-class AsymptoticField:
-    """An asymptotic field where it is in its range."""
+class Pinned:
+    """A contact that was kept for comparison."""
 
-    name: str  # The formula
-    worst: float  # Its largest relative error in its range
-    predicts: str  # The field
-    x: Array  # In Hertz units
-    value: Array  # In Hertz units
+    name: str  # What it is called
+    contact: Contact
+    definition: Definition
+    curve: Curve | None  # Its curve, as far as it is known
+    state: BaseSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,51 +89,50 @@ class Answer:
     inputs: Inputs  # What was asked
     solution: Solution | PointSolution  # The state
     regime: Regime  # Its regime
-    checks: Checks  # Whether the model applies: those that the state decides, and at rest all
-    notes: tuple[str, ...]  # What to know of the curve, as `stribeck curve` prints it; at rest
+    checks: Checks  # Whether the model applies: what the state and the curve decide, and at rest all
     spread: Uncertainty | None  # What the errors of the inputs leave open in the state; at rest, where some are given
-    curve: Curve | None  # The curve through it, None where it cannot be solved
-    diagram: Diagram | None  # The phase diagram around it, None where it is not solved yet
-    reach: float  # How far the profile is drawn to both sides [a]
+    curve: Curve | None  # The curve through it
+    why: str  # Why the curve could not be solved
+    diagram: Diagram | None  # The map of regimes around it
+    margins: RegimeMargins | str | None  # The margins to the next regimes, or why there are none
+    stale: frozenset[str]  # Which of these three are not there yet, or belong to inputs before the present ones
     profile: Profile  # The fields, in Hertz units
     plane: Field | None  # The fields on the plane of a ball, from the middle line on to one side, to which the other is equal
-    thin: tuple[AsymptoticField, ...]  # Asymptotic fields
     speeds: tuple[float, float]  # Ends of the axis of speeds [m/s]
-
-    @property
-    def checks_with_curve(self) -> Checks:
-        """The checks, and that of the contact law along the curve that is shown."""
-        return self.checks if self.curve is None else add_range_along_curve(self.checks, self.curve.doubtful)
+    pins: Sequence[Pinned] = ()  # Pinned contacts
+    measured: Sequence[Measured] = ()  # Measured curves
 
 
 class Answerer:
-    """Answers to the inputs of one tab, one after another; ``known`` is one that need not be found again."""
+    """Answers to the inputs of one tab, one after another."""
 
-    def __init__(self, known: Answer | None = None) -> None:
-        self._neighbours = Neighbours(STATE_RTOL, KEPT_STATES)
-        self._last: tuple[Contact, Solution | PointSolution] | None = None
+    def __init__(self) -> None:
+        self._neighbours = Neighbours(1e-6, KEPT_STATES)
+        self._last_state: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
-        self._last_curves: dict[str, Curve] = {}
-        self._last_diagrams: dict[str, Diagram] = {}
-        if known is not None:
-            self._last = known.inputs.contact, known.solution
-            self._kept["checks", known.inputs.contact, known.inputs.rest] = known.checks
-            if known.curve is not None:
-                self._last_curves[known.inputs.table.geometry] = known.curve
+        self._last: dict[tuple[str, str], Any] = {}
 
-    def __call__(self, inputs: Inputs, measured: Sequence[float] = ()) -> Answer:
-        """Return the answer at once: outside the atlas with the last curve, marked stale, until :meth:`settle` ends."""
-        contact, definition = inputs.contact, inputs.definition
+    def __call__(self, inputs: Inputs, pins: Sequence[Inputs] = (), measured: Sequence[Measured] = ()) -> Answer:
+        """Return the answer at once, with the last curve where a new one has to be solved."""
+        contact, definition, geometry = inputs.contact, inputs.definition, inputs.table.geometry
         solution = self._state(inputs)
-        friction = solution.friction(definition=definition)
-        curve, speeds = self._curve_now(contact, definition, measured)
-        band = self._kept.get(("band", _key(contact), definition, inputs.rest))
-        if curve is not None and not curve.stale and band is not None:
-            curve = replace(curve, band=band)
-        reach = profile_reach(solution)
-        x = np.linspace(-reach, reach, 241)
-        nodes = solution.x[np.abs(solution.x) < reach]
-        x = np.unique(np.concatenate([x, nodes[:: 1 + len(nodes) // 150]]))
+        marks = self._marks(contact, definition) if in_atlas(contact) else None
+        places = [place for found in measured for place in found.places(contact, inputs.abscissa).tolist() if place > 0]
+        ends = (0.0, 0.0) if marks is None else decades_around(axis_speeds(contact, marks), places)
+        found = self.curve(contact, definition, ends)
+        curve, is_old = self._newest("curve", geometry, found)
+        if marks is None:
+            ends = decades_around(_ends_of(curve, contact), places)
+        curve_band = self._kept.get(("band", _key(contact), definition, inputs.tables))
+        if curve is not None:
+            curve = replace(curve, marks={}) if is_old else curve if curve_band is None else replace(curve, band=curve_band)
+        key = _diagram_key(inputs, _ends_of(found, contact) if marks is None else ends)
+        if marks is not None:
+            self._keep(key, lambda: diagram_from_atlas(contact, definition, ends, decade_of_roughness(contact)))
+        diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
+        margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_margins_key(inputs)))
+        old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins}
+        checks = self._keep(("checks", contact, inputs.tables), lambda: checks_of(_subject(inputs, solution), "state"))
         plane = None
         if isinstance(solution, PointSolution):
             side = np.linspace(-MAP_HALF_SIDE, MAP_HALF_SIDE, MAP_POINTS)
@@ -144,104 +140,28 @@ class Answerer:
         return Answer(
             inputs=inputs,
             solution=solution,
-            regime=regime_of(solution.fluid_load_share, friction.contact_share),
-            checks=self._keep(("checks", contact, inputs.rest), lambda: self._checks(inputs, solution)),
-            notes=self._kept.get(("notes", _key(contact), definition), ()),
+            regime=regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share),
+            checks=checks if curve is None else add_range_along_curve(checks, curve.doubtful),
             spread=self._kept.get(_spread_key(inputs)),
             curve=curve,
-            diagram=self._diagram_now(contact, definition, speeds),
-            reach=reach,
-            profile=solution.profile(x),
+            why=str(self._kept.get(("why", _key(contact), definition), "")),
+            diagram=diagram,
+            margins=margins,
+            stale=frozenset(name for name, is_stale in old.items() if is_stale),
+            profile=solution.profile(_places(solution)),
             plane=plane,
-            thin=tuple(asymptotic_fields(solution, reach)),
-            speeds=speeds,
+            speeds=ends,
+            pins=[self._pinned(pin, ends) for pin in pins],
+            measured=measured,
         )
 
-    def settle(self, inputs: Inputs, report: Report, at_rest: bool = False) -> bool:
-        """Solve the curve of inputs outside the atlas, first of all as the picture needs it."""
-        contact, definition = inputs.contact, inputs.definition
-        key, geometry = ("solved", _key(contact), definition), contact.INPUTS.geometry
-        rtol = SOLVED_RTOL if at_rest else FIRST_RTOL[geometry]
-        known: Curve | None = self._kept.get(key)
-        if in_atlas(contact) or (key in self._kept and (known is None or known.solved is None or known.solved.rtol <= rtol)):
-            return False
-        try:
-            found = solved_curve(contact, definition, report, rtol)
-            self._kept.pop(key, None)
-            self._keep(key, lambda: found)
-        except (InputError, SolveError) as problem:
-            if known is not None:  # the first one stays, with its error
-                return False
-            self._kept[key] = None
-            self._kept["why", _key(contact), definition] = str(problem)
-        return True
-
-    def diagrams(self, inputs: Inputs, report: Report) -> Iterator[None]:
-        """Solve the diagram of inputs outside the atlas row by row, and stop after each to show it."""
-        contact, definition = inputs.contact, inputs.definition
-        if in_atlas(contact):
-            return
-        _, speeds = self._curve_now(contact, definition)
-        key = _diagram_key(contact, definition, speeds)
-        if key in self._kept and self._kept[key].part == 1.0:
-            return
-        curve: Curve | None = self._kept.get(("solved", _key(contact), definition))
-        own = None if curve is None else curve.solved
-        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, own):
-            self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
-            yield
-
-    @staticmethod
-    def map_is_quick(inputs: Inputs) -> bool:
-        """Return whether a diagram is there within a second, off the atlas too."""
-        return SOLVED_ROWS[inputs.table.geometry].is_quick
-
-    def settle_checks(self, inputs: Inputs, report: Report) -> bool:
-        """Make the checks that need the curve, or another one; return whether they change the line above the numbers."""
-        contact = inputs.contact
-        key = ("checks", contact, inputs.rest)
-        if ("all checks", *key) in self._kept:
-            return False
-        before = self._kept.get(key)
-        facts = facts_of(inputs.rest)
-        solution: Any = self._last[1] if self._last is not None and self._last[0] == contact else None
-        subject = Subject(contact, facts, inputs.definition, solution, on_point=lambda done, of: report(done / of))
-        self._kept[key] = checks_of(subject)
-        self._kept["all checks", *key] = True
-        return bool(self._kept[key] != before)
-
-    def settle_notes(self, inputs: Inputs, report: Report) -> bool:
-        """Find what to know of the curve over the speed; return whether there is something new to show."""
-        contact, definition = inputs.contact, inputs.definition
-        key = ("notes", _key(contact), definition)
-        if key in self._kept:
-            return False
-        curve: Curve | None = self._kept.get(("solved", _key(contact), definition))
-        if curve is None or curve.solved is None:
-            notes = curve_notes(contact, definition, report)
-        else:
-            notes = curve.solved.notes
-        self._keep(key, lambda: notes)
-        return bool(notes)
-
-    def settle_spread(self, inputs: Inputs, report: Report) -> bool:
-        """Find what the errors of the inputs leave open in the state and along the curve; return whether some are given."""
-        errors, key = errors_of(inputs.rest), _spread_key(inputs)
-        contact, definition = inputs.contact, inputs.definition
-        if not errors or key in self._kept:
-            return False
-        spread = propagate(contact, errors, definition=definition)
-        self._keep(key, lambda: spread)
-        curve, _ = self._curve_now(contact, definition)
-        if curve is not None and not curve.stale:
-            ends = curve.speed[[0, -1]]
-            band = friction_band(contact, errors, ends, definition, on_point=lambda done, of: report(done / of))
-            self._keep(("band", _key(contact), definition, inputs.rest), lambda: band)
-        return True
-
-    def why_no_curve(self, inputs: Inputs) -> str:
-        """Return why a curve could not be solved; empty if it was, or was not tried."""
-        return str(self._kept.get(("why", _key(inputs.contact), inputs.definition), ""))
+    def at_rest(self, inputs: Inputs) -> list[Part]:
+        """Return what is to be solved for inputs that rest, the first part at once."""
+        geometry = inputs.table.geometry
+        curves = [partial(self._solve_curve, inputs, rtol) for rtol in (FIRST_RTOL[geometry], SOLVED_RTOL)]
+        slow = [partial(each, inputs) for each in (self._find_margins, self._find_spread, self._find_checks)]
+        diagram = partial(self._solve_diagram, inputs)
+        return [*curves, diagram, *slow] if SOLVED_ROWS[geometry].is_quick else [*curves, *slow, diagram]
 
     def curve(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
         """Return the curve of a contact between two speeds; outside the atlas the solved one, None until it is solved."""
@@ -249,72 +169,122 @@ class Answerer:
             found: Curve | None = self._kept.get(("solved", _key(contact), definition))
             return found
         marks = self._marks(contact, definition)
-        return self._keep(("curve", _key(contact), definition, speeds), lambda: curve_from_atlas(contact, speeds, marks))
+        key = ("curve", _key(contact), definition, speeds)
+        return self._keep(key, lambda: curve_from_atlas(contact, definition, speeds, marks))
+
+    def _solve_curve(self, inputs: Inputs, rtol: float, report: Report) -> Iterator[None]:
+        """Solve the curve of inputs outside the atlas, unless it is known as finely."""
+        contact, definition = inputs.contact, inputs.definition
+        key, why = ("solved", _key(contact), definition), ("why", _key(contact), definition)
+        known: Curve | None = self._kept.get(key)
+        if in_atlas(contact) or why in self._kept or (known is not None and known.found.rtol <= rtol):
+            return
+        try:
+            self._put(key, solved_curve(contact, definition, report, rtol))
+        except (InputError, SolveError) as problem:
+            if known is None:  # else the first one stays, with its error
+                self._put(why, str(problem))
+        yield
+
+    def _solve_diagram(self, inputs: Inputs, report: Report) -> Iterator[None]:
+        """Solve the map of inputs outside the atlas row by row."""
+        contact, definition = inputs.contact, inputs.definition
+        if in_atlas(contact):
+            return
+        known: Curve | None = self.curve(contact, definition, (0.0, 0.0))
+        speeds = _ends_of(known, contact)
+        key = _diagram_key(inputs, speeds)
+        if key in self._kept and self._kept[key].part == 1.0:
+            return
+        own = known.found if known is not None and isinstance(known.found, StribeckCurve) else None
+        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, own):
+            self._put(key, found)
+            yield
+
+    def _find_margins(self, inputs: Inputs, report: Report) -> Iterator[None]:
+        """Find the margins to the next regimes."""
+        key = _margins_key(inputs)
+        if key in self._kept:
+            return
+        contact, definition = inputs.contact, inputs.definition
+        try:
+            if inputs.table.geometry == "point":
+                raise InputError(NO_MARGINS_OF_BALLS)
+            found = regime_margins(contact, definition=definition, on_point=_parts(report))
+            self._put(key, with_intervals(contact, found, inputs.errors, definition) if inputs.errors else found)
+        except (InputError, SolveError) as problem:
+            self._put(key, str(problem))
+        yield
+
+    def _find_spread(self, inputs: Inputs, report: Report) -> Iterator[None]:
+        """Find what the errors of the inputs leave open in the state, and then along the curve."""
+        errors, contact, definition = inputs.errors, inputs.contact, inputs.definition
+        if not errors or _spread_key(inputs) in self._kept:
+            return
+        self._put(_spread_key(inputs), propagate(contact, errors, definition=definition))
+        yield
+        speeds = axis_speeds(contact, self._marks(contact, definition)) if in_atlas(contact) else (0.0, 0.0)
+        curve = self.curve(contact, definition, speeds)
+        if curve is not None:
+            band = friction_band(contact, errors, curve.speed[[0, -1]], definition, on_point=_parts(report))
+            self._put(("band", _key(contact), definition, inputs.tables), band)
+            yield
+
+    def _find_checks(self, inputs: Inputs, report: Report) -> Iterator[None]:
+        """Make the checks that need the curve, or another one."""
+        key, last = ("checks", inputs.contact, inputs.tables), self._last_state
+        if ("all", *key) not in self._kept:
+            solution = last[1] if last is not None and last[0] == inputs.contact else None
+            self._put(key, checks_of(_subject(inputs, solution, report)))
+            self._put(("all", *key), True)
+            yield
 
     def _state(self, inputs: Inputs) -> Solution | PointSolution:
-        """Return the state, from the last one where that is near."""
+        """Return the state, from the last ones where these are near."""
         contact = inputs.contact
-        if self._last is not None and self._last[0] == contact and self._last[1].rtol == inputs.rtol:
-            return self._last[1]
+        if self._last_state is not None and self._last_state[0] == contact and self._last_state[1].rtol == inputs.rtol:
+            return self._last_state[1]
         if self._neighbours.rtol != inputs.rtol:
             self._neighbours = Neighbours(inputs.rtol, KEPT_STATES)
         state: Solution | PointSolution = self._neighbours.solution(contact.groups, contact)
-        self._last = contact, state
+        self._last_state = contact, state
         return state
 
-    def state_of_pin(self, contact: Contact) -> Solution | PointSolution:
-        """Return the state of a contact that was pinned."""
-        found: Solution | PointSolution = self._keep(("pin", contact, contact.law), lambda: solve(contact, rtol=PIN_RTOL))
-        return found
+    def _pinned(self, pin: Inputs, speeds: tuple[float, float]) -> Pinned:
+        contact, definition = pin.contact, pin.definition
+        state = self._keep(("pin", contact), lambda: solve(contact, rtol=PIN_RTOL))
+        return Pinned(pin.title, contact, definition, self.curve(contact, definition, speeds), state)
 
-    @staticmethod
-    def _checks(inputs: Inputs, solution: Solution | PointSolution) -> Checks:
-        subject = Subject(inputs.contact, facts_of(inputs.rest), inputs.definition, solved=solution)  # type: ignore[arg-type]
-        return checks_of(subject, "state")
-
-    def _marks(self, contact: Contact, definition: Definition) -> tuple[Transition, ...]:
+    def _marks(self, contact: Contact, definition: Definition) -> Any:
         return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
 
-    def _curve_now(
-        self, contact: Contact, definition: Definition, measured: Sequence[float] = ()
-    ) -> tuple[Curve | None, tuple[float, float]]:
-        """Return the curve and the ends of its axis."""
-        geometry = contact.INPUTS.geometry
-        speeds = axis_speeds(contact, self._marks(contact, definition), measured) if in_atlas(contact) else (0.0, 0.0)
-        curve = self.curve(contact, definition, speeds)
-        last = self._last_curves.get(geometry)
-        if curve is not None:
-            self._last_curves[geometry] = curve
-        elif last is not None:
-            curve = replace(last, stale=True, transitions=())
-        if in_atlas(contact):
-            return curve, speeds
-        if curve is None:
-            speed = contact.speed or 1e-3
-            return None, (1e-4 * speed, 1e4 * speed)
-        ends = [float(curve.speed[0]), float(curve.speed[-1]), *([contact.speed] if contact.speed > 0 else [])]
-        return curve, (10.0 ** math.floor(math.log10(min(ends))), 10.0 ** math.ceil(math.log10(max(ends))))
-
-    def _diagram_now(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Diagram | None:
-        """Return the diagram; outside the atlas what is solved of it, or the last one, marked stale."""
-        key = _diagram_key(contact, definition, speeds)
-        geometry = contact.INPUTS.geometry
-        if in_atlas(contact):
-            decade = decade_of_roughness(contact)
-            read = self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
-            self._last_diagrams[geometry] = read
-            return read
-        found: Diagram | None = self._kept.get(key)
-        last = self._last_diagrams.get(geometry)
-        return replace(last, stale=True) if found is None and last is not None else found
+    def _newest(self, kind: str, geometry: str, found: T | None) -> tuple[T | None, bool]:
+        """Return what was found, or else the last of its kind; and whether it is stale."""
+        if found is not None:
+            self._last[kind, geometry] = found
+        last: T | None = self._last.get((kind, geometry))
+        return last, found is None
 
     def _keep(self, key: Any, make: Callable[[], T]) -> T:
         if key not in self._kept:
-            while len(self._kept) >= MAX_CACHED_ANSWERS:
-                del self._kept[next(iter(self._kept))]
-            self._kept[key] = make()
+            self._put(key, make())
         found: T = self._kept[key]
         return found
+
+    def _put(self, key: Any, value: Any) -> None:
+        while len(self._kept) >= MAX_KEPT:
+            del self._kept[next(iter(self._kept))]
+        self._kept[key] = value
+
+
+def _subject(inputs: Inputs, solution: Any, report: Report = lambda part: None) -> Subject:
+    """Return what is checked of inputs, whose state may be known."""
+    return Subject(inputs.contact, inputs.facts, inputs.definition, solution, on_point=_parts(report))
+
+
+def _parts(report: Report) -> Callable[..., object]:
+    """Return a report of the finished part as one of how many are done of how many."""
+    return lambda done=0, of=1, *_: report(done / (of or 1))
 
 
 def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
@@ -324,55 +294,37 @@ def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
 
 def _spread_key(inputs: Inputs) -> tuple[Any, ...]:
     """Return what the propagated errors of a state depend on."""
-    return ("spread", inputs.contact, inputs.definition, inputs.rest)
+    return ("spread", inputs.contact, inputs.definition, inputs.tables)
 
 
-def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, float]) -> tuple[Any, ...]:
-    """Return what a diagram depends on: all but speed and roughness, and its axes."""
-    return ("diagram", _key(contact, "roughness"), definition, speeds, decade_of_roughness(contact))
+def _margins_key(inputs: Inputs) -> tuple[Any, ...]:
+    """Return what margins depend on."""
+    return ("margins", inputs.contact, inputs.definition, inputs.tables)
 
 
-def round_up(value: float) -> float:
-    """Return the next larger end of an axis."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{next(step for step in AXIS_ENDS if step * power >= value * (1 - 1e-9)) * power:.6g}")
+def _diagram_key(inputs: Inputs, speeds: tuple[float, float]) -> tuple[Any, ...]:
+    """Return what a map depends on: all but speed and roughness, and its axes."""
+    contact = inputs.contact
+    return ("diagram", _key(contact, "roughness"), inputs.definition, speeds, decade_of_roughness(contact))
 
 
-def round_down(value: float) -> float:
-    """Return the next smaller end of an axis."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{next(step for step in AXIS_ENDS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
+def _ends_of(curve: Curve | None, contact: Contact) -> tuple[float, float]:
+    """Return whole decades of speed around a solved curve and the contact."""
+    if curve is None:
+        speed = contact.speed or 1e-3
+        return 1e-4 * speed, 1e4 * speed
+    ends = [*curve.speed[[0, -1]].tolist(), *([contact.speed] if contact.speed > 0 else [])]
+    return 10.0 ** math.floor(math.log10(min(ends))), 10.0 ** math.ceil(math.log10(max(ends)))
 
 
-def profile_reach(solution: BaseSolution) -> float:
-    """Return how far the profile is drawn to both sides: as far as the pressures reach, to a round number of metres [a]."""
+def _places(solution: BaseSolution) -> Array:
+    """Return where fields are drawn [a]: as far as the pressures reach, to a round number of metres, and through nodes."""
     reach = 1.8
     if isinstance(solution, Solution):
         pressure = np.abs(solution.contact_pressure) + np.abs(solution.fluid_pressure)
         reach = max(1.6, 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0)))
-    a = 1.0 if solution.contact is None else solution.contact.hertz.half_width
-    return round_up(a * reach) / a
-
-
-def asymptotic_fields(solution: BaseSolution, reach: float) -> list[AsymptoticField]:
-    """Return the asymptotic fields whose range holds the state."""
-    groups = solution.groups
-    if groups.geometry != "line" or groups.model != BASE_MODEL:
-        return []
-    absent = {"smooth": solution.contact_load_share, "rest": solution.fluid_load_share, "mixed": 0.0}
-    found = []
-    for formula in FORMULAS:
-        if formula.predicts not in FIELDS_DRAWN or formula.interval is None or absent[formula.plane] >= NEGLIGIBLE_SHARE:
-            continue
-        if not bool(formula.valid(groups)):
-            continue
-        low, high = formula.interval(groups)
-        x = np.linspace(max(low, -reach), min(high, reach), 121)
-        if formula.predicts == "gap" and formula.plane == "rest" and low < 0 < high:
-            x = x[1:-1]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            value = np.asarray(formula(groups, x))
-        if np.isfinite(value).all():
-            found.append(AsymptoticField(formula.name, formula.worst, formula.predicts, x, value))
-    return found
+    assert solution.contact is not None
+    a = solution.contact.hertz.half_width
+    reach = round_up(a * reach) / a
+    nodes = solution.x[np.abs(solution.x) < reach]
+    return np.unique(np.concatenate([np.linspace(-reach, reach, 241), nodes[:: 1 + len(nodes) // 150]]))

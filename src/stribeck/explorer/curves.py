@@ -1,13 +1,13 @@
-"""Friction along the speed and the regimes around it: curve, transitions and phase diagram of a contact.
+"""Friction along the speed and the regimes around it: curve, transitions and map of a contact.
 
-All are read off the atlas where it holds; else the curve is solved, and the diagram row by row.
+All are read off the atlas where it holds; else the curve is solved, and the map row by row.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,29 +16,28 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import DEFINITIONS, Definition
+from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Groups
-from stribeck.curves import regime
-from stribeck.curves.atlas_curve import where_law_is_in_doubt
-from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
+from stribeck.curves.regime import Transition
+from stribeck.curves.stribeck_curve import Landmark, StribeckCurve, stribeck_curve
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError
-from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.regimes.transition_speeds import transition_speeds
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.band import Band
 
 __all__ = [
     "Curve",
     "Diagram",
-    "Transition",
     "axis_speeds",
     "curve_from_atlas",
-    "curve_notes",
     "decade_of_roughness",
+    "decades_around",
     "diagram_from_atlas",
     "hersey_scale",
     "in_atlas",
-    "solve_curve",
+    "round_down",
+    "round_up",
     "solved_curve",
     "solved_diagram",
     "transition_marks",
@@ -53,10 +52,6 @@ FIRST_RTOL = {"line": 5e-4, "point": SOLVED_RTOL}
 
 # Points of curves that are solved, by geometry; of a ball each point is a state where it is no function.
 SOLVED_POINTS = {"line": CURVE_POINTS, "point": 15}
-
-
-# Points of the curve that is solved for its notes and its picture where the page reads it off the atlas, by geometry.
-PRINTED_POINTS = {"line": 101, "point": 41}
 
 
 class SolvedRows(NamedTuple):
@@ -76,35 +71,55 @@ SOLVED_ROWS = {"line": SolvedRows(8, 25, 1e-3, room=10.0, is_quick=True), "point
 SPEED_POWERS = (1.0, 2.6)  # Least and largest power of the roughness as which the speeds of transitions grow.
 SPEED_MARGIN = 2.0  # Factor by which a row goes on beyond the speeds that these powers predict.
 
+# Ends of axes, times powers of ten: few, so that axes stay still while a slider moves.
+AXIS_ENDS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
+
 Report = Callable[[float], object]  # Callback with the finished part; an exception that it raises ends the work.
+Marks = Mapping[str, Landmark]
 
-
-@dataclass(frozen=True)
-class Transition:
-    """Where along the speed a regime ends."""
-
-    name: str  # `"boundary"`, `"hydrodynamic"` or `"minimum"`
-    speed: float  # Speed there [m/s]
-    error: float  # Relative error of the speed; nan where it is not known [-]
+# Transitions that are shown.
+SHOWN = {
+    "boundary": Transition.BOUNDARY_END,
+    "minimum": Transition.MINIMUM,
+    "hydrodynamic": Transition.HYDRODYNAMIC_START,
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Friction along the speed."""
+    """Friction along the speed as the page shows it."""
 
-    speed: Array  # Speeds [m/s]
-    friction: Mapping[Definition, Array]  # Friction coefficient by definition [-]
-    contact: Array  # Part of it from asperities [-]
-    transitions: tuple[Transition, ...]  # Those on it, and those beyond its ends
-    source: str  # Where it comes from, with its error
-    stale: bool = False  # Whether it belongs to inputs before the present ones
-    solved: StribeckCurve | None = None  # The solved curve that it shows; None off the atlas
-    doubtful: Array = field(default_factory=lambda: np.zeros(0, bool))
+    found: StribeckCurve  # The curve, solved or read off the atlas
+    marks: Marks  # The transitions on it and beyond its ends
+    notes: tuple[str, ...] = ()  # What to know of it, once it is solved finely
     band: Band | None = None  # What the errors of the inputs leave open, where some are given
 
-    def transition(self, name: str) -> Transition | None:
-        """Return the transition of a name, or None."""
-        return next((mark for mark in self.transitions if mark.name == name), None)
+    @property
+    def speed(self) -> Array:
+        """Speeds of its points [m/s]."""
+        return self.found.values
+
+    @cached_property
+    def friction(self) -> Mapping[Definition, FrictionArray]:
+        """Friction coefficient by definition, with its parts [-]."""
+        own = self.found.definition
+        return {each: self.found.friction if each == own else self.found.friction(definition=each) for each in DEFINITIONS}
+
+    @cached_property
+    def sizes(self) -> Mapping[Definition, Array]:
+        """Its size: where the cylinder is the faster body the substrate is dragged along [-]."""
+        return {definition: np.abs(np.asarray(friction.total)) for definition, friction in self.friction.items()}
+
+    @cached_property
+    def doubtful(self) -> Array:
+        """Where the contact law is outside its range."""
+        return self.found.law_in_doubt
+
+    @property
+    def source(self) -> str:
+        """Where it comes from, with its error."""
+        error = f"{self.found.error_estimate:.0e}".replace("e-0", "e-")
+        return f"from the lookup table, within {error}" if not self.found.states else f"solved; error {error}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,10 +127,7 @@ class Diagram:
     """Regimes over speed and roughness at the load of the contact."""
 
     roughness: Array  # Roughnesses [m]
-    boundary: Array
-    hydrodynamic: Array
-    minimum: Array
-    stale: bool = False  # Whether it belongs to inputs before the present ones
+    lines: Array  # Where boundary lubrication ends, hydrodynamic begins and friction is least; 0, inf or nan beyond [m/s]
     part: float = 1.0  # How much of its rows is there [-]
 
 
@@ -136,57 +148,62 @@ def in_atlas(contact: Contact) -> bool:
     return bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 
-def transition_marks(contact: Contact, definition: Definition) -> tuple[Transition, ...]:
-    """Return the transitions along the speed, ascending, from the atlas."""
+def transition_marks(contact: Contact, definition: Definition) -> Marks:
+    """Return the transitions along the speed from the atlas."""
     if contact.roughness == 0 or contact.boundary_friction == 0:
-        return ()
+        return {}
     groups, unit = contact.groups, _group_per_unit(contact, "speed")
-    boundary_friction, beta = contact.boundary_friction, contact.beta
-    found = transition_speeds(groups, boundary_friction, beta, definition, **RULES[groups.geometry].motion(contact))
-    marks = [
-        Transition(name, float(getattr(found, name)[0]) / unit, float(found.error[i, 0]))
-        for i, name in enumerate(("boundary", "hydrodynamic", "minimum"))
-    ]
-    return tuple(sorted((mark for mark in marks if 0 < mark.speed < math.inf), key=lambda mark: mark.speed))
+    motion = RULES[groups.geometry].motion(contact)
+    found = transition_speeds(groups, contact.boundary_friction, contact.beta, definition, **motion)
+    speeds = {name: float(getattr(found, name)[0]) / unit for name in SHOWN}
+    errors = dict(zip(("boundary", "hydrodynamic", "minimum"), found.error[:, 0].tolist(), strict=True))
+    return {
+        name: Landmark(SHOWN[name], speed, math.nan, error=errors[name], unit="m/s")
+        for name, speed in speeds.items()
+        if 0 < speed < math.inf
+    }
 
 
-def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequence[float] = ()) -> tuple[float, float]:
-    """Return whole decades of speed [m/s] around the contact, its transitions and measured speeds, within the table."""
+def decades_around(ends: tuple[float, float], speeds: Sequence[float]) -> tuple[float, float]:
+    """Return the ends of an axis, in whole decades farther where speeds lie beyond [m/s]."""
+    if not speeds:
+        return ends
+    low, high = (math.log10(end(speeds)) for end in (min, max))
+    return min(ends[0], 10.0 ** math.floor(low + 1e-9)), max(ends[1], 10.0 ** math.ceil(high - 1e-9))
+
+
+def round_up(value: float) -> float:
+    """Return the next larger end of an axis."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(f"{next(step for step in AXIS_ENDS if step * power >= value * (1 - 1e-9)) * power:.6g}")
+
+
+def round_down(value: float) -> float:
+    """Return the next smaller end of an axis."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(f"{next(step for step in AXIS_ENDS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
+
+
+def axis_speeds(contact: Contact, marks: Marks) -> tuple[float, float]:
+    """Return whole decades of speed [m/s] around the contact and its transitions, within the table."""
     unit = _group_per_unit(contact, "speed")
-    places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
+    places = [mark.value for mark in marks.values()] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
     low, high = 10.0 ** math.floor(math.log10(min(places)) - 0.7), 10.0 ** math.ceil(math.log10(max(places)) + 0.7)
-    if len(measured):
-        low = min(low, 10.0 ** math.floor(math.log10(min(measured)) + 1e-9))
-        high = max(high, 10.0 ** math.ceil(math.log10(max(measured)) - 1e-9))
-    row = atlas.for_groups(contact.groups)
-    if row is None:
-        return low, high
-    lowest, highest = (end / unit for end in row.speeds(contact.groups))
-    return max(low, lowest), min(high, highest)
+    return _in_table(contact, (low, high))
 
 
-def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
+def _in_table(contact: Contact, speeds: tuple[float, float]) -> tuple[float, float]:
+    """Return the part of an axis of speeds that the atlas has."""
+    unit = _group_per_unit(contact, "speed")
+    low, high = (end / unit for end in table_for(contact.groups).speeds(contact.groups))
+    return max(speeds[0], low), min(speeds[1], high)
+
+
+def curve_from_atlas(contact: Contact, definition: Definition, speeds: tuple[float, float], marks: Marks) -> Curve:
     """Return a curve read off the atlas."""
-    groups, unit, boundary_friction = contact.groups, _group_per_unit(contact, "speed"), contact.boundary_friction
-    speed = np.geomspace(*speeds, CURVE_POINTS)
-    row = table_for(groups)
-    along = Groups(np.clip(speed * unit, *row.speeds(groups)), groups.load, groups.roughness, **groups.physics)
-    rule = RULES[groups.geometry]
-    inputs = rule.of_contact(contact)
-    terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
-    solid = boundary_friction * float(rule.sliding_factor(groups, inputs)) * terms["balanced"][0]
-    friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
-    doubtful = where_law_is_in_doubt(along, contact, terms["balanced"][1])
-    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}", doubtful=doubtful)
-
-
-def curve_notes(contact: Contact, definition: Definition, report: Report) -> tuple[str, ...]:
-    """Return what ``stribeck curve`` says of the curve of a contact that the page reads off the atlas."""
-    try:
-        return solve_curve(contact, definition, report, PRINTED_POINTS[contact.INPUTS.geometry], SOLVED_RTOL).notes
-    except (InputError, SolveError) as problem:
-        return (str(problem),)
+    ends = _in_table(contact, speeds)
+    return Curve(stribeck_curve(contact, speed=ends, points=CURVE_POINTS, definition=definition, method="atlas"), marks)
 
 
 def solve_curve(
@@ -208,50 +225,20 @@ def solve_curve(
     )
 
 
-def solved_curve(
-    contact: Contact,
-    definition: Definition,
-    report: Report,
-    rtol: float = SOLVED_RTOL,
-) -> Curve:
+def solved_curve(contact: Contact, definition: Definition, report: Report, rtol: float = SOLVED_RTOL) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
     found = solve_curve(contact, definition, report, SOLVED_POINTS[contact.INPUTS.geometry], rtol)
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
     if len(found) < CURVE_POINTS:
         found = found.sampled(CURVE_POINTS)
-    speed = np.asarray(found.values)
-    doubtful = found.law_in_doubt
-    friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
-    contact_part = np.asarray(friction[definition].contact)
-    totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}
-    source = f"solved; estimated error {_power(found.error_estimate)}"
-    return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found, doubtful=doubtful)
+    return Curve(found, _marks_of(found), found.notes if rtol <= SOLVED_RTOL else ())
 
 
-def _interpolate(speed: Array, values: Array, at: Array) -> Array:
-    """Return values between those at some speeds, in logarithms unless some are negative."""
-    from scipy.interpolate import PchipInterpolator
-
-    if (values < 0).any():
-        return np.asarray(PchipInterpolator(np.log(speed), values)(np.log(at)))
-    tiny = 1e-300
-    return np.exp(PchipInterpolator(np.log(speed), np.log(np.maximum(values, tiny)))(np.log(at)))
-
-
-# Transitions of a curve that are shown.
-SHOWN_TRANSITIONS = {
-    "boundary": regime.Transition.BOUNDARY_END,
-    "minimum": regime.Transition.MINIMUM,
-    "hydrodynamic": regime.Transition.HYDRODYNAMIC_START,
-}
-
-
-def _marks_of(found: StribeckCurve) -> tuple[Transition, ...]:
+def _marks_of(found: StribeckCurve) -> Marks:
     """Return where the regimes of a solved curve end, within what its own tolerance leaves open."""
-    marks = [(name, found.landmark(mark, found.rtol)) for name, mark in SHOWN_TRANSITIONS.items()]
-    known = [Transition(name, mark.value, mark.error) for name, mark in marks if mark is not None]
-    return tuple(sorted(known, key=lambda mark: mark.speed))
+    marks = {name: found.landmark(mark, found.rtol) for name, mark in SHOWN.items()}
+    return {name: mark for name, mark in marks.items() if mark is not None}
 
 
 def solved_diagram(
@@ -278,13 +265,20 @@ def solved_diagram(
             lines[:, i], solved[here] = _row(contact.replace(roughness=here), definition, speeds, report, near)
         except (SolveError, InputError):
             pass  # its row stays empty
-        with np.errstate(divide="ignore", invalid="ignore"):  # a line may be at zero, at infinity, or missing
-            between = np.exp([np.interp(np.log(shown), np.log(roughness), np.log(line)) for line in lines])
-        for drawn, solved_speeds in zip(between, lines, strict=True):
-            known, inside = (np.isfinite(each) & (each > 0) for each in (solved_speeds, drawn))
-            if known.sum() > 2:
-                drawn[inside] = _interpolate(roughness[known], solved_speeds[known], shown[inside])
-        yield Diagram(shown, between[0], between[1], between[2], part=(number + 1) / len(order))
+        yield Diagram(shown, _between(roughness, lines, shown), part=(number + 1) / len(order))
+
+
+def _between(roughness: Array, lines: Array, shown: Array) -> Array:
+    """Return lines of a map at the rows that are shown, by monotone cubics of logarithms inside the axis."""
+    from scipy.interpolate import PchipInterpolator
+
+    with np.errstate(divide="ignore", invalid="ignore"):  # a line may be at zero, at infinity, or missing
+        found = np.exp([np.interp(np.log(shown), np.log(roughness), np.log(line)) for line in lines])
+    for line, drawn in zip(lines, found, strict=True):
+        known, inside = (np.isfinite(each) & (each > 0) for each in (line, drawn))
+        if known.sum() > 2:
+            drawn[inside] = np.exp(PchipInterpolator(np.log(roughness[known]), np.log(line[known]))(np.log(shown[inside])))
+    return found
 
 
 def _row(
@@ -300,10 +294,9 @@ def _row(
         rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
         if is_slow and (rises or high == whole[1]):
             break
-    marks = {mark.name: mark.speed for mark in _marks_of(found)}
+    marks = {name: mark.value for name, mark in _marks_of(found).items()}
     slow = found.regimes[0]
-    ends = found.values[-1] >= 0.99 * high
-    beyond = math.inf if ends else math.nan
+    beyond = math.inf if found.values[-1] >= 0.99 * high else math.nan
     boundary = marks.get("boundary", 0.0 if slow != "boundary" else beyond)
     hydrodynamic = marks.get("hydrodynamic", 0.0 if slow == "hydrodynamic" else beyond)
     return (boundary, hydrodynamic, marks.get("minimum", math.nan)), found
@@ -311,19 +304,13 @@ def _row(
 
 def _expected(roughness: float, whole: tuple[float, float], neighbour: StribeckCurve | None) -> tuple[float, float]:
     """Return speeds between which the transitions at a roughness should lie, by those of a curve at another one."""
-    marks = {} if neighbour is None else {mark.name: mark.speed for mark in _marks_of(neighbour)}
+    marks = {} if neighbour is None else {name: mark.value for name, mark in _marks_of(neighbour).items()}
     if neighbour is None or neighbour.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
         return whole
     factors = [(roughness / neighbour.contact.roughness) ** power for power in SPEED_POWERS]
     low, high = min(factors) * marks["boundary"] / SPEED_MARGIN, max(factors) * max(marks.values()) * SPEED_MARGIN
     low, high = max(low, whole[0]), min(high, whole[1])
     return (low, high) if low < high else whole
-
-
-def _power(error: float) -> str:
-    """Return an error with one digit."""
-    mantissa, _, exponent = f"{error:.0e}".partition("e")
-    return f"{mantissa}e{int(exponent)}"
 
 
 def decade_of_roughness(contact: Contact) -> int:
@@ -346,7 +333,5 @@ def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[f
     ends = max(speeds[0] * unit, lowest), min(speeds[1] * unit, highest)
     motion = RULES[groups.geometry].motion(contact)
     found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1, **motion)
-    boundary, hydrodynamic, minimum = (
-        np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)
-    )
-    return Diagram(roughness, boundary, hydrodynamic, minimum)
+    lines = np.stack([found.boundary, found.hydrodynamic, found.minimum]) / unit
+    return Diagram(roughness, np.where(inside == h, lines, math.nan))

@@ -1,27 +1,28 @@
-"""Files of the page: cases and measured curves in; pictures, data and the case that reproduces them out."""
+"""Files of the page: pictures, data and the case of what is shown."""
 
 from __future__ import annotations
 
-import csv
 import functools
 import io
-import json
 import re
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 from stribeck.cases.case import Case
+from stribeck.cases.law import SOURCES
 from stribeck.cases.reading import check_case
-from stribeck.contacts.friction import DEFINITIONS
-from stribeck.explorer.charts.picture import picture
-from stribeck.explorer.curves import Report, hersey_scale
-from stribeck.explorer.inputs.carried import model_changes, model_lines, tables_of, toml_text
-from stribeck.explorer.inputs.inputs import Inputs, exact_text
-from stribeck.explorer.view import View
-from stribeck.files.toml import parse_toml
-from stribeck.quantities.inputs import si_text
+from stribeck.contacts.contact import model_words
+from stribeck.curves.result import with_contact
+from stribeck.explorer.answer import Answer
+from stribeck.explorer.curves import hersey_scale
+from stribeck.explorer.inputs.inputs import Inputs, case_tables
+from stribeck.files.datasets import write_csv
+from stribeck.files.toml import parse_toml, toml_text
+from stribeck.plot.style import INK, SERIES
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["KINDS", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
@@ -44,8 +45,8 @@ def read_case(name: str, content: bytes) -> Case:
     """Return a case from the content of its file."""
     path = Path(shown_name(name))
     tables = parse_toml(content, path)
-    for table, key in (("surface", "spectrum"), ("table", "file")):
-        entries = tables.get(table)
+    for table, source in SOURCES.items():
+        key, entries = source.file, tables.get(table)
         if isinstance(entries, dict) and key in entries:
             raise InputError(
                 f"{path}: [{table}] {key} = {show(entries[key])} is a file that the browser did not send; "
@@ -83,13 +84,15 @@ def name_of(kind: str, title: str) -> str:
 
 def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     """Return the name of a pinned curve: the inputs in which it differs from the start."""
-    changed = [
-        f"{shown.label.lower()} {_rounded_text(inputs, name)}"
-        for name, shown in inputs.fields.items()
-        if name != "speed" and getattr(inputs.contact, name) != getattr(start.contact, name, None)
-    ]
-    if inputs.model != start.model:
-        changed = [*(f"{each}" for each in model_changes(inputs.model, start.model)), *changed]
+    changed = []
+    for name, row in inputs.fields.items():
+        value = getattr(inputs.contact, name)
+        if name != "speed" and value != getattr(start.contact, name, None):
+            changed.append(f"{row.label} {'none' if value is None else inputs.table.text(name, float(value), 4)}")
+    models = [(each.table.geometry, model_words(each.contact.groups, each.contact)) for each in (inputs, start)]
+    if models[0] != models[1]:
+        geometry = {"line": "cylinder", "point": "ball"}[models[0][0]]
+        changed.insert(0, models[0][1] or geometry)
     name = ", ".join(changed[:3]) or "start"
     if inputs.definition != start.definition:
         name += f", {inputs.definition}"
@@ -100,108 +103,78 @@ def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     return unique
 
 
-def _rounded_text(inputs: Inputs, name: str) -> str:
-    """Return an input as text with four digits: a fitted one has sixteen."""
-    value = getattr(inputs.contact, name)
-    return "none" if value is None else si_text(float(value), name, 4, inputs.table)
-
-
-def content(kind: str, shown: View, go_on: Report = lambda part: None) -> bytes:
+def content(kind: str, shown: Answer) -> bytes:
     """Return the content of a file of what is shown."""
-    what, _, ending = kind.partition(".")
+    what, _, ending = kind.rpartition(".")
+    if ending == "toml":
+        return case_text(shown).encode()
     if ending in ("png", "svg"):
-        return picture(shown, what, ending, go_on)
-    text = {"toml": case_text, "csv": curves_text, "profile.csv": profile_text}[kind]
-    return text(shown).encode()
+        file = io.BytesIO()
+        metadata: dict[str, Any] = {"Date": None} if ending == "svg" else {}
+        figure_of(shown, what).savefig(file, format=ending, metadata=metadata)
+        return file.getvalue()
+    found = shown.solution.to_dataset() if what else curves_dataset(shown)
+    with TemporaryDirectory(prefix="stribeck-") as folder:
+        path = Path(folder) / "data.csv"
+        write_csv(found.assign_attrs(title=shown.inputs.title), path)
+        return path.read_bytes()
 
 
-def case_text(shown: View) -> str:
+def case_text(shown: Answer) -> str:
     """Return the case file of the present state, with everything that the page keeps for it."""
-    inputs, curve = shown.answer.inputs, shown.answer.curve
-    model = tables_of(inputs.model)
-    rest = json.loads(inputs.rest) if inputs.rest else {}
-    errors = rest.pop("errors", {})
-    contact: dict[str, Any] = {name: model.pop(name) for name in ("geometry", "law") if name in model}
-    for name, field in inputs.fields.items():
-        kept, of = ("entrainment_speed", 0.5) if name == "speed" and _rolls(inputs) else (name, 1.0)
-        text = exact_text(inputs, name, of)
-        if text:
-            error = f" +- {100 * errors[name]!r} %" if name in errors else ""
-            contact[kept] = f"{text}{error}" if field.units or error else float(text)
-    tables: dict[str, Any] = {"title": inputs.title} if inputs.title else {}
-    tables |= {"notes": rest.pop("notes")} if "notes" in rest else {}
-    tables["contact"] = contact
-    if "surface" in model:
-        model["surface"] = {"shape_only": True, **model["surface"]}  # alpha, beta and roughness stand in [contact]
-    tables |= model
-    if "curve" not in rest and curve is not None and not curve.stale:
-        ends = [float(curve.speed[0]), float(curve.speed[-1])]
-        tables["curve"] = {"over": "speed", "range": ends, "points": len(curve.speed)}
-    return toml_text(tables | rest | {"solver": {"rtol": inputs.rtol, "definition": inputs.definition}})
+    tables = case_tables(shown.inputs)
+    if "curve" not in tables and shown.curve is not None and "curve" not in shown.stale:
+        ends = shown.curve.speed[[0, -1]].tolist()
+        tables["curve"] = {"over": "speed", "range": ends, "points": len(shown.curve.speed)}
+    return toml_text(tables)
 
 
-def _rolls(inputs: Inputs) -> bool:
-    """Return whether a case gives the speed as the mean of both surfaces: a ball and a disc that both move."""
-    return inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2
+def _present_curve(shown: Answer) -> Any:
+    """Return the curve through the present state."""
+    if shown.curve is None or "curve" in shown.stale:
+        raise InputError("the curve is not solved yet; save again when it is.")
+    return with_contact(shown.curve.found, shown.inputs.contact)
 
 
-def curves_text(shown: View) -> str:
-    """Return the curve, the pinned and the measured ones as CSV, one below the other."""
-    inputs = shown.answer.inputs
-    hersey = hersey_scale(inputs.contact)
-    curve = shown.answer.curve
-    curves = [] if curve is None or curve.stale else [(inputs.title or "present", curve, hersey)]
-    file = io.StringIO()
-    file.write(_head(shown))
-    for name, found, _ in (*curves, *shown.pins):
-        file.write(f"# {name}: {found.source}\n")
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(
-        [
-            "curve",
-            "speed [m/s]",
-            "hersey_number [1]",
-            *(f"friction_{name} [1]" for name in DEFINITIONS),
-            "friction_contact [1]",
-            "friction_measured [1]",
-        ]
-    )
-    for name, found, factor in (*curves, *shown.pins):
-        columns = (found.speed, found.speed * factor, *(found.friction[name] for name in DEFINITIONS), found.contact)
-        writer.writerows([name, *map(float, row), ""] for row in zip(*columns, strict=True))
+def figure_of(shown: Answer, what: str) -> Any:
+    """Return the picture of the curve, with pinned and measured ones, or of the state, as the package draws it."""
+    inputs = shown.inputs
+    if what == "state":
+        return shown.solution.plot(title=inputs.title)
+    curve, hersey = _present_curve(shown), inputs.abscissa == "hersey"
+    assert shown.curve is not None
+    band, verdict = shown.curve.band, shown.checks.headline
+    figure = curve.plot(title=inputs.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
+    axes = figure.axes[0]
+    added, heights = [], [np.array(axes.get_ylim())]
+    for i, pin in enumerate(each for each in shown.pins if each.curve is not None):
+        assert pin.curve is not None
+        places, friction = pin.curve.speed * (hersey_scale(pin.contact) if hersey else 1.0), pin.curve.sizes[inputs.definition]
+        style: Any = {"color": SERIES[-1 - i % len(SERIES)], "ls": (0, (3 + 2 * i, 2)), "lw": 1.4}
+        added += axes.plot(places, friction, label=pin.name, **style)
+        heights.append(friction[friction > 0])
     for each in shown.measured:
-        rows = zip(each.speed, each.places(inputs.contact, "hersey") * hersey, each.friction, strict=True)
-        writer.writerows([f"measured: {each.name}", float(speed), float(h), "", "", "", float(mu)] for speed, h, mu in rows)
-    return file.getvalue()
+        places = each.places(inputs.contact, inputs.abscissa) * (hersey_scale(inputs.contact) if hersey else 1.0)
+        added += axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=INK, label=each.name)
+        heights.append(each.friction[each.friction > 0])
+    if added:  # the others are named below the picture
+        all_heights = np.concatenate(heights)
+        axes.set_ylim(all_heights.min(), all_heights.max())
+        axes.legend(handles=added, frameon=False, fontsize=8)
+    return figure
 
 
-def profile_text(shown: View) -> str:
-    """Return gap and pressures along the contact as CSV."""
-    scales, profile = shown.answer.inputs.contact.hertz, shown.answer.profile
-    file = io.StringIO()
-    file.write(_head(shown))
-    file.write("# fields between the nodes of the solution are good to about 1e-4\n")
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["position [m]", "gap [m]", "contact_pressure [Pa]", "fluid_pressure [Pa]"])
-    columns = (
-        profile.x * scales.half_width,
-        profile.gap * scales.indentation,
-        profile.contact_pressure * scales.pressure,
-        profile.fluid_pressure * scales.pressure,
-    )
-    writer.writerows(map(float, row) for row in zip(*columns, strict=True))
-    return file.getvalue()
-
-
-def _head(shown: View) -> str:
-    inputs, solution = shown.answer.inputs, shown.answer.solution
-    lines = [
-        f"title: {inputs.title}",
-        f"source: stribeck {version('stribeck')}",
-        *(f"{name}: {text}" for name in inputs.fields if (text := exact_text(inputs, name))),
-        *model_lines(inputs.model),
-        f"definition: {inputs.definition}",
-        f"state: rtol {solution.rtol:g}, estimated error {solution.error_estimate:.1e}",
-        *(f"note: {note}" for note in solution.notes),
-    ]
-    return "".join(f"# {' '.join(line.split())}\n" for line in lines)
+def curves_dataset(shown: Answer) -> Any:
+    """Return the curve with its inputs, and the friction of the pinned ones at the same speeds, as a dataset."""
+    found = _present_curve(shown).to_dataset()
+    speed = found["speed"].values
+    for i, pin in enumerate(shown.pins, 1):
+        if pin.curve is not None:
+            low, high = pin.curve.speed[[0, -1]]
+            inside = (speed >= low) & (speed <= high)
+            friction = np.full(len(speed), np.nan)
+            friction[inside] = pin.curve.found.at(speed[inside]).friction
+            about = {"units": "1", "long_name": f"friction coefficient, {pin.name}"}
+            found[f"friction_pin_{i}"] = ("speed", friction, about)
+            found.attrs[f"pin_{i}"] = pin.name
+    return found

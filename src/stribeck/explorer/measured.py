@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,9 +13,9 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs
+from stribeck.explorer.inputs.tables import tables_of
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError
 
 __all__ = ["Fitted", "Measured", "fit_measured", "read_measured"]
@@ -52,23 +51,16 @@ class Fitted:
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
     """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones."""
-    settings = json.loads(now.rest).get("fit", {}) if now.rest else {}
+    settings = tables_of(now.tables).get("fit", {})
     found = fit(measured.source, now.contact, free=settings.get("free"), intervals=False, on_step=on_step)
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
     contact = now.contact.replace(**values)
-    after = replace(now, contact=contact, units=now.units)
-    fitted = ", ".join(
-        f"{now.fields[name].label.lower()} {si_text(value, name, 3, now.table)}" for name, value in values.items()
-    )
+    after = replace(now, contact=contact)
+    fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"
     target = measured.name if curves == 1 else f"{number} curves of {measured.file}"
     return Fitted(after, f"Fitted to {target}: {fitted}. Undo brings back the values before; intervals: stribeck fit.")
-
-
-def speeds_of(measured: Sequence[Measured], now: Inputs) -> list[float]:
-    """Return the places of measured points along the speed, as far as a logarithmic axis has them [m/s]."""
-    return [place for found in measured for place in found.places(now.contact, now.abscissa).tolist() if place > 0]
 
 
 def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:

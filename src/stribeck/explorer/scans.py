@@ -11,10 +11,9 @@ from typing import Any
 
 from stribeck.cases.law import law_of_file
 from stribeck.explorer.downloads import shown_name
-from stribeck.explorer.inputs.carried import json_text, tables_of
-from stribeck.explorer.inputs.inputs import Inputs, with_model
+from stribeck.explorer.inputs.inputs import Inputs, with_tables
+from stribeck.explorer.inputs.tables import json_text, tables_of
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
 from stribeck.surfaces.case_table import surface_table
@@ -59,13 +58,13 @@ def _without_options(sentence: str) -> str:
 
 def with_scan(now: Inputs, scan: Scan) -> Inputs:
     """Return the inputs on a measured surface: its roughness and Persson's law, with alpha and beta of its spectrum."""
-    tables = {name: table for name, table in tables_of(now.model).items() if name not in ("asperities", "table")}
+    tables = {name: table for name, table in tables_of(now.tables).items() if name != "table"}
     tables |= {"law": "persson", "surface": scan.table}
-    found = law_of_file("persson", {}, {"surface": scan.table}, Path()).coefficients
-    return with_model(
+    _, found = law_of_file("persson", {}, {"surface": scan.table}, Path())
+    return with_tables(
         now,
         json_text(tables),
-        roughness=quantity("roughness", scan.table["h_rms"]),
+        roughness=now.table.checked("roughness", scan.table["h_rms"]),
         alpha=found["alpha"],
         beta=found["beta"],
     )

@@ -17,8 +17,9 @@ from stribeck.cases.reading import load_case
 from stribeck.contacts.line import LineContact
 from stribeck.explorer.downloads import KINDS, name_of, shown_name
 from stribeck.explorer.inputs.inputs import Inputs, from_case, units_of
-from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length
+from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
 from stribeck.explorer.serving.guard import Guard, check_host
+from stribeck.explorer.serving.pools import FILES, run
 from stribeck.explorer.serving.tidy import set_aside
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, to_si
@@ -31,7 +32,7 @@ __all__ = ["serve"]
 HOST = "127.0.0.1"
 DEFAULT_PORTS = range(8765, 8815)  # Ports that are tried where none is asked for.
 
-OPENING_TIMEOUT = 120.0  # Time that a page may wait for its first answer, behind those of other pages [s].
+OPENING_TIMEOUT = 120.0  # Time that a page may wait until its address is read, behind those of other pages [s].
 
 RECONNECT_TIMEOUT = 30.0  # Time after which a page without browser is forgotten [s].
 
@@ -107,20 +108,21 @@ def build(start: Inputs, port: int, token: str) -> None:
     from starlette.requests import Request
     from starlette.responses import Response
 
-    from stribeck.explorer.opening import opening
     from stribeck.explorer.tab import TABS, Tab
 
     app.add_middleware(Guard, token=token, port=port)
-    style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
+    own = {
+        name: (Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("chart.css", "explorer.css", "chart.js")
+    }
 
     @ui.page("/", title="stribeck explorer", response_timeout=OPENING_TIMEOUT)
     async def index() -> None:
         request = ui.context.client.request
-        opened, shown = await opening(request.query_params.multi_items(), start)
-        ui.add_css(style)
-        ui.add_head_html(f"<script>{script}</script>")
+        opened = await run(FILES, decode, request.query_params.multi_items(), start)
+        ui.add_css(own["chart.css"] + own["explorer.css"])
+        ui.add_head_html(f"<script>{own['chart.js']}</script>")
         ui.colors(primary="#0072b2")
-        await Tab(opened, start, shown).open()
+        await Tab(opened, start).open()
 
     async def upload(request: Request) -> Response:
         tab = TABS.get(request.path_params["tab"])

@@ -1,32 +1,39 @@
-"""One open page: what the user does on it."""
+"""One open page: what the user does on it, and the answers that follow.
+
+One answer is on its way, and what takes longer comes when the inputs rest. What changes meanwhile is asked next, so that the
+last value wins and a slow machine shows fewer pictures instead of late ones.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import inspect
+import time
 import weakref
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import Any
 
-from nicegui import events, ui
+from nicegui import background_tasks, events
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
-from stribeck.explorer.charts.palette import LIGHT
-from stribeck.explorer.following import Following, Superseded, reason
+from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.inputs import choices, inputs, url
+from stribeck.explorer.inputs.history import History
 from stribeck.explorer.inputs.inputs import Inputs
-from stribeck.explorer.inputs.url import Pin
 from stribeck.explorer.measured import Measured, fit_measured
+from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of, without_rtol
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
-from stribeck.explorer.serving.pools import FILES, run
+from stribeck.explorer.serving.pools import FILES, Threads, run
 from stribeck.explorer.serving.tidy import tidy_soon
-from stribeck.explorer.view import View
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
+from stribeck.solver.solve_error import SolveError
 
-__all__ = ["TABS", "Tab"]
+__all__ = ["TABS", "Superseded", "Tab"]
 
 MAX_WAITING_PAGES = 50  # Pages that wait for their browser's first answer; of more the oldest is given up.
 WAITING_PAGES: list[Tab] = []  # Pages that were sent and whose browser did not answer yet.
@@ -36,93 +43,93 @@ TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
 
 MAX_MEASURED = 3  # Files of measured curves that a page shows.
 
+MARK_AFTER_SECONDS = 0.15  # Wait for an answer after which the old one is marked as old [s].
 
-class Tab(Following):
+# Age at which an unfinished answer is ended when the inputs change; a younger one is still shown [s].
+CANCEL_AFTER_SECONDS = 1.0
+
+IDLE_SECONDS = 0.4  # Pause after the last change before slow work begins [s].
+
+
+class Superseded(Exception):  # noqa: N818
+    """The inputs changed, or the page was closed, while something slow was computed for them."""
+
+
+def reason(problem: Exception) -> str:
+    """Return in a sentence why something could not be computed."""
+    if isinstance(problem, MissingExtraError):
+        return str(problem)
+    if isinstance(problem, InputError | SolveError):
+        return without_rtol(str(problem))
+    return f"Internal error ({' '.join(repr(problem).split())[:300]})."
+
+
+class Tab:
     """One open page."""
 
-    def __init__(self, opened: url.Opened, start: Inputs, shown: View) -> None:
-        super().__init__(opened, shown)
-        self.start = start
+    def __init__(self, opened: url.Opened, start: Inputs) -> None:
+        self.start, self.inputs, self.pins = start, opened.inputs, list(opened.pins)
+        self.measured: list[Measured] = []
+        self.problems: Problems = {key: {"typed": text, "sentence": said} for key, (text, said) in opened.problems.items()}
+        self.model, self.threads, self.history = Answerer(), Threads(), History(self.inputs)
+        self.answer: Answer | None = None
+        self.message = self.progress = ""
+        self.is_requested = self.working = self.closed = False
+        self.changes = self.answered_changes = 0
+        self.resting: asyncio.Task[Any] | None = None
+        self.page = Page()
+        self.page.on("act", self.act)
+        self.page.client.on_delete(self.close)
+        self.page.client.on_connect(self.rest)
+        self.actions: dict[str, Callable[..., Any]] = {
+            "slide": lambda name, place: self.attempt(name, "", place, inputs.with_slider, name, float(place)),
+            "type": lambda name, text: self.attempt(name, "", text, inputs.with_text, name, str(text)),
+            "unit": lambda name, unit: self.attempt(name, "", unit, inputs.in_unit, name, str(unit)),
+            "pick": lambda name, value: self.attempt(name, "", "", choices.choose, name, str(value)),
+            "detail": lambda name, key, text: self.attempt(name, key, text, choices.with_detail, name, key, str(text)),
+            "choose": lambda name, value: self.change(replace(self.inputs, **{name: value})),
+            "undo": lambda: self.step(-1),
+            "redo": lambda: self.step(1),
+            "retry": self.request,
+            **{name: getattr(self, name) for name in ("restore", "back", "pin", "remove", "example", "fit")},
+        }
         TABS[self.page.client.id] = self
-        self.connect()
-        self.page.draw_all(self.inputs, self.view())
-        self.problems = opened.problems
-        self.page.show_history(self.history.steps)
 
-    def connect(self) -> None:
-        """Let the elements of the page call what the user means by them."""
-        page = self.page
-        for name in (*inputs.NAMES, *inputs.GROUP_FIELDS):
-            knob = page.knobs[name]
-            knob.on("slide", lambda event, name=name: self.slide(name, event.args))
-            knob.on("commit", lambda event, name=name: self.commit(name, event.args))
-            knob.on("unit", lambda event, name=name: self.choose_unit(name, event.args))
-        for name in choices.CHOICES:
-            knob = page.knobs[name]
-            knob.on("pick", lambda event, name=name: self.pick(name, event.args))
-            knob.on("commit", lambda event, name=name: self.detail(name, event.args))
-        for name, toggle in page.toggles.items():
-            toggle.on_value_change(lambda event, name=name: self.choose(name, event.value))
-        page.client.on_delete(self.close)
-        page.client.on_connect(self.rest)
-        page.pin_button.on("click", self.pin)
-        page.fit_button.on("click", self.fit)
-        page.theme_button.on("click", self.toggle_theme)
-        page.retry.on("click", self.request)
-        page.back.on("click", self.go_back)
-        for path, item in page.examples.items():
-            item.on("click", lambda path=path: self.take_example(path))
-        for name, way in (("undo", -1), ("redo", 1)):
-            page.history[name].on("click", lambda way=way: self.step(way))
-        page.keyboard.on_key(self.on_key)
+    async def act(self, event: events.GenericEventArguments) -> None:
+        """Do what the user means."""
+        what, *given = event.args
+        done = self.actions[what](*given)
+        if inspect.isawaitable(done):
+            await done
 
-    def slide(self, name: str, place: Any) -> None:
-        """Take the place of a slider."""
-        self.page.moved = self.page.knobs[name].id
-        self.attempt(name, str(place), lambda: inputs.with_slider(self.inputs, name, float(place)))
+    # --- what the user does ---
 
-    def commit(self, name: str, text: Any) -> None:
-        """Take the text of a field."""
-        self.attempt(name, str(text), lambda: inputs.with_text(self.inputs, name, str(text)))
-
-    def choose_unit(self, name: str, unit: Any) -> None:
-        """Show a field in another unit."""
-        self.attempt(name, str(unit), lambda: inputs.in_unit(self.inputs, name, str(unit)))
-
-    def pick(self, name: str, value: Any) -> None:
-        """Choose a part of the model."""
-        self.attempt(name, "", lambda: choices.choose(self.inputs, name, str(value)))
-
-    def detail(self, name: str, given: Any) -> None:
-        """Take the text of a field of a part of the model."""
-        key, text = map(str, given)
-        self.attempt(name, key, lambda: choices.with_detail(self.inputs, name, key, text))
-
-    def choose(self, name: str, value: str) -> None:
-        """Take the definition of friction, or what the curve is drawn over."""
-        if getattr(self.inputs, name) != value:
-            self.change(replace(self.inputs, **{name: value}))  # type: ignore[arg-type]
-
-    def attempt(self, name: str, text: str, action: Callable[[], Inputs]) -> None:
+    def attempt(self, name: str, key: str, text: Any, action: Callable[..., Inputs], *given: Any) -> None:
         """Change the inputs, or mark the field with the reason why not."""
         try:
-            changed = action()
+            changed = action(self.inputs, *given)
         except InputError as problem:
-            self.page.mark(name, text, str(problem))
+            self.problems[name] = {"typed": str(text), "sentence": str(problem), "wrong": key}
+            self.show_form()
             return
-        self.page.renew(name)
+        self.restore(name)
         self.change(changed)
+
+    def restore(self, name: str) -> None:
+        """Show a field anew, without mark."""
+        self.problems.pop(name, None)
+        self.page.renew()
 
     def change(self, changed: Inputs) -> None:
         """Take new inputs and ask for their answer."""
         self.inputs = changed
         self.changes += 1
-        self.page.show_choices(changed)
         self.request()
 
-    def go_back(self) -> None:
+    def back(self) -> None:
         """Return to the inputs that are shown, and from these to those before."""
-        if self.inputs is self.answer.inputs:
+        self.problems.clear()
+        if self.answer is None or self.inputs is self.answer.inputs:
             self.step(-1)
         else:
             self.change(self.answer.inputs)
@@ -131,102 +138,64 @@ class Tab(Following):
         """Undo or redo."""
         found = self.history.step(way, self.inputs)
         if found is not None:
+            self.problems.clear()
             self.change(found)
-        self.page.show_history(self.history.steps)
-
-    def on_key(self, event: events.KeyEventArguments) -> None:
-        """Act on a keyboard shortcut, outside fields."""
-        if event.action.keydown and not (event.modifiers.ctrl or event.modifiers.alt or event.modifiers.meta):
-            if event.key == "p":
-                self.pin()
-            elif event.key == "t":
-                self.toggle_theme()
-            elif event.key == "l":
-                self.page.copy_address()
-
-    def toggle_theme(self) -> None:
-        """Go from light to dark or back."""
-        self.set_theme(self.page.palette is LIGHT)
-
-    def set_theme(self, dark: bool) -> None:
-        """Take the colours of the theme."""
-        self.page.set_theme(dark)
-        self.show_chips()
-        self.request()
+        self.page.show(**self.history.steps)
 
     def pin(self) -> None:
         """Keep the present curve."""
-        if len(self.pins) >= url.MAX_PINS:
-            ui.notify(f"Up to {url.MAX_PINS} curves can be pinned; remove one first.")
+        name = files.pin_name(self.inputs, self.start, [pin.title for pin in self.pins])
+        pins = [*self.pins, replace(self.inputs, title=name)]
+        try:
+            if len(pins) > url.MAX_PINS:
+                raise InputError(f"Up to {url.MAX_PINS} curves can be pinned; remove one first.")
+            url.check_length(self.inputs, pins)
+        except InputError as problem:
+            self.complain(str(problem))
             return
-        name = files.pin_name(self.inputs, self.start, [pin.name for pin in self.pins])
-        self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.model))
-        self.show_chips()
+        self.pins = pins
         self.request()
 
-    def unpin(self, pin: Pin) -> None:
-        """Drop a pinned curve."""
-        self.pins.remove(pin)
-        self.show_chips()
+    def remove(self, place: int) -> None:
+        """Drop a pinned or a measured curve."""
+        kept: list[Any] = self.pins if place < len(self.pins) else self.measured
+        del kept[place if kept is self.pins else place - len(self.pins)]
         self.request()
 
-    def show_chips(self) -> None:
-        """List the pinned and the measured curves."""
-        self.page.show_chips(self.pins, self.measured, self.unpin, self.forget)
-        self.page.show_fit(bool(self.measured))
-
-    def forget(self, found: Measured) -> None:
-        """Drop a measured curve."""
-        self.measured.remove(found)
-        self.show_chips()
-        self.request()
-
-    async def take_example(self, path: Path) -> None:
+    async def example(self, title: str) -> None:
         """Show an example."""
-        found = await run(FILES, lambda: inputs.from_case(load_case(path)))
-        with self.page.client:
-            self.begin(found)
+        path = files.examples()[title]
+        self.begin(await run(FILES, lambda: inputs.from_case(load_case(path))))
 
     def begin(self, found: Inputs) -> None:
         """Show the inputs of a case."""
         self.start = found
+        self.problems.clear()
         self.change(replace(found, abscissa=self.inputs.abscissa))
 
     async def take_file(self, name: str, content: bytes) -> None:
-        """Take a case, a measured curve or a surface that the browser sent."""
-        kinds = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
+        """Take a case, a measured curve or a surface that the browser sent; undo brings back the inputs before."""
+        kinds: dict[str, Any] = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
-        self.page.show_message(f"Reading {name} ...")
+        self.page.show(message=f"Reading {name} ...", failed=False)
         try:
             found = await run(FILES, read_file, kind, name, content, self.inputs.contact)
-        except InputError as problem:
-            self.page.show_message("")
-            self.page.complain(str(problem))
-            return
-        with self.page.client:
-            self.page.show_message("")
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):
-                self.take_scan(found)
+                self.change(with_scan(self.inputs, found))
+                self.message = found.report
             else:
                 self.measured = [*self.measured, *found][-MAX_MEASURED:]
-                self.show_chips()
                 self.request()
-
-    def take_scan(self, found: Scan) -> None:
-        """Show the contact on a measured surface; undo brings back the one before."""
-        try:
-            self.change(with_scan(self.inputs, found))
         except InputError as problem:
-            self.page.complain(str(problem))
-        else:
-            self.message = found.report
+            self.complain(str(problem))
+        self.page.show(message="")
 
     async def fit(self) -> None:
         """Fit the inputs to the measured curves of the last file; undo brings back those before."""
         now, last = self.inputs, self.measured[-1]
-        self.page.show_message(f"Fitting to {last.file} ...")
+        self.page.show(message=f"Fitting to {last.file} ...", failed=False)
 
         def step(*_: Any) -> None:
             if self.closed or self.inputs is not now:
@@ -235,26 +204,182 @@ class Tab(Following):
         try:
             fitted = await run(self.threads.slow, fit_measured, now, last, step, watch=step)
         except Superseded:
-            self.page.show_message("The fit was given up, as the inputs changed.", bad=True)
+            self.page.show(message="The fit was given up, as the inputs changed.")
         except Exception as problem:
-            self.page.show_message(f"No fit: {reason(problem)}", bad=True)
+            self.page.show(message=f"No fit: {reason(problem)}")
         else:
-            with self.page.client:
-                self.change(fitted.inputs)
-                self.message = fitted.report
+            self.change(fitted.inputs)
+            self.message = fitted.report
 
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
         try:
-            found: bytes = await run(
-                self.threads.slow, files.content, kind, self.view(), self.while_open, watch=self.while_open
-            )
+            answer = self.answer or await run(self.threads.live, self.model, self.inputs, watch=self.while_open)
+            found: bytes = await run(self.threads.slow, files.content, kind, answer, watch=self.while_open)
         except Superseded:
             return None
         except Exception as problem:
-            self.page.complain(str(problem) if isinstance(problem, MissingExtraError) else reason(problem))
+            self.complain(reason(problem))
             return None
         return found
+
+    def complain(self, text: str) -> None:
+        """Show sentences about a file until they are read."""
+        self.page.shown.pop("complaint", None)
+        self.page.show(complaint=text.splitlines())
+
+    # --- what follows ---
+
+    def request(self) -> None:
+        """Ask for the answer to the present inputs; only one is on its way."""
+        self.is_requested = True
+        if not self.working:
+            self.working = True
+            background_tasks.create(self.work(), name="explorer answers")
+
+    async def work(self) -> None:
+        """Answer until nothing is asked any more, the last inputs last."""
+        try:
+            while self.is_requested and not self.closed:
+                self.is_requested = False
+                now, changes = self.inputs, self.changes
+                try:
+                    self.answer = await self.compute(now, changes)
+                    await self.draw(message=self.message or self.other_problems(), failed=False)
+                    self.message = ""
+                except Superseded:
+                    continue
+                except Exception as problem:  # a page that silently no longer follows would be worse
+                    await self.keep_last_answer(problem)
+                self.answered_changes = changes
+        finally:
+            self.working = False
+        self.rest()
+
+    async def keep_last_answer(self, problem: Exception) -> None:
+        """Keep the last answer, with all that belongs to it, and say why the next one is not there."""
+        if not isinstance(problem, InputError | SolveError):
+            self.model = Answerer()  # what the failure left in the old one is not to be trusted
+        try:
+            if self.answer is None:
+                self.answer = await run(self.threads.live, self.model, self.start, watch=self.while_open)
+            await self.draw(message=f"{reason(problem)} What is shown belongs to the inputs before.", failed=True)
+        except Exception as again:
+            self.fail(f"{reason(again)} Reload the page.")
+
+    async def compute(self, now: Inputs, changes: int) -> Answer:
+        """Return the answer; where that takes longer than a moment, mark what is shown."""
+        began = time.monotonic()
+
+        def watch() -> None:
+            self.while_open()
+            if self.changes != changes and time.monotonic() - began > CANCEL_AFTER_SECONDS:
+                raise Superseded
+
+        work = asyncio.ensure_future(self.answer_to(now, watch))
+        done, _ = await asyncio.wait({work}, timeout=MARK_AFTER_SECONDS)
+        if not done:
+            self.page.show(working=True, **form_of(now, self.problems))
+        return await work
+
+    async def answer_to(self, now: Inputs, watch: Callable[..., None]) -> Answer:
+        """Return the answer to inputs with the pinned and measured curves."""
+        found: Answer = await run(self.threads.live, self.model, now, tuple(self.pins), tuple(self.measured), watch=watch)
+        return found
+
+    async def draw(self, **others: Any) -> None:
+        """Send what changed, and wait until the browser has drawn it."""
+        self.while_open()
+        assert self.answer is not None
+        parts = {"working": False, "source": self.progress or UPDATING_TEXT} | parts_of(self.answer)
+        try:
+            await self.page.show(**parts, **form_of(self.inputs, self.problems), **others)
+        except TimeoutError:  # a tab in the background answers when it is looked at
+            pass
+
+    def show_form(self) -> None:
+        """Show fields, lists and what is wrong with them."""
+        self.page.show(**form_of(self.inputs, self.problems))
+
+    def other_problems(self) -> str:
+        """Return what is wrong with what has no field."""
+        known = (*self.inputs.fields, *inputs.GROUP_FIELDS, *choices.CHOICES)
+        return "\n".join(problem["sentence"] for name, problem in self.problems.items() if name not in known)
+
+    def fail(self, sentence: str) -> None:
+        """Say what went wrong, and offer to try again or to go back."""
+        self.page.show(message=sentence, failed=True)
+
+    def is_shown(self, now: Inputs) -> bool:
+        """Whether the page shows the answer to these inputs, and no others were asked for since."""
+        same = self.answer is not None and self.answer.inputs is now
+        return same and self.answered_changes == self.changes and not self.closed
+
+    # --- when the inputs rest ---
+
+    def rest(self) -> None:
+        """Wait for a while without change, then do what takes longer."""
+        if self.closed or self.answer is None:
+            return
+        if self.resting is not None:
+            self.resting.cancel()
+        self.resting = background_tasks.create(self.settle(self.answer.inputs), name="explorer rests")
+
+    async def settle(self, now: Inputs) -> None:
+        """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
+
+        def go_on(*_: Any) -> None:
+            # What a browser left is given up at once, and done anew if it comes back.
+            if not self.is_shown(now) or not self.page.client.has_socket_connection:
+                raise Superseded
+
+        def report(part: float) -> None:
+            go_on()
+            self.progress = f"{UPDATING_TEXT} {100 * part:.0f} %"
+
+        self.progress = ""
+        idle = asyncio.ensure_future(self.remember(now))
+        try:
+            for part in self.model.at_rest(now):
+                await self.finish(part(report), now, go_on)
+                await idle
+        except Superseded:
+            return
+        finally:
+            idle.cancel()
+
+    async def finish(self, steps: Any, now: Inputs, go_on: Callable[..., None]) -> None:
+        """Do a part of the slow work, and show what it finds step by step; its failure holds up no other."""
+        while True:
+            step = asyncio.ensure_future(run(self.threads.slow, next, steps, False, watch=go_on))
+            step.add_done_callback(lambda task: task.cancelled() or task.exception())
+            try:
+                while not (await asyncio.wait({step}, timeout=IDLE_SECONDS))[0]:
+                    if self.answer is not None and "curve" in self.answer.stale and self.progress:
+                        self.page.show(source=self.progress)
+                if step.result() is False:
+                    return
+                if not self.is_shown(now) or self.working:
+                    raise Superseded
+                found = await self.answer_to(now, go_on)
+                if not self.is_shown(now) or self.working:
+                    raise Superseded
+                self.answer = found
+                await self.draw()
+            except Superseded:
+                raise
+            except Exception as problem:
+                self.fail(reason(problem))
+                return
+
+    async def remember(self, now: Inputs) -> None:
+        """Put the inputs that rest into the address and among the steps of undo."""
+        await asyncio.sleep(IDLE_SECONDS)
+        if self.is_shown(now):
+            self.history.rest(now)
+            self.page.show(address=f"?{url.encode(now, self.pins)}", **self.history.steps)
+
+    # --- the browser ---
 
     def while_open(self, *_: Any) -> None:
         """End slow work of a page that is gone."""
@@ -270,7 +395,7 @@ class Tab(Following):
             self.resting.cancel()
 
     async def open(self) -> None:
-        """Do what needs the browser: its theme, and what comes at rest."""
+        """Wait for the browser, and show the first answer."""
         WAITING_PAGES.append(self)
         while len(WAITING_PAGES) > MAX_WAITING_PAGES:
             WAITING_PAGES.pop(0).page.client.delete()
@@ -282,17 +407,6 @@ class Tab(Following):
         finally:
             if self in WAITING_PAGES:
                 WAITING_PAGES.remove(self)
-        if self.closed:
-            return
-        with self.page.client:
-            for name, (text, sentence) in self.problems.items():
-                self.page.mark(name, text, sentence)
-            self.show_chips()
-            try:
-                dark = await self.page.client.run_javascript("matchMedia('(prefers-color-scheme: dark)').matches", timeout=5)
-            except TimeoutError:
-                dark = False
-            if dark:
-                self.set_theme(True)
-            else:
-                self.request()
+        if not self.closed:
+            self.show_form()
+            self.request()

@@ -9,15 +9,15 @@ import csv
 import os
 import secrets
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, path_of, reason_of
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, need_extra, path_of, reason_of
+from stribeck.quantities.number import Number
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "import_xarray",
     "listed",
     "new_dataset",
+    "number_columns",
     "write_csv",
     "write_data",
     "write_netcdf",
@@ -70,6 +71,11 @@ def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], att
     return made
 
 
+def number_columns(numbers: Sequence[Number]) -> dict[str, Column]:
+    """Return numbers as columns of a dataset, each with its error or interval behind it where there is one."""
+    return {name: ((), *stated) for each in numbers for name, stated in each.stated.items()}
+
+
 def listed(values: Sequence[Any]) -> Any:
     """Return values as an array for a dataset: numbers and truth values as such, text as objects, which NetCDF keeps."""
     text = any(isinstance(each, str) for each in values)
@@ -96,8 +102,8 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
         atomic_write(path, CSV_ENDINGS, force=force) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
-        for name, value in dataset.attrs.items():
-            for line in _text(value).splitlines() or [""]:
+        for name, value in _about(dataset).items():
+            for line in value.splitlines() or [""]:
                 file.write(f"# {name}: {line}\n")
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(f"{name} [{dataset[name].attrs.get('units', '1')}]" for name in table)
@@ -117,7 +123,7 @@ def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = Fals
         pyarrow.field(name, column.type, metadata={key: str(value) for key, value in dataset[name].attrs.items()})
         for name, column in zip(columns, about, strict=True)
     ]
-    schema = pyarrow.schema(fields, metadata={name: _text(value) for name, value in dataset.attrs.items()})
+    schema = pyarrow.schema(fields, metadata=_about(dataset))
     with atomic_write(path, PARQUET_ENDINGS, force=force) as temporary:
         parquet.write_table(pyarrow.table(about, schema=schema), temporary)
 
@@ -162,11 +168,12 @@ def check_export(path: PathLike, *, force: bool = False) -> None:
         return
     check_writable(path, EXPORT_ENDINGS, force=force)
     for known, purpose, extra, library in (
+        (EXPORT_ENDINGS, "a data file", "data", "xarray"),
         (NETCDF_ENDINGS, "a NetCDF file", "data", "netCDF4"),
         (PARQUET_ENDINGS, "a Parquet file", "parquet", "pyarrow"),
     ):
-        if ending in known and find_spec(library) is None:
-            raise MissingExtraError(purpose, extra, library)
+        if ending in known:
+            need_extra(purpose, extra, library)
 
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
@@ -179,17 +186,33 @@ def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) 
 
 def _table(dataset: xarray.Dataset) -> dict[str, Any]:
     """Return coordinates and variables as columns, a row for each combination of the coordinates."""
-    dims = list(dataset.sizes)
-    if not any(set(variable.dims) == set(dims) for variable in dataset.data_vars.values()):
-        raise InputError(
-            f"no number of this dataset is along all of {', '.join(map(str, dims)) or 'its dimensions'}, so that it is no "
-            "table; write NetCDF (.nc) instead."
-        )
+    dims = _dims_of_table(dataset)
     empty = import_xarray("a table").DataArray(np.empty([dataset.sizes[dim] for dim in dims]), dims=dims)
-    names = [*(str(dim) for dim in dims), *(str(name) for name in dataset.data_vars)]
+    above = _above_table(dataset)
+    names = [*(str(dim) for dim in dims), *(str(name) for name in dataset.data_vars if name not in above)]
     return {name: dataset[name].broadcast_like(empty).transpose(*dims).values.ravel() for name in names}
 
 
+def _dims_of_table(dataset: xarray.Dataset) -> list[Hashable]:
+    """Return along what the rows of a table run: the dimensions of the first of the variables that have most of them."""
+    along = [list(each.dims) for each in dataset.data_vars.values()]
+    return max(along, key=len, default=[])
+
+
+def _above_table(dataset: xarray.Dataset) -> dict[Hashable, Any]:
+    """Return the variables that are no columns of the table, as they are the same in all rows or along something else."""
+    dims = set(_dims_of_table(dataset))
+    others = {name: each for name, each in dataset.variables.items() if not set(each.dims) <= dims}
+    return others | ({name: each for name, each in dataset.data_vars.items() if not each.dims} if dims else {})
+
+
+def _about(dataset: xarray.Dataset) -> dict[str, str]:
+    """Return as text what stands above a table: its attributes, and the numbers that all its rows share."""
+    shared = {f"{name} [{each.attrs['units']}]": _text(each.values) for name, each in _above_table(dataset).items()}
+    return {str(name): _text(value) for name, value in dataset.attrs.items()} | shared
+
+
 def _text(value: Any) -> str:
-    """Return an attribute as text."""
-    return ", ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else str(value)
+    """Return an attribute or a variable as text."""
+    values = np.ravel(value).tolist() if isinstance(value, np.ndarray) else [value]
+    return str(values[0]) if len(values) == 1 else ", ".join(map(repr, values))

@@ -2,18 +2,92 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from stribeck.files.datasets import write_csv, write_netcdf, write_parquet, write_zarr
+from stribeck.files.datasets import Column, listed, new_dataset, write_csv, write_netcdf, write_parquet, write_zarr
 from stribeck.files.writing import PathLike
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-__all__ = ["Drawn", "Exported"]
+__all__ = ["Drawn", "Exported", "Record", "Labelled", "Tabled", "columns_of_records"]
+
+
+Labelled = tuple[Mapping[str, Column], Mapping[str, Column], Mapping[str, Any]]
+"""Variables, coordinates and attributes of a dataset."""
+
+
+class Tabled:
+    """A result that is a labelled array."""
+
+    def _labelled(self) -> Labelled:
+        raise NotImplementedError
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the numbers with units, long names and errors as an xarray Dataset; its attributes hold what belongs to all.
+
+        Returns
+        -------
+        xarray.Dataset
+            Needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        return new_dataset(*self._labelled())
+
+
+class Record(Tabled):
+    """A result of a few numbers or words, of which many may stand in one table.
+
+    A class names the attributes that outputs hold, with unit and long name; where the unit is empty it is that of the record
+    itself, its attribute ``unit``. Two numbers, the ends of an interval, become two variables, such as ``low_95`` and
+    ``high_95`` of ``interval_95``.
+    """
+
+    _labels: ClassVar[Mapping[str, tuple[str, str]]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers and words under their names, ready for JSON.
+
+        Returns
+        -------
+        dict
+            By the names of the attributes.
+        """
+        values = {name: getattr(self, name) for name in self._labels}
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+
+    def _labelled(self) -> Labelled:
+        columns = columns_of_records((), [self], self._labels)
+        return {name: ((), *each[1:]) for name, each in columns.items()}, {}, {"title": type(self).__name__}
+
+
+def columns_of_records(
+    dims: str | tuple[()], records: Sequence[Any], labels: Mapping[str, tuple[str, str]]
+) -> dict[str, Column]:
+    """Return attributes of records as columns of a dataset; without a dimension those of the only record."""
+    columns: dict[str, Column] = {}
+    for name, (unit, label) in labels.items():
+        # Text that is missing is empty: files know no None.
+        values = ["" if (value := getattr(each, name)) is None else value for each in records]
+        units = {unit or each.unit or "1" for each in records}
+        common = units.pop() if len(units) == 1 else "see unit"
+        ends = {name: (label, values)}
+        if any(isinstance(value, tuple) for value in values):
+            short = name.removeprefix("interval_")
+            ends = {
+                f"{end}_{short}": (f"{end} end of the {label}", [value[i] for value in values])
+                for i, end in enumerate(("low", "high"))
+            }
+        for each, (said, found) in ends.items():
+            columns[each] = (dims, listed(found) if dims else found[0], common, said)
+    return columns
 
 
 class Drawn:
@@ -52,10 +126,12 @@ class Drawn:
         return figure
 
 
-class Exported(Drawn):
+class Exported(Drawn, Tabled):
     """A result that draws itself and writes its ``to_dataset``."""
 
-    to_dataset: Callable[..., xarray.Dataset]
+    def _sampled(self, sampling: Mapping[str, Any]) -> xarray.Dataset:
+        dataset_of: Callable[..., xarray.Dataset] = self.to_dataset
+        return dataset_of(**sampling)
 
     def to_netcdf(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as NetCDF.
@@ -74,7 +150,7 @@ class Exported(Drawn):
         InputError
             If the file cannot be written, or exists and ``force`` is not given.
         """
-        write_netcdf(self.to_dataset(**sampling), path, force=force)
+        write_netcdf(self._sampled(sampling), path, force=force)
 
     def to_csv(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as a table of values separated by commas, a row for each combination of its coordinates.
@@ -93,7 +169,7 @@ class Exported(Drawn):
         InputError
             If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
         """
-        write_csv(self.to_dataset(**sampling), path, force=force)
+        write_csv(self._sampled(sampling), path, force=force)
 
     def to_parquet(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as Parquet, a row for each combination of its coordinates; needs the extra ``parquet``.
@@ -112,7 +188,7 @@ class Exported(Drawn):
         InputError
             If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
         """
-        write_parquet(self.to_dataset(**sampling), path, force=force)
+        write_parquet(self._sampled(sampling), path, force=force)
 
     def to_zarr(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as a folder that ``xarray.open_zarr`` opens.
@@ -131,4 +207,4 @@ class Exported(Drawn):
         InputError
             If the folder cannot be written, or exists and ``force`` is not given.
         """
-        write_zarr(self.to_dataset(**sampling), path, force=force)
+        write_zarr(self._sampled(sampling), path, force=force)

@@ -1,5 +1,6 @@
-"""TOML files: read within bounds of size and depth, with sentences for what is wrong."""
+"""TOML files: written, and read within bounds of size and depth, with sentences for what is wrong."""
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 from stribeck.files.reading import content_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["parse_toml", "read_toml"]
+__all__ = ["parse_toml", "read_toml", "toml_text"]
 
 MAX_TOML_BYTES = 1_000_000
 
@@ -64,3 +65,31 @@ def _depth(table: Any) -> int:
         inner = [value.values() if isinstance(value, dict) else value for value in level]
         level = [value for values in inner for value in values if isinstance(value, dict | list)]
     return depth
+
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_text(tables: dict[str, Any], path: tuple[str, ...] = ()) -> str:
+    """Return tables as TOML."""
+    values = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    lines = [f"\n[{'.'.join(map(_key, path))}]\n"] if path and (values or not tables) else []
+    lines += [f"{_key(key)} = {_value(value)}\n" for key, value in values.items()]
+    lines += [toml_text(value, (*path, key)) for key, value in tables.items() if isinstance(value, dict)]
+    return "".join(lines)
+
+
+def _key(name: str) -> str:
+    return name if _BARE_KEY.fullmatch(name) else _value(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{_key(key)} = {_value(each)}' for key, each in value.items())} }}"
+    return repr(value)

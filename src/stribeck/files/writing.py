@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import errno
+import importlib.util
 import os
-import secrets
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,7 +12,16 @@ from typing import Any
 
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["MissingExtraError", "PathLike", "check_writable", "path_of", "reason_of", "atomic_write", "sync_folder"]
+__all__ = [
+    "MissingExtraError",
+    "PathLike",
+    "check_writable",
+    "need_extra",
+    "path_of",
+    "reason_of",
+    "atomic_write",
+    "sync_folder",
+]
 
 PathLike = str | os.PathLike[str]
 
@@ -26,6 +35,12 @@ class MissingExtraError(InputError, ImportError):
 
     def __init__(self, purpose: str, extra: str, library: str) -> None:
         super().__init__(f"{purpose} needs {library}; install it with: pip install 'stribeck[{extra}]'.")
+
+
+def need_extra(purpose: str, extra: str, library: str) -> None:
+    """Refuse what needs a library that is not installed."""
+    if importlib.util.find_spec(library) is None:
+        raise MissingExtraError(purpose, extra, library)
 
 
 def path_of(value: Any, name: str = "path") -> Path:
@@ -97,7 +112,7 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
 
 def _temporary_name(target: Path) -> Path:
     """Return a new hidden name in the folder of ``target``, with its ending."""
-    return target.with_name(f".stribeck-{secrets.token_hex(6)}{target.suffix}")
+    return target.with_name(f".stribeck-{os.urandom(6).hex()}{target.suffix}")
 
 
 def sync_folder(folder: Path) -> None:

@@ -18,17 +18,16 @@ from stribeck.cases.law import INPUTS_OF_SURFACES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
-from stribeck.fits.result import Fit, FittedInput
-from stribeck.quantities.conversions import CONVERSIONS
+from stribeck.fits.result import Fit
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import ALTERNATIVES
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError
 
-__all__ = ["check_fitted_case", "format_interval", "format_value", "load_fit_case", "write_fitted_case"]
+__all__ = ["check_fitted_case", "load_fit_case", "write_fitted_case"]
 
 DIGITS = 10  # Digits of the values in the file, enough to solve the same state again
 
@@ -153,7 +152,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
             continue
         place, key = _place(name)
         lines = [*comments(name), _entry_of(name, contact)]
-        instead: list[str] = [] if place != "contact" or key in given else _others(name, given)
+        instead: list[str] = [] if place != "contact" or key in given else _others(name, given, contact.INPUTS)
         if instead == ["youngs_modulus", "poisson_ratio"]:
             youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
             edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure")])
@@ -197,12 +196,9 @@ def _found_from_anywhere(line: str, folder: Path) -> str:
     return line if named is None else f"{named[1]}{json.dumps(str((folder / named[3]).resolve()))}{named[4]}"
 
 
-def _others(name: str, given: Mapping[str, Any]) -> list[str]:
+def _others(name: str, given: Mapping[str, Any], table: InputTable) -> list[str]:
     """Return the keys of a table that stand for an input, as those of a data sheet."""
-    alternatives = [each for each in ALTERNATIVES if each.of == name]
-    direct = [key for each in alternatives for key in (*each.inputs, *each.other)]
-    found = [each.name for row in CONVERSIONS if row.of in (name, *direct) for each in row.inputs]
-    return [key for key in given if key in (*direct, *found)]
+    return [key for key in given if table.stands_for.get(key) == name]
 
 
 def _number(value: Any) -> float:
@@ -214,7 +210,7 @@ def _number(value: Any) -> float:
 
 def _comments(name: str, fit: Fit) -> list[str]:
     return [
-        f"# {each.label}: 95 % {format_interval(each, 0.95)}" + ("" if each.curve is None else f", value {format_value(each)}")
+        f"# {each.label}: 95 % {each.texts[3]}" + ("" if each.curve is None else f", value {each.texts[0]}")
         for each in fit.inputs
         if each.name == name
     ]
@@ -234,21 +230,3 @@ def _place(name: str) -> tuple[str, str]:
     """Return the table and the key under which a case file has an input."""
     row = PART_INPUTS.get(name)
     return ("contact", name) if row is None else (row.table, row.name)
-
-
-def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:
-    """Return a value of a fitted input as short text with its unit."""
-    value = each.value if value is None else value
-    return f"{value:.{digits}g}" if each.is_factor else format_si(value, each.dimension, digits)
-
-
-def format_interval(each: FittedInput, level: float) -> str:
-    """Return an interval of a fitted input in words."""
-    low, high = each.interval_68 if level < 0.9 else each.interval_95
-    if low == 0 and math.isinf(high):
-        return "open"
-    if low == 0:
-        return f"below {format_value(each, high)}"
-    if math.isinf(high):
-        return f"above {format_value(each, low)}"
-    return f"{format_value(each, low)} to {format_value(each, high)}"

@@ -57,6 +57,12 @@ class Minimum:
         return math.sqrt(self.fall) / max(noise, 1e-300)
 
     @property
+    def relative_noise(self) -> Array:
+        """Standard error of each row over its friction."""
+        size = self.objective.size
+        return np.asarray(size if self.objective.logarithmic else size / self.prediction.friction)
+
+    @property
     def converged(self) -> bool:
         """Whether this is the optimum, within a hundredth of a standard error or the error of the states."""
         error = self.prediction.error / (self.prediction.friction if self.objective.logarithmic else 1.0)
@@ -75,7 +81,7 @@ def minimise(
     start: Array,
     fixed: dict[int, float] | None = None,
     most: int = MOST_EVALUATIONS,
-    on_step: Callable[[int], object] | None = None,
+    on_step: Callable[[], object] | None = None,
     tolerance: float = VALUE_TOLERANCE,
     flat: float = NO_INFORMATION,
     near: float = 0.0,
@@ -109,7 +115,7 @@ def minimise(
             kept.clear()
             kept[key] = goal.residuals(theta)
             if on_step is not None:
-                on_step(count)
+                on_step()
         return kept[key]
 
     def function(x: Array) -> Array:
@@ -209,7 +215,7 @@ def effective_parameters(at: Minimum) -> float:
     return float(np.trace(np.linalg.pinv(H + rows.T @ rows, rcond=1e-14) @ H))
 
 
-def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | None = None) -> Minimum:
+def settle(goal: Objective, start: Array, on_step: Callable[[], object] | None = None) -> Minimum:
     """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known."""
     found = minimise(goal, start, on_step=on_step)
     count = found.evaluations

@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed, split_header
-from stribeck.files.datasets import Column, new_dataset
-from stribeck.files.results import Exported
+from stribeck.files.datasets import Column
+from stribeck.files.results import Exported, Labelled
 from stribeck.files.text_table import TextTable, read_table
 from stribeck.files.writing import path_of
 from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
@@ -29,9 +29,6 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 
-if TYPE_CHECKING:
-    import xarray
-
 __all__ = ["Measurements", "read_measurements"]
 
 UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "hersey_per_length": "m-1"}
@@ -39,7 +36,7 @@ UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "her
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measurements(Exported, Shown, ByValue):
-    """Measured friction in SI units, each curve in order of increasing speed.
+    """Measured friction in SI units, each curve in order of increasing speed; its dataset has them along ``row``.
 
     Attributes
     ----------
@@ -107,22 +104,9 @@ class Measurements(Exported, Shown, ByValue):
             found["error"] = ("row", self.error, "1", "standard error of the measured friction coefficient")
         return found
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the rows as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``row`` of the file: curve, abscissa, friction, and its error where the file gives one; needs the extra
-            ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
+    def _labelled(self) -> Labelled:
         rows: dict[str, Column] = {"row": ("row", self.rows, "1", "row of the file")}
-        return new_dataset(self.columns(), rows, {"title": "Measured friction", "file": self.path})
+        return self.columns(), rows, {"title": "Measured friction", "file": self.path}
 
 
 @answers_typos

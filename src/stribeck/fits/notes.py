@@ -10,11 +10,11 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.geometries import LINE
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import FitOutcome, FittedInput
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import LINE
 
 __all__ = ["notes_of", "outcome_of"]
 

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.least_squares import Minimum
-from stribeck.fits.result import Fit
+from stribeck.fits.result import Fit, FittedInput, format_value
 from stribeck.fits.states.sources import in_atlas
+from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
 __all__ = ["Posterior", "draw_posterior"]
@@ -42,6 +44,8 @@ class Posterior:
         Whether the chain is longer than 50 of these times.
     message : str
         The same in words.
+    inputs : tuple of FittedInput
+        The inputs of the fit.
     """
 
     samples: Array = field(repr=False)
@@ -51,6 +55,23 @@ class Posterior:
     autocorrelation_time: float
     converged: bool
     message: str
+    inputs: tuple[FittedInput, ...] = ()
+
+    def __str__(self) -> str:
+        """Return the intervals as a table, and how well they are known."""
+        rows = [
+            (each.label, *(" to ".join(format_value(each, end) for end in ends) for ends in intervals))
+            for each, *intervals in zip(self.inputs, self.interval_68, self.interval_95, strict=True)
+        ]
+        return "\n".join([*table_lines([("posterior", "68 %", "95 %"), *rows]), self.message])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return intervals by input and how well they are known, ready for JSON."""
+        found = {name: getattr(self, name) for name in ("acceptance", "autocorrelation_time", "converged", "message")}
+        labels = [each.label for each in self.inputs]
+        for name in ("interval_68", "interval_95"):
+            found[name] = dict(zip(labels, getattr(self, name), strict=True))
+        return found | {"draws": len(self.samples)}
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
@@ -95,6 +116,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
         converged=converged,
         message=f"The posterior {how} ({walkers} walkers, {steps} steps, autocorrelation time {time:.3g} steps, "
         f"{100 * acceptance:.2g} % accepted).",
+        inputs=fit.inputs,
     )
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +14,20 @@ from stribeck.cases.fit_settings import FREE_INPUTS
 from stribeck.checks.check import Checks
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.geometries import LINE
+from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.part_inputs import all_input_rows
-from stribeck.files.datasets import Column, new_dataset
-from stribeck.files.results import Exported
+from stribeck.files.datasets import Column, listed
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.fits.states.interpolation import Between
-from stribeck.quantities.inputs import LINE, InputTable
-from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.formats import format_percent, format_si
+from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import DIMENSIONS
 
-if TYPE_CHECKING:
-    import xarray
-
-__all__ = ["Fit", "FitOutcome", "FittedInput"]
+__all__ = ["Fit", "FitOutcome", "FittedInput", "format_interval", "format_value"]
 
 
 class FitOutcome(Enum):
@@ -46,7 +46,7 @@ class FitOutcome(Enum):
 
 
 @dataclass(frozen=True)
-class FittedInput:
+class FittedInput(Record):
     """One fitted input.
 
     Attributes
@@ -85,16 +85,40 @@ class FittedInput:
     at_bound: bool
     dimension: str = "number"
 
+    _labels = {
+        "name": ("1", "input of the contact"),
+        "curve": ("1", "curve that has it for itself"),
+        "value": ("", "fitted value, or fitted factor"),
+        "unit": ("1", "SI unit; empty for numbers and factors"),
+        "start": ("", "where the fit began"),
+        "is_factor": ("1", "whether it is a common factor on values that differ between the curves"),
+        "standard_error": ("1", "standard error of its logarithm; nan at a bound"),
+        "at_bound": ("1", "whether it ended at one of its bounds"),
+        "interval_68": ("", "68 % interval"),
+        "interval_95": ("", "95 % interval"),
+    }
+
     @property
     def label(self) -> str:
         """Name for tables: the input, whether it is a factor, and its curve."""
         words = f"{self.name} factor" if self.is_factor else self.name
         return words if self.curve is None else f"{words} ({self.curve})"
 
+    @property
+    def texts(self) -> tuple[str, str, str, str]:
+        """Value, error, and intervals of 68 and 95 %, for tables."""
+        error = "at its bound"
+        if not math.isnan(self.standard_error):
+            error = format_percent(self.standard_error) if self.standard_error < 1 else "unknown"
+        return format_value(self), error, format_interval(self, 0.68), format_interval(self, 0.95)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Exported, Shown, ByValue):
+class Fit(Exported, Told, ByValue):
     """Inputs of a contact fitted to measured friction, with their intervals.
+
+    Its dataset has along ``row`` of the data curve, abscissa, measured and fitted friction and residual; along ``input`` what
+    each :class:`FittedInput` has.
 
     Attributes
     ----------
@@ -257,18 +281,12 @@ class Fit(Exported, Shown, ByValue):
         dict
             Numbers, text, lists and dictionaries of these; infinite where an interval is open.
         """
-        names = ("name", "curve", "value", "unit", "start", "is_factor", "standard_error", "at_bound")
-        inputs = [
-            {n: getattr(each, n) for n in names}
-            | {"interval_68": list(each.interval_68), "interval_95": list(each.interval_95)}
-            for each in self.inputs
-        ]
         quality = {name: getattr(self.quality, name) for name in self.quality.__dataclass_fields__}
         return {
             "converged": self.converged,
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "inputs": inputs,
+            "inputs": [each.to_dict() for each in self.inputs],
             "held": [
                 {
                     "name": name,
@@ -299,15 +317,16 @@ class Fit(Exported, Shown, ByValue):
                 | {key: value for key in (*FREE_INPUTS, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
-            "rows": {
-                "row": self.data.rows.tolist(),
-                "curve": [self.data.curves[k] for k in self.data.curve],
-                self.data.abscissa: self.data.values.tolist(),
-                "friction": self.data.friction.tolist(),
-                "fitted_friction": self.friction.tolist(),
-                "residual": self.residuals.tolist(),
-            },
+            "rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()},
         }
+
+    @property
+    def _rows(self) -> dict[str, Column]:
+        """What stands along the rows of the data."""
+        rows: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file"), **self.data.columns()}
+        rows["fitted_friction"] = ("row", self.friction, "1", "fitted friction coefficient")
+        label = "fitted less measured friction over the standard error of the row"
+        return rows | {"residual": ("row", self.residuals, "1", label)}
 
     def to_si(self) -> dict[str, float]:
         """Return the fitted values in SI units.
@@ -319,40 +338,87 @@ class Fit(Exported, Shown, ByValue):
         """
         return {each.label: each.value for each in self.inputs}
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return measured and fitted friction as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``row`` of the data: curve, abscissa, measured and fitted friction, residual; values and intervals of the
-            inputs as attributes; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        columns = self.data.columns() | {
-            "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),
-            "residual": ("row", self.residuals, "1", "fitted less measured friction over the standard error of the row"),
-        }
-        values: dict[str, Any] = {each.label: each.value for each in self.inputs}
-        values |= {f"{each.label} interval_95": np.array(each.interval_95) for each in self.inputs}
-        coords: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}
-        return new_dataset(columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value} | values)
+    def _labelled(self) -> Labelled:
+        columns, found = self._rows, columns_of_records("input", self.inputs, FittedInput._labels)
+        labels: Column = ("input", listed([each.label for each in self.inputs]), "1", "fitted input")
+        coords = {"row": columns.pop("row"), "input": labels}
+        columns |= {f"input_{name}": each for name, each in found.items()}
+        return columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value}
 
     def _card(self) -> Card:
-        rows = [
-            (each.label, f"{each.value:.4g} {each.unit} (95 %: {each.interval_95[0]:.4g} to {each.interval_95[1]:.4g})")
-            for each in self.inputs
-        ]
-        rows.append(("noise", f"{self.noise:.2g}{' of the friction' if self.logarithmic else ''}"))
-        rows.append(("data", f"{len(self.data)} rows, {len(self.data.curves)} curve{'s' * (len(self.data.curves) > 1)}"))
-        notes = (*self.quality.messages, *(each.message for each in self.undetermined), *self.notes)
-        return Card(self.outcome.value, rows, notes)
+        table = [("input", "fitted", "error", "68 %", "95 %", "case")]
+        table += [(each.label, *each.texts, format_value(each, each.start)) for each in self.inputs]
+        warnings = (*self.quality.messages, *(each.message for each in self.undetermined))
+        sentences = [self._source, self.data.taken, self._held_sentence, self._noise_sentence, self._error_sentence]
+        return Card(
+            self.outcome.value,
+            table=table,
+            sentences=[*filter(None, sentences), *(f"Warning: {each}" for each in warnings)],
+            notes=[note for note in self.notes if not self.checks.covers(note)],
+        )
+
+    @property
+    def _source(self) -> str:
+        data = self.data
+        curves = f", {len(data.curves)} curves" if len(data.curves) > 1 else ""
+        source = data.path or "measured friction"
+        return f"{len(data)} rows{curves} of {source}; contact law: {self.law}; friction: {self.definition}."
+
+    @property
+    def _held_sentence(self) -> str:
+        shown = []
+        for name in self.held:
+            values = {getattr(contact, name, None) for contact in self.contacts}
+            [value, *others] = values
+            dimension = all_input_rows(self.contact.INPUTS)[name].dimension
+            known = "of each curve" if others or value is None else format_si(value, dimension, 4)
+            shown.append(f"{name} {known}")
+        if not shown:
+            return ""
+        return (
+            f"Held fixed: {', '.join(shown)}. "
+            "Their uncertainty is not included in the errors above; to include it, use free or priors in the "
+            "table [fit] of the case."
+        )
+
+    @property
+    def _noise_sentence(self) -> str:
+        quality = self.quality
+        misfit = "no systematic misfit detected" if quality.structure_probability >= 0.01 else "systematic misfit detected"
+        size = format_percent(self.noise) if self.logarithmic else f"{self.noise:.2g}"
+        noise = f"{size} of noise; {misfit}"
+        if math.isnan(self.noise):
+            noise = (
+                f"chi squared {quality.chi_squared:.3g} for {quality.degrees_of_freedom:.3g} degrees of freedom "
+                f"(p = {quality.chi_squared_probability:.2g}); {misfit}"
+            )
+        return f"Residuals: {noise} (p = {quality.structure_probability:.2g})."
+
+    @property
+    def _error_sentence(self) -> str:
+        shift = f"; replacing the lookup table by the solver moved it by {self.solver_shift:.1g} standard errors"
+        shift = "" if math.isnan(self.solver_shift) else shift
+        return f"The fitted friction comes from the solver, with relative error {self.model_error:.1g}{shift}."
 
 
 def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
     return "" if is_factor else DIMENSIONS[all_input_rows(table)[name].dimension].unit
+
+
+def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:
+    """Return a value of a fitted input as short text with its unit."""
+    value = each.value if value is None else value
+    return f"{value:.{digits}g}" if each.is_factor else format_si(value, each.dimension, digits)
+
+
+def format_interval(each: FittedInput, level: float) -> str:
+    """Return an interval of a fitted input in words."""
+    low, high = each.interval_68 if level < 0.9 else each.interval_95
+    if low == 0 and math.isinf(high):
+        return "open"
+    if low == 0:
+        return f"below {format_value(each, high)}"
+    if math.isinf(high):
+        return f"above {format_value(each, low)}"
+    return f"{format_value(each, low)} to {format_value(each, high)}"

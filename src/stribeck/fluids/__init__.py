@@ -11,4 +11,4 @@ _HOMES = {
     "rheology.rate_laws": ("Carreau", "Cross", "PowerLaw"),
     "rheology.viscosity": ("Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands"),
 }
-__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)
+__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, has_laws=True)

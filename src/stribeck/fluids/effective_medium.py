@@ -26,7 +26,6 @@ from stribeck.fluids.flow_factors import (
     MIN_FLOW_FACTOR,
     add_floor,
     check_alpha,
-    homotopy_roughness,
     nominal_separation,
     scaled_roughness,
     with_sigma,
@@ -99,10 +98,6 @@ class EffectiveMedium(FlowFactors):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the factors in Hertz units."""
         return with_sigma(self, scaled_roughness(self.alpha, units))
-
-    def milder(self, part: float) -> Self:
-        """Return the factors of a part of the roughness."""
-        return with_sigma(self, homotopy_roughness(self.sigma or 0.0, part))
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return phi_x and its slope."""

@@ -154,10 +154,6 @@ class PatirCheng(FlowFactors):
         """Return the factors in Hertz units."""
         return with_sigma(self, scaled_roughness(self.alpha, units))
 
-    def milder(self, part: float) -> Self:
-        """Return the factors of a part of the roughness."""
-        return with_sigma(self, homotopy_roughness(self.sigma or 0.0, part))
-
     def pressure(self, gap: Array) -> tuple[Array, Array]:
         """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
         H, by_gap = self._separation(gap)

@@ -6,38 +6,17 @@ Steady flow keeps the mass flux m, the flux gap h*, the same at every x.  The la
 
 Gaps and m are in u_Hz, pressures in p_Hz, tractions in :math:`\eta_0 U/u_\mathrm{Hz}` with U the sum of the surface speeds.
 A new fluid is a new law of viscosity, density or rate (:mod:`stribeck.fluids.laws`), or one frozen class that has the members
-of :class:`Film`, and ``decay(speed)`` if its pressure does not fall off as an even power.
+of :class:`Film`, and ``decay(speed)`` if its pressure does not fall off as an even power.  Its functions take values or
+traces of them (:mod:`stribeck.numerics.trace`), so that their derivatives follow.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, Self
-
-import numpy as np
+from typing import Any, NamedTuple, Protocol, Self
 
 from stribeck._types import Array, Numbers
 
-MAX_CACHED_SHAPES = 16  # Shapes of node arrays for which a film caches its last gradient and slopes.
-
-Key = tuple[object, ...]  # Exact arguments of a film's last evaluation.
-
-
-def key_of(*asked: Array | Numbers | None) -> Key:
-    """Return a key of the exact arguments of a film; arguments that mostly differ go first."""
-    return tuple((each.shape, each.tobytes()) if isinstance(each, np.ndarray) else each for each in asked)
-
-
-class Slopes(NamedTuple):
-    """The derivatives of a nodal quantity by gap, pressure, flux gap and ln U; None stands for zero everywhere.
-
-    ``by_speed`` holds gap, pressure and flux gap: it is what relaxation times and yield stresses do, as their ratio to the
-    time and the stress of the film changes with U.  The factor lambda before G is not in it.
-    """
-
-    by_gap: Array
-    by_pressure: Array | None
-    by_flux: Array
-    by_speed: Array | None = None
+MAX_CACHED_SHAPES = 16  # Numbers of nodes for which a film caches what it was last.
 
 
 class Decay(NamedTuple):
@@ -75,36 +54,24 @@ class Film(Protocol):
     def slide(self) -> float:
         """Sliding over the sum of the speeds, ``s = (u1 - u2)/(u1 + u2)``, half the slide-to-roll ratio."""
 
-    def at(self, speed: Numbers) -> Self:
+    def at(self, speed: Any) -> Self:
         """Return the film at a speed group, or a column of them: what all below are asked of."""
 
-    def milder(self, part: float) -> Self:
-        """Return the film with a part of what its laws do, 0 to 1, nearly Newtonian at 0: a way to a state."""
-
-    def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+    def gradient(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return G, the pressure gradient over lambda [u_Hz**-2]."""
 
-    def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return the derivatives of G."""
-
-    def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
+    def tractions(self, gap: Any, pressure: Any, flux_gap: Any) -> tuple[Any, Any]:
         """Return the drag of the fluid on the substrate and on the cylinder, against their sliding.
 
         Newtonian: ``s/h + 3 h G`` and ``s/h - 3 h G``.  Over x they differ by the pull of the pressure on the curved surface.
         """
 
-    def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
-        """Return the derivatives of both tractions, those through G included."""
-
-    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+    def cavity_traction(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return the drag on either wall where the film is cavitated.
 
         The liquid fills the part ``m/h`` of the width (over the density ratio), from wall to wall, and is sheared at the rate
         ``s/h`` without a pressure gradient.
         """
-
-    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return the derivatives of :meth:`cavity_traction`."""
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return sentences on where this state leaves the range of the fluid's laws; mostly none."""

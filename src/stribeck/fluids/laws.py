@@ -52,10 +52,6 @@ class Law(Protocol):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units; a law without numbers that have a unit returns itself."""
 
-    @abstractmethod
-    def milder(self, part: float) -> Self:
-        """Return a law of this kind that does less: nearly nothing at part 0, all of it at 1; a way to a state."""
-
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return sentences on where a state leaves the range of the law, in Hertz units; mostly none."""
         return ()
@@ -123,10 +119,6 @@ class Smooth(FlowFactors):
 
     def scaled(self, units: FilmUnits) -> Self:
         """Return itself: it has no numbers."""
-        return self
-
-    def milder(self, part: float) -> Self:
-        """Return itself: it does nothing."""
         return self
 
     def pressure(self, gap: Array) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ corrector).
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
@@ -38,17 +38,10 @@ S = TypeVar("S", bound=State)
 class Path(Generic[S]):
     """The points that a march accepted, in its order, and how it ended."""
 
-    coordinates: tuple[float, ...]  # Where the accepted states lie, every target that was reached among them exactly
+    coordinates: tuple[float, ...]  # Where the accepted states lie
     states: tuple[S, ...]  # The accepted states
-    outcome: Outcome  # CONVERGED at the end asked for, PATH_LOST, INTERRUPTED, or that of the first state if this failed
+    outcome: Outcome  # CONVERGED at the end asked for, PATH_LOST, or that of the first state if this failed
     failure: S | None  # The last state that failed; where the path was lost, its outcome says why
-
-    def at(self, coordinate: float) -> S:
-        """Return the state recorded at exactly this coordinate."""
-        try:
-            return self.states[self.coordinates.index(coordinate)]
-        except ValueError:
-            raise ValueError(f"the path holds no point at {coordinate!r}; {self.outcome.value}") from None
 
 
 @dataclass(frozen=True)
@@ -76,9 +69,7 @@ def march(
     stop: float,
     steps: Steps,
     *,
-    targets: Iterable[float] | None = None,
     history: Sequence[tuple[float, S]] = (),
-    on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
     """Follow states from one coordinate to another in steps that adapt to the effort of the corrector."""
     if not (math.isfinite(start) and math.isfinite(stop)):
@@ -86,10 +77,6 @@ def march(
     if history and history[-1][0] != start:
         raise ValueError(f"history ends at {history[-1][0]!r}; its last point must lie at start = {start!r}")
     sign = 1.0 if stop >= start else -1.0
-    ahead = sorted({*map(float, targets or ()), stop} - {start}, key=lambda s: sign * s)
-    if ahead and not sign * start < sign * ahead[0] <= sign * ahead[-1] <= sign * stop:
-        raise ValueError(f"targets reach from {ahead[0]!r} to {ahead[-1]!r}; they must lie in {start!r}..{stop!r}")
-
     points = list(history)
     failure: S | None = None
     length, may_grow = steps.first, True
@@ -97,41 +84,30 @@ def march(
     def path(outcome: Outcome) -> Path[S]:
         return Path(tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failure)
 
-    try:
-        if not points:
-            state = correct(start, [])
-            if state is None or not state.outcome.ok:
-                failure = state
-                return path(Outcome.PATH_LOST if state is None else state.outcome)
-            points.append((start, state))
-            if on_point is not None:
-                on_point(start, state)
-        while ahead:
-            here = points[-1][0]
-            target = ahead[0]
-            left = abs(target - here)
-            step = left if left <= length else min(length, 0.5 * left)
-            s = target if step == left else here + sign * step
-            state = correct(s, points[-steps.order - 1 :]) if s != here else None
-            if state is None or not state.outcome.ok:
-                failure = failure if state is None else state
-                length, may_grow = 0.5 * step, False
-                if length < steps.shortest:
-                    return path(Outcome.PATH_LOST)
-                continue
-            points.append((s, state))
-            if s == target:
-                del ahead[0]
-            if on_point is not None:
-                on_point(s, state)
-            factor = min(MAX_STEP_GROWTH, max(1.0 / MAX_STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
-            if factor < 1.0:
-                length = max(steps.shortest, factor * step)
-            elif may_grow:  # a step cut short by a target does not shorten the next one
-                length = min(steps.longest, max(length, factor * step))
-            may_grow = True
-    except KeyboardInterrupt:
-        return path(Outcome.INTERRUPTED)
+    if not points:
+        state = correct(start, [])
+        if state is None or not state.outcome.ok:
+            failure = state
+            return path(Outcome.PATH_LOST if state is None else state.outcome)
+        points.append((start, state))
+    while (here := points[-1][0]) != stop:
+        left = abs(stop - here)
+        step = left if left <= length else min(length, 0.5 * left)
+        s = stop if step == left else here + sign * step
+        state = correct(s, points[-steps.order - 1 :]) if s != here else None
+        if state is None or not state.outcome.ok:
+            failure = failure if state is None else state
+            length, may_grow = 0.5 * step, False
+            if length < steps.shortest:
+                return path(Outcome.PATH_LOST)
+            continue
+        points.append((s, state))
+        factor = min(MAX_STEP_GROWTH, max(1.0 / MAX_STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
+        if factor < 1.0:
+            length = max(steps.shortest, factor * step)
+        elif may_grow:
+            length = min(steps.longest, factor * step)
+        may_grow = True
     return path(Outcome.CONVERGED)
 
 

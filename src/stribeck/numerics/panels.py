@@ -20,6 +20,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
 
 MAX_PANELS = 128  # Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator
@@ -180,6 +181,35 @@ class Mesh:
         t, weights, to_tail = towards_infinity(self.order)
         x = 1 / (t * self.half_widths[-1])
         return x, weights * self.half_widths[-1] * x**2, to_tail
+
+    @cached_property
+    def to_beyond(self) -> Matrix:
+        """Nodal values -> their polynomial in 1/x at the nodes beyond the panels in ``x``."""
+        return self._beyond_by(self.beyond[2])
+
+    @cached_property
+    def density_beyond(self) -> Matrix:
+        """Nodal values -> what they are there, where their integral has that polynomial as its density in 1/x."""
+        x, _, to_beyond = self.beyond
+        return self._beyond_by(to_beyond * self.stretch[-self.order :] / x[:, None] ** 2)
+
+    def _beyond_by(self, block: Array) -> Matrix:
+        """Return the operator of all nodes that takes those of the last panel by a block."""
+        found = np.zeros((len(block), self.size))
+        found[:, -self.order :] = block
+        return Matrix(found)
+
+    @cached_property
+    def inner_weights(self) -> Matrix:
+        """Nodal values -> their integral over the panels in ``x``."""
+        row = self.weights.copy()
+        row[-self.order :] = 0.0
+        return Matrix(row[None])
+
+    @cached_property
+    def arm(self) -> Matrix:
+        """Nodal values -> their first moment over the panels in ``x``."""
+        return Matrix(self.inner_weights.matrix * self.nodes)
 
     def lengths_at(self, x: Array) -> Array:
         """Return the lengths of the panels at ``x``; on that through infinity the distance, over which fields change there."""

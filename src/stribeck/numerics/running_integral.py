@@ -128,6 +128,11 @@ class RunningIntegral:
         result += (values @ self._arrived.T)[..., None]
         return np.asarray(result.reshape(values.shape))
 
+    @cached_property
+    def matrix(self) -> Array:
+        """A itself, shape (size, size)."""
+        return self.after(np.eye(self.mesh.size))
+
     def after(self, operator: Array) -> Array:
         """Return ``operator @ A``, shape (rows, size), in Fortran order."""
         columns = np.ascontiguousarray(operator.T).reshape(self.mesh.panels, self.mesh.order, -1)
@@ -193,6 +198,11 @@ class Volterra:
             arrived = sign * sources @ to_edges.T
             result[..., panels, :] += arrived[..., None] * answer[panels]
         return np.asarray(result.reshape(values.shape))
+
+    @property
+    def matrix(self) -> Array:
+        """``(I - A f)^-1 A`` itself, shape (size, size)."""
+        return self.after(np.eye(self.integral.mesh.size))
 
     def after(self, operator: Array) -> Array:
         """Return ``operator @ (I - A f)^-1 A``, shape (rows, size)."""

@@ -1,14 +1,14 @@
-r"""Taylor series: arithmetic, and solutions of equations order by order.
+r"""Taylor series: of functions from their values, and of solutions of equations order by order.
 
 A solution of :math:`R(w(t), t) = 0` is expanded about t = 0.  The coefficient of order k of the residual is linear in that of
 the solution,
 
 .. math:: J w_k = -R_k|_{w_k = 0},
 
-with the Jacobian at the solution: one factorisation serves all orders.  What is nonlinear is either composed of products,
-quotients and exponentials, whose coefficients follow from those of lower order, or known by its values alone: then the
-coefficients are those of a polynomial near its values on [-r, r], which has them also where the function is not quite smooth,
-with fewer digits.
+with the Jacobian at the solution: one factorisation serves all orders.  The residual is made of jets,
+:mod:`stribeck.numerics.jets`, or known by its values alone: then the coefficients are those of a polynomial near its values on
+[-r, r], which has them also where the function is not quite smooth, with fewer digits.  A function of complex numbers has them
+to rounding by its values on a circle.
 
 Coefficients are in the first axis, order by order.  The module knows no physics.
 Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
@@ -16,11 +16,9 @@ Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from operator import mul
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -31,87 +29,35 @@ __all__ = [
     "Samples",
     "along",
     "beyond",
-    "exponential",
+    "circle",
     "implicit_series",
-    "integral_of_product",
     "interval",
-    "logarithm",
-    "product",
     "radius",
-    "reciprocal",
 ]
+
+EPSILON = float(np.finfo(float).eps)
 
 MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 
 COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
+
+CIRCLE_NOISE = 16 * EPSILON  # Rounding of coefficients from values on a circle, over the largest times powers of its radius
+
+REFINED_ORDERS = 2  # Orders that are refined with their residual: rounding of thin films shows in the first ones
+
+# If refining the first order changes it by more than this fraction, the kept factors are too old and every order is refined:
+# the published drag of thin films errs by up to a hundred times as much.
+OLD_INVERSE = 1e-8
 
 INTERVAL_ORDER = 12  # Values on an interval, unless more are asked for
 
 PADE_DENOMINATOR_DEGREE = 6  # Highest degree of the denominator of an extrapolation
 
 
-def product_term(a: Array, b: Array, k: int) -> Array:
-    """Return the coefficient of order k of a product."""
-    if a.ndim == 1:
-        return np.asarray(a[: k + 1] @ b[k::-1])
-    return np.asarray(np.einsum("j...,j...->...", a[: k + 1], b[k::-1]))
-
-
-def exponential_term(slopes: Array, values: Array, k: int) -> Array:
-    """Return the coefficient of order k >= 1 of an exponential from its own lower ones and those of its argument, times k."""
-    return product_term(slopes[1:], values, k - 1) / k
-
-
-def exponential(logs: Array) -> Array:
-    """Return the series of the exponential of a series of numbers."""
-    slopes, found = (logs * np.arange(len(logs))).tolist(), [math.exp(logs[0])]
-    for k in range(1, len(logs)):
-        found.append(sum(map(mul, slopes[1:], reversed(found))) / k)
-    return np.array(found)
-
-
 def along(rate: float, order: int) -> Array:
     """Return the series of ``exp(rate t)``."""
     found = np.ones(order + 1)
     np.cumprod(rate / np.arange(1.0, order + 1), out=found[1:])
-    return found
-
-
-def logarithm(values: Array) -> Array:
-    """Return the series of the logarithm of a series of numbers."""
-    first, *others = values.tolist()
-    found, slopes = [math.log(first)], [0.0]
-    for k, value in enumerate(others, 1):
-        found.append((value - sum(map(mul, slopes[1:], reversed(others[: k - 1]))) / k) / first)
-        slopes.append(k * found[k])
-    return np.array(found)
-
-
-def product(a: Array, b: Array) -> Array:
-    """Return the series of a product of two, of numbers or of rows."""
-    if a.ndim == 1:
-        return np.convolve(a, b)[: len(a)]
-    padded = np.concatenate([np.zeros_like(b[1:]), b])
-    row, column = padded.strides
-    # Row j of window k is that of order j - (len(a) - 1 - k), zero below order zero.
-    windows = np.ndarray((len(a), *a.shape), buffer=padded, strides=(row, row, column))
-    return np.asarray(np.einsum("kjn,jn->kn", windows, a[::-1]))
-
-
-def integral_of_product(a: Array, b: Array, weights: Array) -> Array:
-    """Return the series of the sum over the last axis of a product of two, times weights."""
-    orders = np.arange(len(a))
-    products: Array = (a * weights) @ b.T
-    found = np.bincount(np.add.outer(orders, orders).ravel(), products.ravel())
-    return np.asarray(found[: len(a)], dtype=float)
-
-
-def reciprocal(values: Array) -> Array:
-    """Return the series of one over a series."""
-    found = np.zeros_like(values)
-    found[0] = 1.0 / values[0]
-    for k in range(1, len(values)):
-        found[k] = -found[0] * product_term(values[1:], found, k - 1)
     return found
 
 
@@ -124,7 +70,12 @@ class Samples:
 
     def taylor(self, values: Array, order: int) -> Array:
         """Return the Taylor coefficients up to ``order``, shape (order + 1, ...), of values, shape (n, ...)."""
-        return np.asarray(np.tensordot(self.weights[: order + 1], values, 1))
+        found = np.tensordot(self.weights[: order + 1], values, 1).real
+        if np.iscomplexobj(self.places):  # what rounding leaves of a coefficient is none
+            reach = np.abs(self.places[0]) ** np.arange(order + 1.0)
+            sizes = np.abs(found.T) * reach
+            found.T[sizes < CIRCLE_NOISE * sizes.max(axis=-1, keepdims=True)] = 0.0
+        return np.asarray(found)
 
     def powers(self, order: int) -> Array:
         """Return the powers of the places up to ``order``, shape (n, order + 1)."""
@@ -137,6 +88,15 @@ def interval(reach: float, count: int = INTERVAL_ORDER, degree: int | None = Non
     matrix = _to_taylor(count)[-1 if degree is None else degree]
     orders = np.arange(len(matrix))
     return Samples(reach * chebyshev.chebpts1(count), matrix * reach ** -orders[:, None].astype(float))
+
+
+def circle(reach: float, order: int) -> Samples:
+    """Return samples in the upper half plane of a function that is real on the real line, for its orders up to one."""
+    count = 2 * (order // 2 + 2)
+    angles, orders = 2 * np.pi / count * np.arange(count // 2 + 1), np.arange(order + 1)
+    twice = np.where(np.arange(len(angles)) % (count // 2) == 0, 1.0, 2.0)
+    weights = twice / count * np.exp(-1j * orders[:, None] * angles) * reach ** -orders[:, None].astype(float)
+    return Samples(reach * np.exp(1j * angles), weights)
 
 
 @lru_cache(maxsize=4)
@@ -152,19 +112,19 @@ def _to_taylor(count: int) -> list[Array]:
 
 
 def implicit_series(
-    start: Array,
-    samples: Samples,
-    local: Callable[[int, Array], Array],
-    residual: Callable[[int, Array, Array], Array],
-    inverse: Callable[[Array], Array],
-    order: int,
-) -> Array:
-    """Return the Taylor coefficients of the solution of an equation."""
-    found = np.zeros((order + 1, *start.shape))
-    found[0] = start
-    for k in range(1, order + 1):
-        found[k] = inverse(residual(k, found, samples.weights[k] @ local(k, found)))
-    return found
+    found: Array, coefficient: Callable[[int], Array], inverse: Callable[[Array], Array], refines: bool = False
+) -> None:
+    """Write the Taylor coefficients of the solution of an equation below the first one.
+
+    ``coefficient(k)`` is that of the residual with the coefficients that are written so far.
+    """
+    is_old = False
+    for k in range(1, len(found)):
+        found[k] = inverse(coefficient(k))
+        if refines and (k <= REFINED_ORDERS or is_old):
+            change = inverse(coefficient(k))
+            is_old = is_old or (k == 1 and np.abs(change).max() > OLD_INVERSE * np.abs(found[1]).max())
+            found[k] += change
 
 
 def radius(coefficients: Array, reach: float = 1.0, rounding: float = COEFFICIENT_NOISE) -> float:

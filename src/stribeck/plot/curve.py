@@ -11,14 +11,12 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import input_texts
 from stribeck.contacts.friction_rules import RULES, speed_words
-from stribeck.curves.atlas_curve import AtlasCurve
-from stribeck.curves.base_curve import BaseCurve
+from stribeck.contacts.geometries import LINE
 from stribeck.curves.result import StribeckCurve
 from stribeck.fits.measurements import Measurements
 from stribeck.plot import style
 from stribeck.plot.state import law_text
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, add_legend, make_logarithmic, new_figure
-from stribeck.quantities.inputs import LINE, si_text
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 from stribeck.uncertainty.result import Uncertainty
 
@@ -47,7 +45,7 @@ class Interval(Protocol):
 
 @style.picture("the panel is unknown or does not exist for this curve")
 def plot_curve(
-    curve: StribeckCurve | AtlasCurve,
+    curve: StribeckCurve,
     *,
     ax: Axes | None = None,
     title: str = "",
@@ -92,7 +90,7 @@ def plot_curve(
 
 
 def _draw_curve(
-    curve: BaseCurve,
+    curve: StribeckCurve,
     caption: list[list[str]],
     notes: list[str],
     title: str,
@@ -162,7 +160,7 @@ def _include(axes: Axes, x: Any, y: Any) -> None:
         change(min(positive), max(positive))
 
 
-def _label(curve: BaseCurve) -> str:
+def _label(curve: StribeckCurve) -> str:
     """Return the label of the coordinate."""
     if curve.contact is None:
         return f"{curve.over} group {GROUP_SYMBOLS[curve.over]}"
@@ -173,11 +171,11 @@ def _label(curve: BaseCurve) -> str:
 
 
 def _draw_friction(
-    axes: Axes, curve: BaseCurve, x: Array, label: str, band: Interval | None = None, *, parts: bool = True
+    axes: Axes, curve: StribeckCurve, x: Array, label: str, band: Interval | None = None, *, parts: bool = True
 ) -> None:
     """Draw the sizes of friction and of its parts, the landmarks, and what errors of the inputs leave open."""
-    total, contact, viscous = map(np.abs, (curve.friction.total, curve.friction_contact, curve.friction_viscous))
-    error, positive = curve.friction_error, total[total > 0]
+    total, contact, viscous = map(np.abs, (curve.friction.total, curve.friction.asperities, curve.friction.fluid))
+    error, positive = curve.friction.error, total[total > 0]
     if positive.size:
         axes.set_yscale("log")
     # Through the marks too, which lie beside straight lines between few points.
@@ -212,7 +210,7 @@ def _draw_friction(
     axes.set_ylabel(r"size of friction coefficient $|\mu|$" if (curve.friction.total < 0).any() else style.FRICTION)
 
 
-def _draw_films(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
+def _draw_films(axes: Axes, curve: StribeckCurve, x: Array, label: str) -> None:
     """Draw central and minimum film and the roughness: lengths for a contact, in units of the indentation for groups."""
     central, minimum = curve.observable("central_gap"), curve.observable("minimum_gap")
     roughness = np.broadcast_to(np.asarray(curve.groups.relative_roughness), len(curve)).astype(float)
@@ -222,7 +220,7 @@ def _draw_films(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
         indentation = np.array([each.hertz.indentation for each in contacts])
         factor, unit = style.readable_unit("length", float((indentation * central).max()))
         central, minimum, roughness = (factor * indentation * each for each in (central, minimum, roughness))
-        roughness, symbol = roughness * curve.contact.alpha, LINE.symbols["roughness"]
+        roughness, symbol = roughness * curve.contact.alpha, LINE.kept["roughness"].symbol
     axes.plot(x, central, color=INK, lw=2.0, label="central film")
     axes.plot(x, minimum, color=FLUID, lw=1.5, ls=(0, (3, 1.5)), label="minimum film")
     films = np.concatenate([central, minimum])
@@ -236,7 +234,7 @@ def _draw_films(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
     _draw_ground(axes, curve, x, label)
 
 
-def _draw_shares(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
+def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array, label: str) -> None:
     """Draw the shares of the load."""
     axes.plot(x, curve.observable("contact_load_share"), lw=1.8, **style.CONTACT_LINE)
     axes.plot(x, curve.observable("fluid_load_share"), lw=1.8, **style.FLUID_LINE)
@@ -244,7 +242,7 @@ def _draw_shares(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
     _draw_ground(axes, curve, x, label)
 
 
-def _draw_ground(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
+def _draw_ground(axes: Axes, curve: StribeckCurve, x: Array, label: str) -> None:
     """Shade and name regimes, mark the contact, hatch where the check of the contact law is not fine, and set the abscissa."""
     make_logarithmic(axes, "x", x)
     axes.tick_params(axis="x", which="both", pad=6.5)  # Apart from the number at the lower end of the other axis
@@ -270,26 +268,26 @@ def _draw_ground(axes: Axes, curve: BaseCurve, x: Array, label: str) -> None:
         axes.fill_between(ends, 0.0, 0.035, where=np.repeat(curve.law_in_doubt, 2).tolist(), **strip)
 
 
-def _along(curve: BaseCurve, x: Array, values: Any) -> Any:
+def _along(curve: StribeckCurve, x: Array, values: Any) -> Any:
     """Return where values of what varies lie along an abscissa that the points of a curve have; its points exactly."""
     found = np.exp(np.interp(np.log(values), np.log(curve.values), np.log(x)))
     known = dict(zip(curve.values.tolist(), x.tolist(), strict=True))
     return np.array([known.get(float(value), at) for value, at in np.broadcast(values, found)]).reshape(np.shape(values))
 
 
-def _place(curve: BaseCurve, value: float) -> str:
+def _place(curve: StribeckCurve, value: float) -> str:
     if curve.contact is None:
         return f"{curve.over} group {value:.3g}"
-    return si_text(value, curve.over, 3, curve.contact.INPUTS)
+    return curve.contact.INPUTS.text(curve.over, value, 3)
 
 
-def _caption(curve: StribeckCurve | AtlasCurve) -> tuple[list[list[str]], list[str]]:
+def _caption(curve: StribeckCurve) -> tuple[list[list[str]], list[str]]:
     """Return inputs and how they were solved, and how the curve ended where it is not whole."""
     first = input_texts(curve.contact, curve.over)
     if curve.contact is None:
         first += [rf"$\mu_0$ = {curve.boundary_friction:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
-    if isinstance(curve, AtlasCurve):
-        return [[*first, f"read off the atlas, within {curve.table.error:.1g}", style.program()]], []
+    if not curve.states:
+        return [[*first, f"read off the atlas, within {curve.rtol:.1g}", style.program()]], []
     for name in ("speed", "load", "roughness"):
         values = np.asarray(getattr(curve.groups, name))
         if np.ptp(values) <= 1e-12 * values[0]:

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit
 from stribeck.plot import style
@@ -90,7 +89,7 @@ def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, 
 
 def _caption(fit: Fit, notes: bool) -> tuple[list[list[str]], list[str]]:
     """Return what stands below the picture: values and how the fit ended, and the notes where they are wanted."""
-    parts = [f"{each.label} {format_value(each)} (95 % {format_interval(each, 0.95)})" for each in fit.inputs]
+    parts = [f"{each.label} {each.texts[0]} (95 % {each.texts[3]})" for each in fit.inputs]
     noise = "" if math.isnan(fit.noise) else f" Noise {fit.noise:.2g}{', relative' if fit.logarithmic else ''}."
     ended = f"{fit.outcome.value}{noise} Contact law: {fit.law}; friction: {fit.definition}."
     warnings = [*fit.quality.messages, *(each.message for each in fit.undetermined)] if notes else []

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.geometries import LINE
 from stribeck.plot import style
 from stribeck.plot.style import (
     CONTACT,
@@ -28,7 +29,6 @@ from stribeck.plot.style import (
     new_figure,
 )
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import LINE
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -251,7 +251,7 @@ def _name_region(axes: Axes, regime: str, left: Array, right: Array, y: Array) -
 def _label(dataset: xarray.Dataset, name: str) -> str:
     """Return the label of an axis."""
     unit = dataset[name].attrs["units"]
-    return f"{name} group {GROUP_SYMBOLS[name]}" if unit == "1" else f"{name} {LINE.symbols[name]} ({unit})"
+    return f"{name} group {GROUP_SYMBOLS[name]}" if unit == "1" else f"{name} {LINE.kept[name].symbol} ({unit})"
 
 
 def _caption(dataset: xarray.Dataset, loads: list[float]) -> tuple[list[list[str]], list[str]]:
@@ -259,9 +259,9 @@ def _caption(dataset: xarray.Dataset, loads: list[float]) -> tuple[list[list[str
     attributes, is_si = dataset.attrs, dataset["load"].attrs["units"] != "1"
     values = dict.fromkeys(format_si(load, LINE.quantities["load"].dimension, 4) if is_si else f"{load:.4g}" for load in loads)
     first = [f"{'load' if is_si else 'load group'} {' and '.join(values)}"]
-    for key, symbol in LINE.symbols.items():
+    for key, row in LINE.kept.items():
         if f"input_{key}" in attributes:
-            first.append(f"{symbol} = {format_si(attributes[f'input_{key}'], LINE.quantities[key].dimension, 4)}")
+            first.append(f"{row.symbol} = {format_si(attributes[f'input_{key}'], row.dimension, 4)}")
     if "input_radius" not in attributes:
         first += [rf"$\mu_0$ = {attributes['boundary_friction']:.4g}", rf"$\beta$ = {attributes['beta']:.4g}"]
     solved, all_states = int((dataset.regime.values >= 0).sum()), dataset.regime.size

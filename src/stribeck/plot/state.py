@@ -9,6 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import input_texts
+from stribeck.contacts.geometries import LINE
 from stribeck.plot import style
 from stribeck.plot.style import (
     GREY,
@@ -22,7 +23,6 @@ from stribeck.plot.style import (
     readable_unit,
     with_unit,
 )
-from stribeck.quantities.inputs import LINE
 from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.solution import Solution
@@ -124,7 +124,7 @@ def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to
     rms = 0.0 if solution is None else float(solution.groups.relative_roughness) * (1.0 if contact is None else contact.alpha)
     if rms > max(0.0, 0.03 * gap.min()):
         shown = np.append(gap, rms)
-        symbol = r"$h_\mathrm{rms}/\alpha$" if contact is None else LINE.symbols["roughness"]
+        symbol = r"$h_\mathrm{rms}/\alpha$" if contact is None else LINE.kept["roughness"].symbol
         axes.axhline(factor * rms, label=f"roughness {symbol}", **style.ROUGHNESS_LINE)
     if gap.min() > 0:
         make_logarithmic(axes, "y", factor * shown)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stribeck.plot import style
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, new_figure, readable_unit
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import format_error, format_si
 from stribeck.surfaces.analysis import Surface
 
 __all__ = ["plot_surface"]
@@ -118,7 +118,7 @@ def _caption(surface: Surface) -> list[str]:
     """Return what was found, for the caption."""
     found, (alpha, beta) = surface.to_dict(), surface.fit.exponential_limit(surface.gamma)
     parts = [
-        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {error_text(found['h_rms_error'])}",
+        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {format_error(found['h_rms_error'], 'length')}",
         rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",
         rf"$\alpha$ = {alpha.value:.3f} ({alpha.interval})",
         rf"$\beta$ = {beta.value:.3g} ({beta.interval})",
@@ -127,12 +127,6 @@ def _caption(surface: Surface) -> list[str]:
         f"trend {surface.shape.trend}",
         style.program(),
     ]
-    if found["body_radius"] is not None:
+    if math.isfinite(found["body_radius"]):
         parts.insert(4, f"radius of the body {format_si(found['body_radius'], 'length')}")
     return parts
-
-
-def error_text(error: float) -> str:
-    """Return a length with two digits and no power of ten."""
-    number, _, unit = format_si(error, "length", 2).partition(" ")
-    return f"{float(number):g} {unit}"

@@ -5,57 +5,117 @@ The table ``[check]`` of case files and :func:`stribeck.check` read it: one row 
 
 from __future__ import annotations
 
-import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.keywords import known_names
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["FACTS", "ROWS", "Fact", "fact_values"]
 
 
-@dataclass(frozen=True)
-class Fact:
-    """One fact that checks ask for."""
+@dataclass(frozen=True, kw_only=True)
+class Fact(Input):
+    """One fact that checks ask for; a law of the contact may hold a number of its name already."""
 
-    name: str  # Name in Python and in the table `[check]`
-    label: str  # Name in sentences
-    dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
-    typical: str  # A value, and of what it is
-    source: str  # A value, and of what it is
-    models: tuple[str, ...] = ()  # Where a contact may hold it already, such as `"solid.layer_thickness"`
+    zero: bool = True
 
 
 # The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
 ROWS = (
     Fact(
-        "pressure_viscosity",
-        "pressure-viscosity coefficient",
-        "compliance",
-        "20 1/GPa",
-        "mineral oil 15 to 25, water below 1",
-        ("fluid.viscosity.pressure_coefficient",),
+        name="pressure_viscosity",
+        label="pressure-viscosity coefficient",
+        dimension="pressure coefficient",
+        typical="20 1/GPa",
+        source="mineral oil 15 to 25, water below 1",
     ),
-    Fact("layer_thickness", "thickness of the soft layer", "length", "2 mm", "rubber of a seal", ("solid.layer_thickness",)),
-    Fact("loss_tangent", "loss tangent at the frequency U/a", "number", "0.1", "filled rubber", ("solid.loss_tangent",)),
-    Fact("supply_film", "film that arrives at the inlet", "length", "10 um", "a wiped rod"),
-    Fact("thinning_rate", "shear rate at which the fluid begins to thin", "rate", "1e6 1/s", "multigrade oil"),
-    Fact("molecular_size", "size of the fluid's molecules", "length", "1 nm", "oil; water 0.3 nm, polymer coils 10 to 100 nm"),
-    Fact("thermal_conductivity", "thermal conductivity of the fluid", "conductivity", "0.15 W/m/K", "oil; water 0.6"),
-    Fact("thermal_thinning", "relative change of viscosity per kelvin", "per kelvin", "0.04 1/K", "oil; water 0.02"),
-    Fact("density", "density of the fluid", "density", "870 kg/m^3", "oil; water 1000"),
     Fact(
-        "work_of_adhesion",
-        "work of adhesion in the liquid",
-        "surface energy",
-        "5 mJ/m^2",
-        "gels 0.1 to 10; dry rubber 50",
+        name="layer_thickness",
+        label="thickness of the soft layer",
+        dimension="length",
+        typical="2 mm",
+        source="rubber of a seal",
     ),
-    Fact("diffusivity", "poroelastic diffusivity of the soft body", "diffusivity", "1e-9 m^2/s", "gels 1e-10 to 1e-8"),
-    Fact("permeability", "permeability of the soft body", "permeability", "1e-18 m^2", "cartilage; gels 1e-18 to 1e-15"),
-    Fact("rms_slope", "rms slope of the roughness", "number", "0.1", "polished 0.01 to 0.1, ground or blasted 0.1 to 0.5"),
+    Fact(
+        name="loss_tangent",
+        label="loss tangent at the frequency U/a",
+        dimension="number",
+        typical="0.1",
+        source="filled rubber",
+    ),
+    Fact(
+        name="supply_film",
+        label="film that arrives at the inlet",
+        dimension="length",
+        typical="10 um",
+        source="a wiped rod",
+    ),
+    Fact(
+        name="thinning_rate",
+        label="shear rate at which the fluid begins to thin",
+        dimension="rate",
+        typical="1e6 1/s",
+        source="multigrade oil",
+    ),
+    Fact(
+        name="molecular_size",
+        label="size of the fluid's molecules",
+        dimension="length",
+        typical="1 nm",
+        source="oil; water 0.3 nm, polymer coils 10 to 100 nm",
+    ),
+    Fact(
+        name="thermal_conductivity",
+        label="thermal conductivity of the fluid",
+        dimension="conductivity",
+        typical="0.15 W/m/K",
+        source="oil; water 0.6",
+    ),
+    Fact(
+        name="thermal_thinning",
+        label="relative change of viscosity per kelvin",
+        dimension="per kelvin",
+        typical="0.04 1/K",
+        source="oil; water 0.02",
+    ),
+    Fact(
+        name="density",
+        label="density of the fluid",
+        dimension="density",
+        typical="870 kg/m^3",
+        source="oil; water 1000",
+    ),
+    Fact(
+        name="work_of_adhesion",
+        label="work of adhesion in the liquid",
+        dimension="surface energy",
+        typical="5 mJ/m^2",
+        source="gels 0.1 to 10; dry rubber 50",
+    ),
+    Fact(
+        name="diffusivity",
+        label="poroelastic diffusivity of the soft body",
+        dimension="diffusivity",
+        typical="1e-9 m^2/s",
+        source="gels 1e-10 to 1e-8",
+    ),
+    Fact(
+        name="permeability",
+        label="permeability of the soft body",
+        dimension="permeability",
+        typical="1e-18 m^2",
+        source="cartilage; gels 1e-18 to 1e-15",
+    ),
+    Fact(
+        name="rms_slope",
+        label="rms slope of the roughness",
+        dimension="number",
+        typical="0.1",
+        source="polished 0.01 to 0.1, ground or blasted 0.1 to 0.5",
+    ),
 )
 
 FACTS = {row.name: row for row in ROWS}  # The facts by name
@@ -68,13 +128,8 @@ def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
         if value is None:
             continue
         if name not in FACTS:
-            near = difflib.get_close_matches(name, FACTS, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FACTS)}."
-            raise InputError(f"{name} = {show(value)} is not a fact that the checks use; {hint}")
-        number = to_si(value, FACTS[name].dimension, name, FACTS[name].typical)
-        if not 0 <= number < math.inf:
-            raise InputError(f"{name} = {show(value)} must be zero or positive.")
-        found[name] = number
+            raise InputError(f"{name} = {show(value)} is not a fact that the checks use; {known_names(name, FACTS)}")
+        found[name] = FACTS[name].checked(value)
     if "diffusivity" in found and "permeability" in found:
         raise InputError("diffusivity follows from permeability, D = k E*/eta; give one of them.")
     return found

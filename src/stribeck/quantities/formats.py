@@ -1,4 +1,4 @@
-"""SI numbers as short text for people: with a fitting prefix, in per cent, as a bound."""
+"""Numbers as short text for people: with a fitting prefix, the digits that an error allows, in per cent, as a bound."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ import re
 
 from stribeck.quantities.units import DIMENSIONS
 
-__all__ = ["format_bound", "format_factor", "format_percent", "format_share", "format_si"]
+__all__ = [
+    "figures",
+    "format_bound",
+    "format_error",
+    "format_factor",
+    "format_number",
+    "format_percent",
+    "format_share",
+    "format_si",
+]
 
 
 def format_si(value: float, dimension: str, digits: int = 3) -> str:
@@ -32,6 +41,24 @@ def format_bound(error: float) -> str:
         step = 10.0 ** int(digits.partition("e")[2])
         digits = f"{float(digits) + step:.0e}"
     return f"< {digits if error < 1e-4 else format(float(digits), 'g')}"
+
+
+def format_error(error: float, dimension: str = "number") -> str:
+    """Return an absolute error in SI units with two digits and no power of ten where a prefix can stand for it."""
+    number, space, unit = format_si(error, dimension, 2).partition(" ")
+    return f"{float(number):g}{space}{unit}"
+
+
+def figures(error: float) -> int:
+    """Return how many digits a relative error allows, 3 to 4: files and JSON have all of them."""
+    return 4 if error <= 0 else min(4, max(3, math.ceil(-math.log10(error))))
+
+
+def format_number(value: float, error: float) -> str:
+    """Return a number with the digits that its relative error allows."""
+    if not math.isfinite(value):
+        return "none" if math.isnan(value) else "infinite"
+    return f"{value:.{figures(error)}g}"
 
 
 def format_factor(factor: float) -> str:

@@ -1,18 +1,29 @@
-"""A typing error in the name of an argument, answered with the nearest name."""
+"""A typing error in a name, answered with the nearest one that is known."""
 
 from __future__ import annotations
 
 import difflib
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["answers_typos", "with_nearest"]
+__all__ = ["answers_typos", "known_names", "nearest", "with_nearest"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
+
+
+def nearest(name: object, names: Iterable[str]) -> str:
+    """Return the known name that was probably meant; empty where none is near."""
+    return next(iter(difflib.get_close_matches(str(name), list(names), n=1)), "")
+
+
+def known_names(name: object, names: Iterable[str], others: str = "known are") -> str:
+    """Return the end of a sentence on an unknown name: what was probably meant, or all that are known."""
+    near = nearest(name, names := list(names))
+    return f"did you mean {near}?" if near else f"{others} {', '.join(names)}."
 
 
 def answers_typos(function: Callable[P, R]) -> Callable[P, R]:
@@ -35,6 +46,4 @@ def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
         return problem
     parameters = inspect.signature(function).parameters.values()
     names = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD and each.name != "self"]
-    near = difflib.get_close_matches(match[2], names, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"it takes {', '.join(names)}."
-    return TypeError(f"{'' if match[1] else f'{function.__name__}() '}{problem}; {hint}")
+    return TypeError(f"{'' if match[1] else f'{function.__name__}() '}{problem}; {known_names(match[2], names, 'it takes')}")

@@ -32,9 +32,9 @@ class cached_property(functools.cached_property[T]):  # noqa: N801
 
 
 def lazy_names(
-    package: str, homes: Mapping[str, Sequence[str]], packages: Sequence[str] = ()
+    package: str, homes: Mapping[str, Sequence[str]], packages: Sequence[str] = (), *, root: str = "", has_laws: bool = False
 ) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
-    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose public names live in its modules."""
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package, whose names live in modules of it or of ``root``."""
     modules = {name: module for module, names in homes.items() for name in names}
     public = sorted([*packages, *modules])
 
@@ -42,9 +42,13 @@ def lazy_names(
         """Import a public name on its first use."""
         if name in packages:
             return import_module(f"{package}.{name}")
+        if name not in modules and has_laws and name[:1].isupper():
+            law = import_module("stribeck.quantities.registry").law_class(package, name)
+            if law is not None:
+                return law
         if name not in modules:
             raise AttributeError(f"module {package!r} has no attribute {name!r}{_nearest(name, public)}")
-        found = getattr(import_module(f"{package}.{modules[name]}"), name)
+        found = getattr(import_module(f"{root or package}.{modules[name]}"), name)
         setattr(sys.modules[package], name, found)
         return found
 

@@ -18,13 +18,17 @@ __all__ = [
     "LINE_BY_CAVITATION",
     "RUPTURE_ROWS",
     "FILMS",
+    "COLUMNS",
     "GROUPS",
     "HERTZ",
     "OBSERVABLES",
     "OUTPUT_TABLES",
     "ROWS",
+    "UNITS",
+    "UNIT_SUFFIXES",
     "Observable",
     "OutputTable",
+    "friction_rows",
 ]
 
 GROUPS = ("speed", "load", "roughness")
@@ -71,7 +75,9 @@ ROWS = (
         "",
     ),
     Observable("flux_gap", "flux film h*", "film thickness at the pressure extremum, h*", "gap", "flux_film_thickness"),
-    Observable("offset", "offset z0", "height of the undeformed cylinder over the undeformed surface", "gap"),
+    Observable(
+        "offset", "offset z0", "height of the undeformed cylinder over the undeformed surface", "gap", "undeformed_height"
+    ),
     Observable(
         "lambda_ratio",
         "Lambda (minimum film over h_rms)",
@@ -95,7 +101,7 @@ HERTZ = {
     "hertz_pressure": ("Pa", "largest pressure p_Hz of the dry smooth contact"),
 }
 
-_FLAT, _UNITS = "1", {"gap": "m", "width": "m", "pressure": "Pa"}
+UNITS = {"gap": "m", "width": "m", "pressure": "Pa"}
 
 
 @dataclass(frozen=True)
@@ -117,12 +123,12 @@ class OutputTable:
     @cached_property
     def listed(self) -> dict[str, tuple[str, str]]:
         """Attributes of a solution that a dataset holds: unit and meaning of each."""
-        return {row.name: (_FLAT, row.meaning + UNIT_SUFFIXES[row.scale]) for row in self.rows if row.listed}
+        return {row.name: ("1", row.meaning + UNIT_SUFFIXES[row.scale]) for row in self.rows if row.listed}
 
     @cached_property
     def films(self) -> dict[str, tuple[str, str]]:
         """Further SI quantities in the file of a contact: unit and meaning of each."""
-        return {row.film: (_UNITS[row.scale], row.meaning) for row in self.rows if row.film} | HERTZ
+        return {row.film: (UNITS[row.scale], row.meaning) for row in self.rows if row.film} | HERTZ
 
 
 LINE = OutputTable(ROWS)  # The observables of the line
@@ -181,7 +187,9 @@ POINT = OutputTable(
         Observable(
             "central_pressure", "central pressure", "total pressure at the centre", "pressure", "central_total_pressure"
         ),
-        Observable("offset", "offset z0", "height of the undeformed ball over the undeformed surface", "gap"),
+        Observable(
+            "offset", "offset z0", "height of the undeformed ball over the undeformed surface", "gap", "undeformed_height"
+        ),
         _SHARED["lambda_ratio"],
         Observable(
             "J_couette",
@@ -224,3 +232,29 @@ AREA_ROWS = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),
     "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
 }
+
+# Further columns of states, curves, batches, sweeps and diagrams.
+COLUMNS = {
+    "regime": ("1", "lubrication regime"),
+    "outcome": ("1", "how the solve of the state ended"),
+    "message": ("1", "notes on the validity of the state"),
+    "hydrodynamic_friction": ("1", "friction coefficient of smooth surfaces by the law of the hydrodynamic branch"),
+    "friction": ("1", "friction coefficient"),
+    "friction_asperities": ("1", "contribution of asperities to the friction coefficient"),
+    "friction_fluid": ("1", "contribution of the fluid to the friction coefficient"),
+    "friction_error": ("1", "estimated absolute error of the friction coefficient"),
+    "contact_friction_share": ("1", "fraction of the friction that asperities cause"),
+    "state": ("1", "number of the state"),
+    "nodes": ("1", "unknown gaps in the discretisation"),
+    "newton_steps": ("1", "steps of the Newton iteration"),
+}
+
+
+def friction_rows(definition: str) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of friction by one definition, of the fluid's part in it, and of its error."""
+    label = f"friction coefficient, definition {definition}"
+    return {
+        f"friction_{definition}": ("1", label),
+        f"friction_{definition}_fluid": ("1", f"{label}: contribution of the fluid"),
+        f"friction_{definition}_error": ("1", f"{label}: estimated absolute error"),
+    }

@@ -15,17 +15,34 @@ from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
 
-__all__ = ["laws_of"]
+__all__ = ["law_class", "laws_of"]
 
 
 @functools.cache
 def laws_of(package: str, kind: type) -> dict[str, Any]:
     """Return the classes of a kind by their names, in the order of modules and lines."""
-    home = import_module(package)
-    classes: list[Any] = []
-    for module in pkgutil.iter_modules(home.__path__):
-        members = vars(import_module(f"{package}.{module.name}")).values()
-        classes += [each for each in members if inspect.isclass(each) and each.__module__ == f"{package}.{module.name}"]
-    classes += [each.load() for each in entry_points(group="stribeck.laws")]
+    classes = [*_classes_in(package), *_classes_of_others()]
     named = [(vars(each).get("kind", vars(each).get("name")), each) for each in classes if kind in each.__mro__]
     return {name: each for name, each in named if isinstance(name, str)}
+
+
+def law_class(package: str, name: str) -> Any:
+    """Return the law of a package, or on a base class of it, whose class has this name; None where there is none."""
+    inner = [each.name for each in pkgutil.iter_modules(import_module(package).__path__) if each.ispkg]
+    classes = [each for home in (package, *(f"{package}.{each}" for each in inner)) for each in _classes_in(home)]
+    classes += [
+        each for each in _classes_of_others() if any(base.__module__.startswith(f"{package}.") for base in each.__mro__)
+    ]
+    return next((each for each in classes if each.__name__ == name and not inspect.isabstract(each)), None)
+
+
+def _classes_in(package: str) -> list[Any]:
+    """Return the classes that the modules of a package define, in the order of modules and lines."""
+    modules = [f"{package}.{each.name}" for each in pkgutil.iter_modules(import_module(package).__path__)]
+    members = [(module, each) for module in modules for each in vars(import_module(module)).values()]
+    return [each for module, each in members if inspect.isclass(each) and each.__module__ == module]
+
+
+@functools.cache
+def _classes_of_others() -> list[Any]:
+    return [each.load() for each in entry_points(group="stribeck.laws")]

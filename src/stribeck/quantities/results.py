@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["ByValue", "Card", "Shown", "brief_text", "equal_values"]
+__all__ = ["ByValue", "Card", "Shown", "Told", "brief_text", "equal_values", "table_lines", "table_rows"]
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,16 @@ class Card:
     """The lines that a result shows: headline, rows and notes."""
 
     headline: str  # Meaning of the result, in a line
-    rows: Sequence[tuple[str, str]]  # Name and value of what matters
+    rows: Sequence[tuple[str, str]] = ()  # Name and value of what matters
     notes: Sequence[str] = ()  # Limits of the result, in sentences
+    table: Sequence[Sequence[str]] = ()  # What matters as a table, whose first row names its columns
+    right: Sequence[int] = ()  # Columns of the table that end flush
+    sentences: Sequence[str] = ()  # What else there is to say
+
+    @property
+    def all_rows(self) -> list[tuple[str, str]]:
+        """The rows, those of the table among them."""
+        return [*table_rows(self.table), *self.rows]
 
 
 class Shown:
@@ -34,13 +42,25 @@ class Shown:
     def __repr__(self) -> str:
         """Return the card as lines of text."""
         card = self._card()
-        width = max((len(name) for name, _ in card.rows), default=0)
-        lines = [f"{name:>{width}}: {value}" for name, value in card.rows]
-        return "\n".join([f"{type(self).__name__}: {card.headline}", *lines, *(f"Note: {note}" for note in card.notes)])
+        width = max((len(name) for name, _ in card.all_rows), default=0)
+        lines = [f"{name:>{width}}: {value}" for name, value in card.all_rows]
+        notes = [f"Note: {note}" for note in card.notes]
+        return "\n".join([f"{type(self).__name__}: {card.headline}", *lines, *card.sentences, *notes])
 
     def _repr_html_(self) -> str:
         """Return the card as a table."""
         return card_html(type(self).__name__, self._card())
+
+
+class Told(Shown):
+    """A result whose text is what a command prints of it: headline, table, sentences and notes."""
+
+    def __str__(self) -> str:
+        """Return the card as text, its table in columns."""
+        card = self._card()
+        rows = [f"{name}: {value}" for name, value in card.rows]
+        notes = [f"Note: {note}" for note in card.notes]
+        return "\n".join([card.headline, *table_lines(card.table, card.right), *rows, *card.sentences, *notes])
 
 
 def brief_text(value: Any) -> str:
@@ -56,14 +76,35 @@ def brief_text(value: Any) -> str:
     return textwrap.shorten(value if isinstance(value, str) else repr(value), 90, placeholder=" ...")
 
 
+def table_rows(table: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
+    """Return a table with a heading as rows of a card: the first cell, and the others with what they are."""
+    head, *rows = table or [()]
+    return [
+        (row[0], ", ".join(f"{name} {cell}" for name, cell in zip(head[1:], row[1:], strict=True) if cell)) for row in rows
+    ]
+
+
+def table_lines(rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> list[str]:
+    """Return a table as lines; the first row is the heading, and the columns ``right`` end flush."""
+    if not rows:
+        return []
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        cells = zip(row, widths, strict=True)
+        texts = [cell.rjust(width) if i in right else cell.ljust(width) for i, (cell, width) in enumerate(cells)]
+        lines.append(" " + "  ".join(texts).rstrip())
+    return [lines[0], " " + "-" * (max(map(len, lines)) - 1), *lines[1:]]
+
+
 def card_html(kind: str, card: Card) -> str:
     """Return a card as a table of HTML."""
     rows = "".join(
         f"<tr><th scope='row' style='text-align:left'>{html.escape(name)}</th>"
         f"<td style='text-align:left'>{html.escape(value)}</td></tr>"
-        for name, value in card.rows
+        for name, value in card.all_rows
     )
-    notes = "".join(f"<p>{html.escape(note)}</p>" for note in card.notes)
+    notes = "".join(f"<p>{html.escape(note)}</p>" for note in (*card.sentences, *card.notes))
     return f"<div><b>{html.escape(kind)}:</b> {html.escape(card.headline)}<table>{rows}</table>{notes}</div>"
 
 

@@ -11,8 +11,9 @@ The field takes text with a unit or a number in SI units, and holds a number in 
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy as np
 
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["Input", "Series", "numbers_of"]
+__all__ = ["Input", "Series", "arguments_of", "made_of", "needed_of", "numbers_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,25 +30,26 @@ class Input:
 
     name: str = ""  # Name in Python, case files, on the command line, in fits, sweeps and files
     label: str  # Name in sentences
-    symbol: str  # TeX
+    symbol: str = ""  # TeX
     dimension: str  # A key of :data:`stribeck.quantities.units.DIMENSIONS`
-    typical: str  # A value of a laboratory's contact, and where that is from
-    source: str  # A value of a laboratory's contact, and where that is from
-    exponents: tuple[float, float, float] = (0, 0, 0)  # Exponents with which it enters the groups of speed, load and roughness
+    typical: str  # A value of a laboratory's contact
+    source: str = ""  # Where that value is from
     usual: tuple[float, float] = (0.0, math.inf)  # Range that contacts have, in SI units: the ends of its slider
     implausible: float = math.inf
     units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
     letters: tuple[str, ...] = ()  # Symbols and names that users type for it
-    headers: tuple[str, ...] = ()  # Words at the head of a column of measurements that mean it, in lower case
     lowest: float = 0.0  # Lower bound, in SI units
     zero: bool = False  # Whether the lower bound itself is allowed
     highest: float = math.inf  # Largest value allowed, in SI units
     reason: str = ""  # What to say of a value out of bounds
     follows_surface: bool = False  # Whether it follows from the roughness of the surface, and no hand can turn it alone
-    derived: bool = False  # Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`
     optional: bool = False  # Whether a contact does without it
     default: float | None = None  # Value that stands for one that is not given
+    without: str = ""  # What a contact or law is without it, where no value stands for it
+    or_else: str = ""  # Where else it may be from, as the end of the advice to add it
     is_free: bool = True  # Whether a fit may free it
+    table: str = ""  # Table of a case file that has it, where it is a number of laws
+    of: str = ""  # Laws that have such a number, for sentences
     known: int = 9  # Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -57,14 +59,15 @@ class Input:
     def __get__(self, law: object | None, owner: type) -> float:
         """Return the number of a law, or the default of the class."""
         if law is not None:
-            return float(law.__dict__[self.name])
+            found: float = law.__dict__[self.name]
+            return found
         if self.default is None:
             raise AttributeError(f"{owner.__name__}.{self.name} has no default")
         return self.default
 
-    def __set__(self, law: object, value: str | float) -> None:
-        """Set the number of a law that is made."""
-        law.__dict__[self.name] = self.checked(value)
+    def __set__(self, law: object, value: Any) -> None:
+        """Set the number of a law that is made; None stands for an optional one that is not given."""
+        law.__dict__[self.name] = self.default if value is None and self.optional else self.checked(value)
 
     @property
     def range(self) -> tuple[float, float]:
@@ -76,6 +79,29 @@ class Input:
         """A value as a case file has it."""
         return f'"{self.typical}"' if DIMENSIONS[self.dimension].unit else self.typical
 
+    @property
+    def description(self) -> str:
+        """What a docstring says of it."""
+        symbol = f", :math:`{self.symbol.strip('$')}`" if self.symbol else ""
+        unit, bounds = DIMENSIONS[self.dimension].unit or "-", self._bounds.removeprefix("be ")
+        default = "" if self.default is None else f"; {self.default:g} by default"
+        source = f" ({self.source})" if self.source else ""
+        return (
+            f"{self.label[0].upper()}{self.label[1:]}{symbol}, {bounds} [{unit}]{default}; for example {self.example}{source}."
+        )
+
+    @property
+    def advice(self) -> str:
+        """The advice to add it, with a typical value and where that is from."""
+        source = f" ({self.source})" if self.source else ""
+        other = f", {self.or_else}" if self.or_else else ""
+        return f"add {DIMENSIONS[self.dimension].noun}, for example {self.name} = {self.example}{source}{other}"
+
+    @property
+    def typical_value(self) -> float:
+        """The typical value in SI units."""
+        return to_si(self.typical if DIMENSIONS[self.dimension].unit else float(self.typical), self.dimension, self.name)
+
     def checked(self, value: Any) -> float:
         """Return a value in SI units, or refuse one out of bounds."""
         found = to_si(value, self.dimension, self.name, self.typical)
@@ -86,6 +112,8 @@ class Input:
     @property
     def _bounds(self) -> str:
         """What a value must be."""
+        if self.lowest == -math.inf:
+            return "be zero or below" if self.highest == 0 else f"be {self.highest:g} or less"
         if self.highest < math.inf:
             return f"be between {self.lowest:g} and {self.highest:g}"
         if self.lowest != 0:
@@ -106,7 +134,7 @@ class Series(Input):
         found: tuple[float, ...] = law.__dict__[self.name]
         return found
 
-    def __set__(self, law: object, value: Sequence[str | float]) -> None:  # type: ignore[override]
+    def __set__(self, law: object, value: Sequence[str | float]) -> None:
         """Set the numbers of a law that is made."""
         if isinstance(value, str | bytes) or not np.shape(value):
             raise InputError(f"{self.name} = {show(value)} must be a list, such as {self.typical}.")
@@ -124,3 +152,26 @@ def numbers_of(law: type | None) -> dict[str, Input]:
         return {}
     found = {name: each for kind in reversed(law.__mro__) for name, each in vars(kind).items() if isinstance(each, Input)}
     return {name: found[name] for name in getattr(law, "__dataclass_fields__", {}) if name in found}
+
+
+def needed_of(law: type | None) -> tuple[str, ...]:
+    """Return the numbers that a law cannot do without."""
+    return tuple(name for name, row in numbers_of(law).items() if row.default is None)
+
+
+def arguments_of(law: type | None) -> tuple[str, ...]:
+    """Return what a table that names a law may hold beside its name: its numbers, and its other arguments."""
+    return () if law is None else tuple(name for name in inspect.signature(law).parameters if name != "base")
+
+
+def made_of(law: Any, named: str, given: Mapping[str, Any], **others: Any) -> Any:
+    """Return a law with its arguments, as the sentence ``named`` has it, and others; None of what does nothing."""
+    own = arguments_of(law)
+    for key in given:
+        if key not in own:
+            instead = f"it has {', '.join(own)}" if own else "remove it"
+            raise InputError(f"{key} = {show(given[key])} is given, but {named} has no such key; {instead}.")
+    for key in needed_of(law):
+        if key not in given:
+            raise InputError(f"{key} is missing, which {named} needs; add {key} = {numbers_of(law)[key].example}.")
+    return None if law is None else law(**given, **others)

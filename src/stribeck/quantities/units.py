@@ -11,14 +11,22 @@ import functools
 import math
 import numbers
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-__all__ = ["checked_callback", "checked_kind", "DIMENSIONS", "Dimension", "InputError", "read_number", "real_array", "to_si"]
+__all__ = [
+    "DIMENSIONS",
+    "Dimension",
+    "InputError",
+    "checked_callback",
+    "checked_kind",
+    "checked_word",
+    "read_number",
+    "show",
+    "to_si",
+]
 
 
 class InputError(ValueError):
@@ -50,7 +58,6 @@ DIMENSIONS = {
     "force": Dimension("a force", "N", "1.3 N", _prefixed("N", (-9, -6, -3, 0, 3))),
     "drag": Dimension("a viscosity times a speed", "Pa*m", "2 mPa*m", _prefixed("Pa*m", (-9, -6, -3, 0, 3))),
     "spectral density": Dimension("a spectral density of heights", "m^4", "1e-20 m^4", {0: "m^4"}),
-    "compliance": Dimension("an inverse pressure", "1/Pa", "20 1/GPa", {-9: "1/GPa", -6: "1/MPa", 0: "1/Pa"}),
     "rate": Dimension("a rate", "1/s", "1e6 1/s", {0: "1/s"}),
     "density": Dimension("a density", "kg/m^3", "870 kg/m^3", {0: "kg/m^3"}),
     "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
@@ -70,21 +77,10 @@ DIMENSIONS = {
 }
 
 # What pint may find in the text, so that a sentence can name it; wider than what the package accepts.
-_NOUNS = {
-    "m": "a length",
-    "1/m": "a wave number",
+_NOUNS = {kind.unit: kind.noun for kind in DIMENSIONS.values() if kind.unit} | {
     "m^2": "an area",
-    "m^4": "a spectral density of heights",
-    "1/m^2": "a number per area",
-    "m/s": "a speed",
-    "s": "a time",
-    "1/s": "a rate",
-    "Pa": "a pressure",
-    "1/Pa": "an inverse pressure",
     "Pa*s": "a dynamic viscosity",
     "m^2/s": "a kinematic viscosity",
-    "N/m": "a load per unit length",
-    "N": "a force",
     "kg": "a mass",
     "K": "a temperature",
     "dimensionless": "a bare number",
@@ -123,6 +119,8 @@ _MAX_UNIT_LETTERS = 40  # A longer text is no unit, and slow to parse
 
 def to_si(value: Any, dimension: str, name: str, example: str = "") -> float:
     """Return text with a unit, a quantity of pint or a number in SI units as a float in SI units, or refuse it by its name."""
+    if type(value) is float and math.isfinite(value):
+        return value
     kind = replace(DIMENSIONS[dimension], example=example) if example else DIMENSIONS[dimension]
     value = _text_of_quantity(value, kind)
     exact = _from_text(value, kind, name) if isinstance(value, str) else value
@@ -144,6 +142,16 @@ def checked_kind(name: str, value: Any, kinds: type | tuple[type, ...], allowed:
     return value
 
 
+def checked_word(name: str, value: Any, words: Iterable[str], about: str = "") -> str:
+    """Return one of several words, or refuse anything else in a sentence that names them, and what they are about."""
+    known = tuple(words)
+    if isinstance(value, str) and value in known:
+        return value
+    shown = [repr(str(each)) for each in known]
+    allowed = f"one of {', '.join(shown)}" if len(shown) > 3 else " or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))
+    raise InputError(f"{name} = {show(value)} must be {allowed}{about}.")
+
+
 def checked_callback(name: str, value: Any) -> Any:
     """Return a function to be called during the work, or None; refuse anything else before the work begins."""
     if value is not None and not callable(value):
@@ -157,17 +165,6 @@ def read_number(name: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
-
-
-def real_array(name: str, value: Any) -> NDArray[np.float64]:
-    """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists."""
-    try:
-        found = np.asarray(value)
-    except ValueError:  # ragged lists
-        found = np.asarray(None)
-    if found.size and found.dtype.kind not in "iuf":
-        raise InputError(f"{name} = {show(value)} is not made of real numbers; give a number or an array of them.")
-    return found.astype(np.float64)
 
 
 def show(value: Any) -> str:

@@ -84,8 +84,8 @@ def _slopes(there: Contact, by_friction: bool, definition: Definition) -> dict[s
     found = {}
     for name in whole[1]:
         first, second = friction.total * whole[1][name], halved.total * half[1][name]
-        share = 2 * (first - second) / friction.contact  # d ln S
-        viscous = (2 * second - first) / friction.viscous  # d ln V
+        share = 2 * (first - second) / friction.asperities  # d ln S
+        viscous = (2 * second - first) / friction.fluid  # d ln V
         found[name] = share - viscous if by_friction else share
     found["boundary_friction"] = 1.0 if by_friction else 0.0
     return found

@@ -11,7 +11,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry
 from stribeck.curves.coordinate import Over
 
-__all__ = ["BOX", "SEARCHES", "limits", "physical_bounds", "scanned_rtol", "with_smallest"]
+__all__ = ["BOX", "SEARCHES", "limits", "physical_bounds", "scan_rtol", "scanned_rtol", "with_smallest"]
 
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 """Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
@@ -28,19 +28,29 @@ class Search(NamedTuple):
     heaviest: Callable[[Contact], float]
     roughest: Callable[[Contact], float]
     largest_group: float  # Load group up to which the solver is tested, where the contact law allows it
-    rtol: float  # Smallest tolerance of the states that are scanned: a ball takes a tenth of a second or more each
+    rtol: float  # Smallest tolerance of margins: a ball takes a tenth of a second or more for each state
+    coarse: float  # Smallest tolerance of the curves on which they are looked for, before they are located
 
 
 SEARCHES: dict[Geometry, Search] = {
-    "line": Search(1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, lambda each: each.hertz.half_width, 10.0, 0.0),
-    "point": Search(1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, lambda each: each.hertz.indentation, 1e4, 3e-3),
+    "line": Search(
+        1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, lambda each: each.hertz.half_width, 10.0, 0.0, 0.0
+    ),
+    "point": Search(
+        1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, lambda each: each.hertz.indentation, 1e4, 3e-3, 1e-2
+    ),
 }
 """The searches by geometry."""
 
 
 def scanned_rtol(contact: Contact, rtol: float) -> float:
-    """Return the tolerance of the states among which changes of regime are looked for."""
+    """Return the tolerance of margins."""
     return max(rtol, SEARCHES[contact.groups.geometry].rtol)
+
+
+def scan_rtol(contact: Contact, rtol: float) -> float:
+    """Return the tolerance of the curves on which changes of regime are looked for."""
+    return max(rtol, SEARCHES[contact.groups.geometry].coarse)
 
 
 def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:

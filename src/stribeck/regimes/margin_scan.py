@@ -1,24 +1,25 @@
-"""The first change of lubrication regime along one input of a contact, on solved states."""
+"""The first change of lubrication regime along one input of a contact: an event on the curve over it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.groups import Geometry
-from stribeck.contacts.regime import friction_share
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES, Regime, friction_share, regime_numbers
 from stribeck.curves.coordinate import Over
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition
-from stribeck.curves.result import StribeckCurve
-from stribeck.curves.stribeck_curve import continued, stribeck_curve
+from stribeck.curves.friction_path import FrictionPath
+from stribeck.curves.line_source import LineSource
+from stribeck.curves.regime import Transition
+from stribeck.curves.stribeck_curve import begun
+from stribeck.numerics.events import Event
 from stribeck.quantities.outcome import Outcome
-from stribeck.regimes.margin_limits import limits, with_smallest
+from stribeck.regimes.margin_limits import limits, scan_rtol, with_smallest
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve_error import SolveError
 
 __all__ = ["SCANNED", "Crossing", "Margin", "Scan"]
@@ -26,17 +27,11 @@ __all__ = ["SCANNED", "Crossing", "Margin", "Scan"]
 REACH = 1e6
 """Largest factor by which an input is changed."""
 
-DECADE = math.log(10.0)
-"""Length of one step outwards in the logarithm of an input, at least where it ends at a state that is solved anyhow."""
-
 ROUNDING = 1e-9
 """Difference of logarithms of values that are the same."""
 
-POINTS: dict[Geometry, int] = {"line": 41, "point": 3}
-"""States looked at on a decade, by geometry: read off a function, or solved."""
-
-FINER = 5
-"""States solved anew between the two between which the regime changes, where the curve is no function."""
+DECADE = math.log(10.0)
+"""Range of ln(speed) over whose slow end the fluid's share is extrapolated to slow speed."""
 
 LITTLE, CLEAR = 0.02, 1.5
 """Change of the fluid's share over half a decade from which it is extrapolated to slow speed, and the factor by which the
@@ -93,16 +88,6 @@ class Margin:
         return min(found, key=lambda mark: abs(math.log(mark.factor)) if 0 < mark.factor < math.inf else 0.0, default=None)
 
 
-def _stays_mixed(curve: StribeckCurve) -> bool:
-    """Return whether the fluid's share, extrapolated as a geometric series of half decades, ends above its bound."""
-    share = curve.observable("fluid_load_share")
-    slow, middle, fast = (float(share[i]) for i in (0, len(share) // 2, -1))
-    first, second = fast - middle, middle - slow
-    if not 0 <= second < min(first, LITTLE):
-        return False
-    return slow - second**2 / (first - second) > CLEAR * BOUNDARY_FLUID_SHARE
-
-
 @dataclass
 class Scan:
     """The search for changes of regime along one input after another."""
@@ -112,14 +97,13 @@ class Scan:
     rtol: float
     definition: Definition
     on_point: Callable[[int, int], object] | None
-    whole: StribeckCurve | None = None  # A curve over one of the inputs that is solved already
+    whole: FrictionPath | None = None  # The path of a curve over one of the inputs that is solved already
+    state: RefinedState | None = None  # The contact's own state, where it is known
     done: int = 0
-    known: dict[float, StribeckCurve] = field(default_factory=dict)
 
     def along(self, name: Over) -> Margin:
         """Return the changes along one input."""
         value = float(getattr(self.contact, name))
-        self.known.clear()
         found = self._from_zero(name) if value == 0 else self._both_ways(name, value)
         self.done += 1
         return found
@@ -129,10 +113,8 @@ class Scan:
         held = self.contact.speed == 0 or self.contact.boundary_friction == 0 or self.contact.roughness == 0
         if held:
             return Margin(name, None, None, (value, value))
-        low, high = limits(self.contact, name)
-        less, lowest = self._outwards(self.contact, name, low)
-        more, highest = self._outwards(self.contact, name, high)
-        return Margin(name, less, more, (value * math.exp(lowest), value * math.exp(highest)))
+        (less, lowest), (more, highest) = self._outwards(self.contact, name, limits(self.contact, name))
+        return Margin(name, less, more, (lowest, highest))
 
     def _from_zero(self, name: Over) -> Margin:
         """Return the change with more of an input that is zero."""
@@ -141,104 +123,99 @@ class Scan:
         if self.contact.roughness == 0 and name == "speed":
             return Margin(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
         start = with_smallest(self.contact, name)
-        more, highest = self._outwards(start, name, limits(start, name)[1], math.inf)
-        lowest = float(getattr(start, name))
+        _, (more, highest) = self._outwards(start, name, (0.0, limits(start, name)[1]), math.inf)
         if more is not None:
             # A regime that the smallest value is in already begins at zero itself.
-            more = Crossing(more.regime, more.value if more.value > lowest else 0.0, math.inf)
-        return Margin(name, None, more, (0.0, lowest * math.exp(highest)))
+            more = Crossing(more.regime, more.value if more.value > getattr(start, name) else 0.0, math.inf)
+        return Margin(name, None, more, (0.0, highest))
 
-    def _outwards(self, start: Contact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
-        """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
-        value, outward = float(getattr(start, name)), math.copysign(1.0, limit)
-        near, end = value, value * math.exp(outward * min(abs(limit), math.log(reach)))
-        while abs(math.log(end / near)) > ROUNDING:
-            curve = self._curve(start, name, near, end, POINTS[start.groups.geometry])
-            if curve is None:
-                break
-            change = self._first_change(curve, outward)
-            if change is not None:
-                regime, place = self._located(curve, start, name, outward, *change)
-                return Crossing(regime, place, place / value), math.log(place / value)
-            before, near = near, float(curve.values[-1 if outward > 0 else 0])
-            is_long = math.log(before / near) >= DECADE - ROUNDING
-            if name == "speed" and is_long and _stays_mixed(curve):
-                break
-        return None, math.log(near / value)
+    def _outwards(
+        self, start: Contact, name: Over, ways: tuple[float, float], reach: float = REACH
+    ) -> list[tuple[Crossing | None, float]]:
+        """Return the first change of regime on both ways, logarithms of factors, and up to which value it was searched."""
+        value = float(getattr(start, name))
+        here = math.log(value)
+        ends = [here + math.copysign(min(abs(way), math.log(reach)), way) for way in ways]
+        try:
+            path = self._path(start, name, here, ends)
+        except SolveError:
+            return [(None, value), (None, value)]
+        return [self._towards(path, value, end) for end in ends]
 
-    def _curve(self, start: Contact, name: Over, near: float, end: float, points: int) -> StribeckCurve | None:
-        """Return the states from a value of an input about a decade on; None where the solver does not reach them."""
-        far = end if abs(math.log(end / near)) < DECADE else near * math.exp(math.copysign(DECADE, end - near))
-        low, high = sorted((near, far))
-        part = self._part_known(name, near, low, high, points)
-        if part is not None:
-            curve = part
-        else:
+    def _path(self, start: Contact, name: Over, here: float, ends: list[float]) -> FrictionPath:
+        """Return the path of a contact as far as it is known: its own state, or a curve that is solved already."""
+        whole = self.whole
+        if whole is not None and whole.source.coordinate.over == name and whole.source.rtol <= self.rtol:
+            first, last = whole.source.ends
+            is_inside = first - ROUNDING <= here <= last + ROUNDING
+            if is_inside and whole.coefficients == (start.boundary_friction, start.beta, self.definition):
+                return whole
+        bounds, state = (math.exp(ends[0]), math.exp(ends[1])), self.state if start is self.contact else None
+        path = begun(start, name, bounds, scan_rtol(start, self.rtol), self.definition, state)
+        if start is self.contact and isinstance(path.source, LineSource):
+            self.state = path.source.state_at(here)
+        return path
+
+    def _towards(self, path: FrictionPath, value: float, end: float) -> tuple[Crossing | None, float]:
+        """Return the first change of regime from a value to a coordinate, and the value up to which it was searched."""
+        here = math.log(value)
+        outward = math.copysign(1.0, end - here)
+
+        def is_enough(found: FrictionPath) -> bool:
+            begin, reached = found.source.ends[:: int(outward)]
+            return self._first_change(found, begin, reached) is not None or (outward < 0 and _stays_mixed(found))
+
+        reached = float(np.clip(end, *path.source.ends))
+        change = self._first_change(path, here, reached)
+        if change is None and outward * (end - reached) > ROUNDING and not (outward < 0 and _stays_mixed(path)):
             try:
-                if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
-                    curve = continued(self.known[near], end, points, self._report, math.exp(DECADE))
-                else:
-                    ends: Any = {name: (low, high)}
-                    settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
-                    curve = stribeck_curve(start, **ends, points=points, **settings)
+                path = path.continued(end, is_enough, self._report)
             except SolveError:
-                return None
-        if curve.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        if not curve.outcome.ok:
-            return None
-        self.known |= dict.fromkeys(curve.values[[0, -1]].tolist(), curve)
-        return curve
+                return None, value * math.exp(reached - here)
+            if path.source.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+            begin, reached = reached, path.source.ends[1 if outward > 0 else 0]
+            change = self._first_change(path, begin, reached)
+        if change is None:
+            return None, value * math.exp(reached - here)
+        regime, mark, event = change
+        place = value if event is None else path.located(mark, event, min(path.source.accepted(None), self.rtol)).value
+        return Crossing(regime, place, place / value), place
 
-    def _part_known(self, name: Over, near: float, low: float, high: float, points: int) -> StribeckCurve | None:
-        """Return the states between two values as far as the curve that is solved already gives them."""
-        whole, contact = self.whole, self.contact
-        if whole is None or whole.over != name or not whole.rtol <= self.rtol:
-            return None
-        of_friction = (whole.definition, whole.boundary_friction, whole.beta)
-        if of_friction != (self.definition, contact.boundary_friction, contact.beta):
-            return None
-        path = whole._function
-        first, last = np.clip(np.log([low, high]), *path.coordinates[[0, -1]]).tolist()
-        if last - first <= ROUNDING or not first - ROUNDING <= math.log(near) <= last + ROUNDING:
-            return None
-        values = np.clip(np.geomspace(math.exp(first), math.exp(last), points), low, high)
-        return whole._along(path.between(first, last), values, points)
-
-    def _report(self, done: int, points: int) -> None:
+    def _report(self, low: float, high: float) -> None:
         if self.on_point is not None:
             self.on_point(self.done, len(SCANNED))
 
-    def _first_change(self, curve: StribeckCurve, outward: float) -> tuple[Regime, float, float] | None:
-        """Return the regime entered first on the way out, and the values of the states before and after."""
-        values, regimes = curve.values.tolist(), list(curve.regimes)
-        if outward < 0:
-            values, regimes = values[::-1], regimes[::-1]
-        for i, regime in enumerate(regimes):
-            if regime != self.present:
-                return regime, values[max(i - 1, 0)], values[i]
-        return None
+    def _first_change(self, path: FrictionPath, here: float, end: float) -> tuple[Regime, Transition, Event | None] | None:
+        """Return the regime entered first on the way, the transition and where it is; nowhere if it is there already."""
+        low, high = sorted((here, end))
+        inside = [s for s in path.source.places.tolist() if low < s < high]
+        places = np.array([here, *(inside if here < end else inside[::-1]), end])
+        places, fluid, contact, viscous = path.known(places)
+        first = REGIMES[int(regime_numbers(fluid[0], friction_share(contact[0], viscous[0])))]
+        if first != self.present:
+            return first, Transition.BOUNDARY_END, None
+        hydrodynamic = path.first(Transition.HYDRODYNAMIC_START, places, fluid, contact, viscous)
+        boundary = path.first(Transition.BOUNDARY_END, places, fluid, contact, viscous)
+        if self.present == "hydrodynamic":  # whatever the fluid carries, while asperities cause little friction
+            if hydrodynamic is None:
+                return None
+            share = float(path.parts(np.array([hydrodynamic.place]))[0][0])
+            return "boundary" if share <= BOUNDARY_FLUID_SHARE else "mixed", Transition.HYDRODYNAMIC_START, hydrodynamic
+        if hydrodynamic is not None and (boundary is None or abs(hydrodynamic.place - here) < abs(boundary.place - here)):
+            return "hydrodynamic", Transition.HYDRODYNAMIC_START, hydrodynamic
+        if boundary is None:
+            return None
+        return "boundary" if self.present == "mixed" else "mixed", Transition.BOUNDARY_END, boundary
 
-    def _located(
-        self, curve: StribeckCurve, start: Contact, name: Over, outward: float, regime: Regime, near: float, far: float
-    ) -> tuple[Regime, float]:
-        """Return the regime entered first between two values, and the value where its share passes the bound."""
-        if near == far:
-            return regime, near
-        regime, near, far = self._first_change(curve, outward) or (regime, near, far)
-        wanted = Transition.HYDRODYNAMIC_START if "hydrodynamic" in (regime, self.present) else Transition.BOUNDARY_END
-        low, high = sorted((near, far))
-        mark = curve.landmark(wanted)
-        found = mark.value if mark is not None and low <= mark.value <= high else None
-        # Where the states' own errors hide the passage it lies within them: at the end that is at the threshold itself.
-        return regime, self._nearest_to_bound(curve, wanted, low, high) if found is None else found
 
-    @staticmethod
-    def _nearest_to_bound(curve: StribeckCurve, mark: str, low: float, high: float) -> float:
-        """Return that of two values of a curve where the share that a mark is about is nearer to its bound."""
-        if mark == Transition.HYDRODYNAMIC_START:
-            viscous = curve.friction - curve.friction_contact
-            share, bound = friction_share(curve.friction_contact, viscous), HYDRODYNAMIC_CONTACT_SHARE
-        else:
-            share, bound = curve.observable("fluid_load_share"), BOUNDARY_FLUID_SHARE
-        return float(min((low, high), key=lambda value: abs(share[np.flatnonzero(curve.values == value)[0]] - bound)))
+def _stays_mixed(path: FrictionPath) -> bool:
+    """Return whether the fluid's share ends above its bound, extrapolated as a geometric series of half decades of speed."""
+    first, last = path.source.ends
+    if path.source.coordinate.over != "speed" or last - first < DECADE:
+        return False
+    slow, middle, fast = path.parts(first + DECADE * np.array([0.0, 0.5, 1.0]))[0].tolist()
+    first, second = fast - middle, middle - slow
+    if not 0 <= second < min(first, LITTLE):
+        return False
+    return bool(slow - second**2 / (first - second) > CLEAR * BOUNDARY_FLUID_SHARE)

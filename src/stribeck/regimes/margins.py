@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
 
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry
+from stribeck.curves.line_source import LineSource
 from stribeck.curves.regime import Regime
-from stribeck.curves.result import StribeckCurve
+from stribeck.curves.result import StribeckCurve, path_of
+from stribeck.files.datasets import Column, listed
+from stribeck.files.results import Labelled, Tabled
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margin_limits import physical_bounds, scanned_rtol
@@ -32,8 +39,8 @@ NEIGHBOURS: dict[Regime, tuple[Regime, ...]] = {
 
 
 @dataclass(frozen=True)
-class RegimeMargins:
-    """A contact's regime and the way to its neighbours.
+class RegimeMargins(Tabled):
+    """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``.
 
     Attributes
     ----------
@@ -54,6 +61,30 @@ class RegimeMargins:
     notes: tuple[str, ...]
     geometry: Geometry = "line"
     counted: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the margins by input, ready for JSON."""
+        table = INPUT_TABLES[self.geometry]
+        return {margin.name: asdict(margin) | {"unit": table.unit(margin.name)} for margin in self.margins}
+
+    def _labelled(self) -> Labelled:
+        table = INPUT_TABLES[self.geometry]
+        found = [(margin.name, mark) for margin in self.margins for mark in (margin.less, margin.more) if mark is not None]
+        marks = [mark for _, mark in found]
+        ends = np.array([mark.interval_95 or (math.nan, math.nan) for mark in marks]).reshape(-1, 2)
+        columns: dict[str, Column] = {
+            "input": ("crossing", listed([name for name, _ in found]), "1", "input that is changed"),
+            "next_regime": ("crossing", listed([mark.regime for mark in marks]), "1", "regime that is entered"),
+            "value": ("crossing", [mark.value for mark in marks], "see unit", "value of the input there"),
+            "unit": ("crossing", listed([table.unit(name) for name, _ in found]), "1", "SI unit of the value"),
+            "factor": ("crossing", [mark.factor for mark in marks], "1", "the same over the present value"),
+            "factor_low_95": ("crossing", ends[:, 0], "1", "low end of the 95 % interval of factor"),
+            "factor_high_95": ("crossing", ends[:, 1], "1", "high end of the 95 % interval of factor"),
+        }
+        number: dict[str, Column] = {"crossing": ("crossing", np.arange(len(found)), "1", "number of the change of regime")}
+        about = {f"searched_{margin.name}": np.array(margin.searched) for margin in self.margins}
+        words = {"regime": self.regime, "notes": "\n".join(self.notes), "counted": self.counted}
+        return columns, number, {"title": "Margins to the next regimes", **about, **words}
 
     @property
     def targets(self) -> tuple[Regime, ...]:
@@ -81,10 +112,15 @@ def regime_margins(
     if not isinstance(contact, Contact):
         raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")
     rtol = scanned_rtol(contact, rtol)
-    is_known = curve is not None and curve.values[0] <= contact.speed <= curve.values[-1]
-    there = curve.solve_at(contact.speed) if curve is not None and is_known else solve(contact, rtol=rtol)
-    present = regime_of_state(there, definition)
-    scan = Scan(contact, present, rtol, definition, on_point, curve)
+    path = None if curve is None else path_of(curve)
+    scan = Scan(contact, "mixed", rtol, definition, on_point, path)
+    if curve is not None and curve.values[0] <= contact.speed <= curve.values[-1]:
+        there = curve.solve_at(contact.speed)
+        if path is not None and isinstance(path.source, LineSource) and curve.rtol <= rtol:
+            scan.state = path.source.state_at(math.log(contact.speed))
+    else:
+        there = solve(contact, rtol=rtol)
+    scan.present = present = regime_of_state(there, definition)
     notes = []
     if contact.speed == 0 and contact.roughness > 0:
         notes.append("At zero speed, load, roughness and viscosity do not change the regime.")

@@ -12,9 +12,9 @@ from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.line import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.datasets import import_xarray
-from stribeck.quantities.inputs import unit_of
-from stribeck.quantities.outputs import GROUPS, OBSERVABLES
+from stribeck.quantities.outputs import COLUMNS, GROUPS, OBSERVABLES
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
+from stribeck.solver.about import input_attributes
 
 if TYPE_CHECKING:
     import xarray
@@ -22,16 +22,14 @@ if TYPE_CHECKING:
 __all__ = ["diagram_dataset"]
 
 FLAGS = {
-    "regime": ("lubrication regime", {-1: "unknown", **dict(enumerate(REGIMES))}),
+    "regime": (COLUMNS["regime"][1], {-1: "unknown", **dict(enumerate(REGIMES))}),
     "velocity_weakening": ("whether friction falls with speed somewhere", {-1: "unknown", 0: "absent", 1: "present"}),
     "formula_velocity_weakening": ("the same by the formula", {0: "absent", 1: "present"}),
 }
 """Long names and meanings of the variables that are codes."""
 
 LABELS = {
-    "friction": "friction coefficient",
-    "friction_error": "estimated absolute error of the friction coefficient",
-    "contact_friction_share": "fraction of the friction that asperities cause",
+    **{name: COLUMNS[name][1] for name in ("friction", "friction_error", "contact_friction_share")},
     **{name: OBSERVABLES[name][1] for name in ("fluid_load_share", "central_gap", "lambda_ratio", "error_estimate")},
     **{variable: f"speed at which {name}, on solved states" for variable, name in MARKS.items()},
     "speed_at_minimum": "speed of the minimum of friction, on solved states",
@@ -56,7 +54,7 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
     found: dict[str, Any] = {"regime": (AXES, diagram.regime, _flags("regime"))}
     for name, values in diagram.fields.items():
         found[name] = (AXES, values, {"units": "1", "long_name": LABELS[name]})
-    found["outcome"] = (AXES, diagram.outcomes, {"units": "1", "long_name": "how the solve of the point ended"})
+    found["outcome"] = (AXES, diagram.outcomes, {"units": "1", "long_name": COLUMNS["outcome"][1]})
     for name, values in (diagram.lines | _formula_speeds(diagram)).items():
         unit = "1" if name.startswith("friction") else speed_unit
         found[name] = (plane, values, {"units": unit, "long_name": LABELS[name]})
@@ -83,7 +81,7 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
 
 
 def _unit(diagram: Diagram, name: str) -> str:
-    return "1" if diagram.contact is None else unit_of(name, diagram.contact.INPUTS)
+    return "1" if diagram.contact is None else diagram.contact.INPUTS.unit(name)
 
 
 def _axis_attributes(diagram: Diagram, name: str) -> dict[str, str]:
@@ -161,7 +159,7 @@ def _formula_merging(diagram: Diagram) -> Array:
 
 def _attributes(diagram: Diagram) -> dict[str, Any]:
     complete = diagram.outcome.ok and bool((diagram.outcomes == "CONVERGED").all())
-    found: dict[str, Any] = {
+    return {
         "title": f"Phase diagram of a lubricated rough {diagram.physics['geometry']} contact",
         "source": f"stribeck {version('stribeck')}",
         "outcome": diagram.outcome.value,
@@ -171,9 +169,5 @@ def _attributes(diagram: Diagram) -> dict[str, Any]:
         "rtol": diagram.rtol,
         "boundary_friction": diagram.boundary_friction,
         "beta": diagram.beta,
+        **input_attributes(diagram.contact, *AXES),
     }
-    if diagram.contact is not None:
-        inputs = {name: value for name, value in diagram.contact.inputs() if name not in AXES}
-        found |= {f"input_{name}": value for name, value in inputs.items()}
-        found["input_units"] = ", ".join(f"{name} {unit_of(name, diagram.contact.INPUTS)}" for name in inputs)
-    return found

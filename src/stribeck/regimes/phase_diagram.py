@@ -14,23 +14,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags, Indices
+from stribeck.atlas.tables import table_for
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method, regime_of
-from stribeck.curves.result import StribeckCurve
+from stribeck.curves.result import StribeckCurve, path_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
-from stribeck.regimes.weakening import roughness_without_minimum, weakening
-from stribeck.solver.solution import Solution
+from stribeck.regimes.weakening import roughness_without_minimum, weakening, weakening_along
 from stribeck.solver.solve import check_rtol, solve
 from stribeck.solver.solve_error import SolveError
 
@@ -125,16 +125,13 @@ def phase_diagram(
     columns = len(diagram.axes["speed"])
     rows = list(product(range(len(diagram.axes["load"])), range(len(diagram.axes["roughness"]))))
     try:
-        if check_method(method) == "atlas":
-            atlas_phase.fill(diagram)
-            rows = []
         for number, (i, j) in enumerate(rows):
 
             def report(part: float, number: int = number) -> None:
                 if on_point is not None:
                     on_point(number * columns + int(part * columns), total)
 
-            _fill_row(diagram, i, j, report)
+            _fill_row(diagram, (i, j), check_method(method), report)
         if merging:
             diagram.merging = _merging_line(diagram)
     except KeyboardInterrupt:
@@ -142,14 +139,13 @@ def phase_diagram(
     return diagram_dataset(diagram)
 
 
-def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None]) -> None:
-    """Solve one load and roughness over the speed, and enter it; raise KeyboardInterrupt where that was interrupted."""
-    problem, _, _ = diagram.problem(i, j)
+def _fill_row(diagram: Diagram, row: tuple[int, int], method: Method, report: Callable[[float], None]) -> None:
+    """Enter the curve over the speed at one load and roughness; raise KeyboardInterrupt where that was interrupted."""
+    problem, groups, _ = diagram.problem(*row)
     speeds = diagram.axes["speed"]
-    wanted = {float(value): k for k, value in enumerate(speeds)}
-    if 0.0 in wanted:
-        _fill_rest(diagram, problem, (i, j, wanted.pop(0.0)))
-    values = _filled(np.array(list(wanted)), diagram, (i, j))
+    for k in np.flatnonzero(speeds == 0).tolist():
+        _enter_rest(diagram, problem, (*row, k))
+    moving = np.flatnonzero(speeds > 0)
     settings: dict[str, Any] = {
         "boundary_friction": diagram.boundary_friction,
         "beta": diagram.beta,
@@ -158,36 +154,33 @@ def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None])
         "on_point": lambda done, points: report(done / points),
     }
     try:
-        curve = stribeck_curve(problem, speed=values, points=2, **settings)
+        curve = stribeck_curve(
+            problem, speed=_filled(speeds[moving], diagram, row, method), points=2, method=method, **settings
+        )
     except SolveError as failure:
-        for k in wanted.values():
-            diagram.outcomes[i, j, k] = failure.outcome.name
-        diagram.messages[i, j] = str(failure)
+        diagram.outcomes[row][moving] = failure.outcome.name
+        diagram.messages[row] = str(failure)
         return
-    reached = dict(zip(curve.values.tolist(), curve.solutions, strict=True))
-    for value, k in wanted.items():
-        if value in reached:
-            _enter(diagram, (i, j, k), reached[value])
-        else:
-            diagram.outcomes[i, j, k] = curve.outcome.name
-    diagram.messages[i, j] = "" if curve.outcome.ok else curve.outcome.value
+    is_there = np.isin(speeds, curve.values)
+    diagram.outcomes[row][moving] = curve.outcome.name
+    diagram.outcomes[row][is_there] = Outcome.CONVERGED.name
+    _enter(diagram, row, is_there, curve, np.searchsorted(curve.values, speeds[is_there]))
+    diagram.messages[row] = "" if curve.outcome.ok else curve.outcome.value
     if curve.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     try:
-        _enter_lines(diagram, (i, j), curve)
+        _enter_lines(diagram, row, curve)
     except SolveError as failure:
-        diagram.messages[i, j] = str(failure)
+        diagram.messages[row] = str(failure)
 
 
-def _fill_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, int, int]) -> None:
+def _enter_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, int, int]) -> None:
     resting = problem.replace(speed=0.0) if isinstance(problem, Contact) else replace(problem, speed=0.0)
     try:
-        _enter(diagram, place, solve(resting, rtol=diagram.rtol))
+        solution = solve(resting, rtol=diagram.rtol)
     except SolveError as failure:
         diagram.outcomes[place] = failure.outcome.name
-
-
-def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) -> None:
+        return
     friction = solution.friction(diagram.boundary_friction, diagram.beta, diagram.definition)
     shares = solution.fluid_load_share, friction.contact_share
     films = solution.central_gap, solution.lambda_ratio
@@ -197,29 +190,48 @@ def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) ->
     diagram.outcomes[place] = solution.outcome.name
 
 
-def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve) -> None:
+def _enter(diagram: Diagram, row: tuple[int, int], where: Flags, curve: StribeckCurve, points: Indices) -> None:
+    """Enter points of a curve where a row has them."""
+    friction, kappa = curve.friction, float(np.max(curve.groups.relative_roughness))
+    alpha = 1.0 if curve.contact is None else curve.contact.alpha
+    fluid, by_contact = curve.observable("fluid_load_share"), friction_share(friction.asperities, friction.fluid)
+    films = curve.observable("minimum_gap") / (alpha * kappa) if kappa > 0 else np.full(len(curve), math.inf)
+    errors = np.array([each.error_estimate for each in curve.solutions] or np.full(len(curve), curve.error_estimate))
+    values = friction.total, friction.error, fluid, by_contact, curve.observable("central_gap"), films, errors
+    for name, each in zip(FIELDS, values, strict=True):
+        diagram.fields[name][row][where] = each[points]
+    diagram.regime[row][where] = regime_numbers(fluid, by_contact)[points]
+
+
+def _enter_lines(diagram: Diagram, row: tuple[int, int], curve: StribeckCurve) -> None:
     """Locate the transitions of a row; a minimum above the boundary plateau is not the minimum friction, yet one."""
-    _, groups, unit = diagram.problem(*place)
+    _, groups, unit = diagram.problem(*row)
     marks: dict[str, Landmark] = {mark.name: mark for mark in curve.transitions}
     for variable, name in MARKS.items():
         if name in marks:
-            diagram.lines[variable][place] = marks[name].value
+            diagram.lines[variable][row] = marks[name].value
     found = math.nan, math.nan
     if curve.minimum is not None:
         found = curve.minimum.value, curve.minimum.friction
-    elif diagram.kind.has_formulas and groups.roughness > 0 and diagram.boundary_friction > 0:
-        branch = weakening(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
-        found = branch.minimum_speed / unit, branch.minimum_friction
-    diagram.lines["speed_at_minimum"][place], diagram.lines["friction_at_minimum"][place] = found
-    diagram.velocity_weakening[place] = int(math.isfinite(found[0]))
+    elif groups.roughness > 0 and diagram.boundary_friction > 0:
+        if curve.method == "atlas":
+            branch = weakening_along(path_of(curve))
+            found = branch.minimum_speed, branch.minimum_friction
+        elif diagram.kind.has_formulas:
+            branch = weakening(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
+            found = branch.minimum_speed / unit, branch.minimum_friction
+    diagram.lines["speed_at_minimum"][row], diagram.lines["friction_at_minimum"][row] = found
+    diagram.velocity_weakening[row] = int(math.isfinite(found[0]))
 
 
-def _filled(speeds: Array, diagram: Diagram, place: tuple[int, int]) -> Array:
+def _filled(speeds: Array, diagram: Diagram, row: tuple[int, int], method: Method) -> Array:
     """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
-    _, groups, _ = diagram.problem(*place)
+    _, groups, unit = diagram.problem(*row)
+    if method == "atlas":
+        return np.union1d(speeds, np.array(table_for(groups).speeds(groups)) / unit)
     if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
         return speeds
-    low, high = diagram.ends(*place)
+    low, high = diagram.ends(*row)
     ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
     pieces = [
         np.geomspace(*pair, 1 + max(1, round(diagram.kind.density * math.log10(pair[1] / pair[0]))))[:-1]

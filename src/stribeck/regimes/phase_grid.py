@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any, NamedTuple
@@ -15,10 +15,10 @@ from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.regime import REGIMES
 from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range
-from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
@@ -35,19 +35,12 @@ class Kind(NamedTuple):
     points: Mapping[str, int]  # Points between the ends of a range, unless asked for otherwise
     density: float  # States per decade that a row has at least, so that its transitions are seen and soon located
     rtol: float  # Relative tolerance of the states of the grid, unless asked for otherwise
-    ends: Callable[[Groups, float, float, Definition], tuple[float, float]]
     has_formulas: bool  # Whether formulas give transitions, and the branch of falling friction is followed beyond its minimum
 
 
-def _ends_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
-    from stribeck.curves.point_curve import point_speeds
-
-    return point_speeds(groups, boundary_friction, beta, definition)
-
-
 KINDS: dict[str, Kind] = {
-    "line": Kind({"load": 2, "roughness": 25, "speed": 61}, 4, 1e-4, automatic_speed_range, True),
-    "point": Kind({"load": 2, "roughness": 5, "speed": 13}, 1.5, 1e-3, _ends_of_ball, False),
+    "line": Kind({"load": 2, "roughness": 25, "speed": 61}, 4, 1e-4, True),
+    "point": Kind({"load": 2, "roughness": 5, "speed": 13}, 1.5, 1e-3, False),
 }
 """The kinds by geometry: a state of a ball takes a tenth of a second or more."""
 
@@ -120,7 +113,7 @@ class Diagram:
     def ends(self, i: int, j: int) -> tuple[float, float]:
         """Return the speeds between which a row has its transitions, in the unit of the axis."""
         _, groups, unit = self.problem(i, j)
-        low, high = self.kind.ends(groups, self.boundary_friction, self.beta, self.definition)
+        low, high = automatic_speed_range(groups, self.boundary_friction, self.beta, self.definition)
         return low / unit, high / unit
 
 

@@ -4,26 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from stribeck.contacts.friction import Definition
-from stribeck.quantities.formats import format_factor, format_share, format_si
-from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.regimes.margin_scan import Crossing, Margin
-from stribeck.regimes.margins import RegimeMargins
-from stribeck.solver.base_solution import BaseSolution, regime_of_state
+from stribeck.contacts.friction import Friction
+from stribeck.contacts.geometries import INPUT_TABLES
+from stribeck.contacts.inputs import InputTable
+from stribeck.contacts.regime import regime_of
+from stribeck.quantities.formats import format_factor, format_number, format_share, format_si
+from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["regime_sentence", "ways_to"]
+if TYPE_CHECKING:
+    from stribeck.regimes.margin_scan import Crossing, Margin
+    from stribeck.regimes.margins import RegimeMargins
+
+__all__ = ["answer_sentence", "regime_sentence", "step_text", "ways_to"]
 
 
-def regime_sentence(solution: BaseSolution, definition: Definition) -> str:
-    """Return the sentence on the regime of a contact, its friction and what carries the load."""
-    assert solution.contact is not None
-    friction = solution.friction(definition=definition)
+def regime_sentence(solution: BaseSolution, friction: Friction) -> str:
+    """Return the sentence on the regime of a state, its friction and what carries the load."""
+    regime = regime_of(solution.fluid_load_share, friction.contact_share)
+    at = "" if solution.contact is None else f" at {format_si(solution.contact.speed, 'speed')}"
     return (
-        f"{regime_of_state(solution, definition).capitalize()} lubrication at {format_si(solution.contact.speed, 'speed')}: "
+        f"{regime.capitalize()} lubrication{at}: "
         f"friction {friction.total:.4g} ({format_share(friction.contact_share, friction.relative_error)} from asperities); "
         f"the fluid carries {format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
     )
+
+
+def answer_sentence(solution: BaseSolution, friction: Friction) -> str:
+    """Return that sentence with the film over the roughness, the first of an answer."""
+    film = solution.lambda_ratio
+    roughness = "the rms roughness" if solution.contact is not None else "h_rms/alpha"
+    said = f" The minimum film is {format_number(film, 1e-3)} times {roughness}." if math.isfinite(film) else ""
+    return f"{regime_sentence(solution, friction)}{said}"
 
 
 def ways_to(margins: RegimeMargins) -> Iterator[str]:
@@ -31,7 +44,8 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
     table = INPUT_TABLES[margins.geometry]
     for regime in margins.targets:
         found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
-        ways = [f"{margin.name} {_step(margin.name, mark, table)}" for margin, mark in found if mark is not None]
+        marks = [(margin.name, mark) for margin, mark in found if mark is not None]
+        ways = [f"{name} {step_text(mark, table.quantities[name].dimension)}" for name, mark in marks]
         barren = [_searched(margin, table) for margin, mark in found if mark is None and not margins.is_beyond(regime, margin)]
         if not ways:
             yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
@@ -42,11 +56,11 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
         yield "Only the product of speed and viscosity matters, so their factors are equal."
 
 
-def _step(name: str, mark: Crossing, table: InputTable) -> str:
-    """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
+def step_text(mark: Crossing, dimension: str, digits: int = 4) -> str:
+    """Return how far an input is to be changed, as ``x 3.1 (to 0.31 m/s)``."""
     if mark.value == 0:
         return "to any value above zero"
-    value = format_si(mark.value, table.quantities[name].dimension, 4)
+    value = format_si(mark.value, dimension, digits)
     if math.isinf(mark.factor):
         return f"from zero to {value}"
     larger = mark.factor >= 1

@@ -1,7 +1,7 @@
 r"""Where the velocity-weakening branch disappears: the roughness from which friction only grows with speed.
 
 With roughness the minimum of a Stribeck curve rises and meets the maximum before it; beyond, boundary lubrication passes to
-hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved states.
+hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved curves.
 
 Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction and a branch that disappears as one; they are two
 (:data:`CRITERIA`).
@@ -10,36 +10,35 @@ Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction an
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from functools import cache
+from typing import Any, Literal, get_args
 
 import numpy as np
 
-from stribeck.contacts.friction import Definition, check_definition, coefficients, sliding_part
+from stribeck._types import Array
+from stribeck.contacts.friction import Definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.curves.speed_range import automatic_speed_range
-from stribeck.equations.sensitivity import friction_slopes
-from stribeck.numerics.newton import root_between
+from stribeck.curves.friction_path import FrictionPath
+from stribeck.curves.result import path_of
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.events import first_zero, least_by_slope, zero_of_growing
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.neighbours import Neighbours
-from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import as_groups, check_rtol
+from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["Weakening", "roughness_without_minimum", "weakening"]
+__all__ = ["Weakening", "roughness_without_minimum", "weakening", "weakening_along"]
 
 Criterion = Literal["slope", "plateau"]
 
 CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
 """What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
 
-POINTS_PER_DECADE = 3
-"""Points on which the minimum slope of a curve is looked for, before it is located."""
-
 SPEED_TOLERANCE = 1e-3
-"""Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order."""
+"""Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order; also its step there."""
 
 MINIMUM_TOLERANCE = 1e-9
 """Tolerance of ln(speed) at the minimum."""
@@ -79,35 +78,6 @@ class Weakening:
         return self.slope < 0
 
 
-class _Slopes:
-    """The normalised slope of friction along ln(speed), each value from a state solved there."""
-
-    def __init__(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition, rtol: float) -> None:
-        self.groups, self.beta, self.definition = groups, beta, definition
-        self.rubbing = boundary_friction * sliding_part(2 * groups.model.film.slide)
-        self.neighbours = Neighbours(rtol)
-        self.points: dict[float, RefinedState] = {}
-        self.found: dict[float, float] = {}
-
-    def at(self, s: float) -> Groups:
-        return replace(self.groups, speed=math.exp(s))
-
-    def __call__(self, s: float) -> float:
-        if s not in self.found:
-            self.points[s] = point = self.neighbours.solved(self.at(s))
-            assert point.state is not None and point.values is not None
-            slope = float(friction_slopes(point.state, self.rubbing, self.beta, self.definition)[0])
-            # Friction of the substrate that is the slower one is negative; its size counts.
-            slope *= math.copysign(1.0, self.friction(s))
-            self.found[s] = slope / (self.beta * abs(point.values.viscous_published))
-        return self.found[s]
-
-    def friction(self, s: float) -> float:
-        values = self.points[s].values
-        assert values is not None
-        return self.rubbing * values.contact_load_share + self.beta * float(getattr(values, f"viscous_{self.definition}"))
-
-
 @answers_typos
 @one_blas_thread
 def weakening(
@@ -118,31 +88,47 @@ def weakening(
     *,
     rtol: float = 1e-6,
 ) -> Weakening:
-    r"""Return whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope on solved states.
+    r"""Return whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope of the curve.
 
     .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
     """
     as_groups(groups)
-    rtol = check_rtol(rtol)
     boundary_friction, beta = coefficients(None, boundary_friction, beta)
-    slope = _Slopes(groups, boundary_friction, beta, check_definition(definition), rtol)
-    low, high = automatic_speed_range(groups, boundary_friction, beta, definition)
-    count = max(8, math.ceil(POINTS_PER_DECADE * math.log10(high / low)))
-    coarse = np.linspace(math.log(high), math.log(low), count).tolist()
-    values = [slope(s) for s in coarse]
-    # Imported here because it takes longer than the rest of the package, and few uses get here.
-    from scipy.optimize import minimize_scalar
+    settings: Any = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
+    curve = stribeck_curve(groups, points=2, rtol=rtol, **settings)
+    if curve.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    if not curve.outcome.ok:
+        raise SolveError(curve.outcome, None, f"{describe(groups)}: {curve.outcome.value}")
 
-    i = min(max(1, int(np.argmin(values))), count - 2)
-    minimize_scalar(slope, bounds=(coarse[i + 1], coarse[i - 1]), method="bounded", options={"xatol": SPEED_TOLERANCE})
-    lowest = min(slope.found, key=lambda s: slope.found[s])
-    above = [s for s in sorted(slope.found) if s > lowest and slope.found[s] > 0]
-    if slope.found[lowest] >= 0 or not above:
-        return Weakening(math.exp(lowest), slope.found[lowest])
-    s = root_between(slope, lowest, above[0], MINIMUM_TOLERANCE)
-    assert s is not None
-    slope(s)
-    return Weakening(math.exp(lowest), slope.found[lowest], math.exp(s), slope.friction(s))
+    return weakening_along(path_of(curve))
+
+
+def weakening_along(path: FrictionPath) -> Weakening:
+    """Return whether friction falls anywhere along a path over the speed, whose unit is that of the path."""
+    published = replace(path, definition="published")
+
+    def slopes(places: Array) -> Array:
+        # Friction of the substrate that is the slower one is negative; its size counts.
+        _, contact, viscous = path.parts(places)
+        return np.asarray(np.sign(contact + viscous) * path.slopes(places) / np.abs(published.parts(places)[2]))
+
+    def slope(s: float) -> float:
+        return float(slopes(np.array([s]))[0])
+
+    def bend(s: float) -> float:
+        return slope(s + SPEED_TOLERANCE) - slope(s - SPEED_TOLERANCE)
+
+    places = path.source.places
+    values = slopes(places)
+    event = least_by_slope(bend, places, values, SPEED_TOLERANCE)
+    lowest = float(places[np.argmin(values)]) if event is None else event.place
+    least, behind = slope(lowest), places > lowest
+    minimum = first_zero(slope, np.append(lowest, places[behind]), np.append(least, values[behind]), MINIMUM_TOLERANCE)
+    if least >= 0 or minimum is None:
+        return Weakening(math.exp(lowest), least)
+    _, contact, viscous = path.parts(np.array([minimum.place]))
+    return Weakening(math.exp(lowest), least, math.exp(minimum.place), float((contact + viscous)[0]))
 
 
 @answers_typos
@@ -172,27 +158,7 @@ def roughness_without_minimum(
             return found.slope
         return abs(found.minimum_friction) / boundary_friction - 1
 
-    return _root(excess, rtol) / float(unit.relative_roughness)
-
-
-def _root(excess: Callable[[float], float], rtol: float) -> float:
-    """Return the relative roughness at which ``excess``, growing with its logarithm, vanishes; nan if it is not found."""
-    known = {math.log(KAPPA_START): excess(math.log(KAPPA_START))}
-    (start,) = known
-    step = -math.log(KAPPA_STEP) if known[start] >= 0 else math.log(KAPPA_STEP)
-    low, high = map(math.log, KAPPA_RANGE)
-    here = start
-    while True:
-        there = here + step
-        if not low <= there <= high:
-            return math.nan
-        known[there] = excess(there)
-        if (known[there] >= 0) != (known[here] >= 0):
-            break
-        here = there
-
-    def remembered(s: float) -> float:
-        return known[s] if s in known else excess(s)
-
-    found = root_between(remembered, min(here, there), max(here, there), max(rtol, MINIMUM_TOLERANCE))
-    return math.nan if found is None else math.exp(found)
+    ends = math.log(KAPPA_RANGE[0]), math.log(KAPPA_RANGE[1])
+    tolerance = max(rtol, MINIMUM_TOLERANCE)
+    event = zero_of_growing(cache(excess), math.log(KAPPA_START), math.log(KAPPA_STEP), ends, tolerance)
+    return math.nan if event is None else math.exp(event.place) / float(unit.relative_roughness)

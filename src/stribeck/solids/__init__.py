@@ -8,4 +8,4 @@ _HOMES = {
     "two_bodies": ("TwoBodies",),
     "viscoelastic": ("Prony", "StandardLinearSolid", "hysteresis_friction"),
 }
-__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)
+__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, has_laws=True)

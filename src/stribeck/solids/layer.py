@@ -87,6 +87,7 @@ class Layer(Solid):
     label: ClassVar[str] = "bonded layer"
 
     layer_thickness: Input = Input(
+        without="half-space",
         label="thickness of the layer",
         symbol="$d$",
         dimension="length",

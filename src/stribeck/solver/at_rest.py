@@ -12,7 +12,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.numerics.series import along, product
+from stribeck.numerics.series import along
 
 STATIC_LOAD = 0.01  # Load at which heavier contacts at rest are solved: all gaps are positive there
 SAFE_SEPARATION = 2.3  # Separation at the largest pressure at rest for which all gaps are positive
@@ -76,4 +76,4 @@ def shift_along(
         direction, line = (0.0, 0.0, rate), -exponents.pressure_exponent * line
     elif isinstance(base.law, ShiftedLaw) and not isinstance(groups.law, ShiftedLaw):
         line[0] = -base.law.shift
-    return direction, float(base.relative_roughness) * product(line, along(rate, order))
+    return direction, float(base.relative_roughness) * np.convolve(line, along(rate, order))[: order + 1]

@@ -12,25 +12,26 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import WithArea
-from stribeck.contacts.contact import Contact, HertzScales, model_words, part_attributes
-from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
+from stribeck.contacts.contact import Contact, HertzScales, model_words
+from stribeck.contacts.friction import Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
-from stribeck.files.datasets import Column, new_dataset
+from stribeck.files.datasets import Column, new_dataset, number_columns
 from stribeck.files.results import Exported
-from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
+from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
+from stribeck.solver.about import about_problem, constant_groups, problem_attributes
 from stribeck.solver.notes import law_notes
+from stribeck.solver.numbers import main_rows, numbers_of
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "hysteresis_coefficient", "regime_of_state", "si_films"]
+__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "regime_of_state"]
 
 UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions, gaps and pressures
 
@@ -258,7 +259,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
     @property
     def friction(self) -> Friction:
-        r"""The friction coefficient [-], balanced: a number with its parts ``contact``, ``viscous`` and its ``error``.
+        r"""The friction coefficient [-], balanced: a number with its parts ``asperities``, ``fluid`` and its ``error``.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f(\beta)
 
@@ -293,30 +294,27 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         return regime_of(self.fluid_load_share, self.friction.contact_share)
 
     def _card(self) -> Card:
-        friction = self.friction
-        parts = f"{friction.contact:.4g} from asperities, {friction.viscous:.4g} from the fluid"
-        rows = [
-            ("friction", f"{friction.total:.4g} ({parts})"),
-            ("load on asperities", f"{self.contact_load_share:.4g}"),
-            ("load on the fluid", f"{self.fluid_load_share:.4g}"),
-        ]
-        for name, words in (("central_gap", "central film"), ("minimum_gap", "minimum film")):
-            value = getattr(self, name)
-            si = "" if self.contact is None else f", {format_si(value * self.contact.hertz.indentation, 'length', 4)}"
-            rows.append((words, f"{value:.4g} u_Hz{si}"))
-        rows += [("Lambda", f"{self.lambda_ratio:.4g}"), ("contact law", self.law)]
+        rows = [(each.label, " ".join(filter(None, each.texts))) for each in main_rows(self)]
         model = model_words(self.groups, self.contact)
-        rows += [("model", model)] if model else []
-        groups = ", ".join(f"{name} {float(getattr(self.groups, name)):.4g}" for name in ("speed", "load", "roughness"))
-        error = friction.relative_error
+        rows += [("contact law", self.law), *([("model", model)] if model else [])]
+        groups = ", ".join(f"{name} {value:.4g}" for name, value in constant_groups(self.groups).items())
+        error = self.friction.relative_error
         of_friction = f", of the friction {error:.1e}" if error > self.error_estimate else ""
         rows += [("groups", groups), ("estimated error", f"{self.error_estimate:.1e}{of_friction} (rtol {self.rtol:g})")]
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 
+    def _columns(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Column]:
+        """Return regime and numbers, each with its error, as columns of a dataset."""
+        regime = regime_of(self.fluid_load_share, self._friction(boundary_friction, beta).contact_share)
+        regimes: dict[str, Column] = {"regime": ((), regime, *COLUMNS["regime"])}
+        return regimes | number_columns(numbers_of(self, boundary_friction, beta))
+
     @answers_typos
-    def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, object]:
-        """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON.
+    def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Any]:
+        """Return inputs, the numbers of :meth:`to_dataset` with their errors and units, and the outcome, ready for JSON.
+
+        The error of a number has its name and ``_error``, and its unit; that of a gap in Hertz units is relative.
 
         Parameters
         ----------
@@ -328,53 +326,30 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         dict
             Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
         """
-        result: dict[str, object] = {
-            "speed": float(self.groups.speed),
-            "load": float(self.groups.load),
-            "roughness": float(self.groups.roughness),
-            "geometry": self.groups.geometry,
-            "contact_law": self.law,
-            "contact_law_parameters": self.law_parameters,
-            **part_attributes(self.groups, self.contact),
+        columns = self._columns(boundary_friction, beta)
+        found = about_problem(self.groups, self.contact)
+        units = {name: unit for name, (_, _, unit, _) in columns.items() if name != "regime" and not name.endswith("_error")}
+        return found | {
+            "units": (found["units"] or {}) | units,
+            **{f"{name}_group": value for name, value in constant_groups(self.groups).items()},
+            **{name: value for name, (_, value, _, _) in columns.items()},
+            "rtol": self.rtol,
+            "nodes": self.nodes,
+            "outcome": self.outcome.name,
+            "message": self.outcome.value,
+            "notes": list(self.notes),
         }
-        result |= {row.name: getattr(self, row.name) for row in self.outputs.rows if row.listed}
-        result["hersey_number"] = self.hersey_number
-        if isinstance(self.groups.law, WithArea):
-            result["central_area_fraction"] = self.central_area_fraction
-            result["central_area_fraction_error"] = self.central_area_fraction_error
-        for definition in DEFINITIONS:
-            f = self.friction(boundary_friction, beta, definition)
-            parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
-            moving = self.groups.model.film.slide != 1.0 and math.isfinite(f.upper)
-            walls = {"lower": f.lower, "upper": f.upper} if definition == "balanced" and moving else {}
-            result[f"friction_{definition}"] = parts | walls
-        lost = hysteresis_coefficient(self, beta)
-        if lost is not None:
-            result["friction_hysteresis"] = lost
-        result["errors"] = self.errors
-        result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
-        result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
-        return result
 
-
-def hysteresis_coefficient(solution: BaseSolution, beta: float | None = None) -> float | None:
-    """Return the friction coefficient of the losses in a viscoelastic body, None for others."""
-    groups = solution.groups
-    if not getattr(groups.model.solid, "uses_speed", False):
-        return None
-    _, beta = coefficients(solution.contact, None, beta)
-    return solution.hysteresis_friction * float(groups.slope(beta))
-
-
-def si_films(solution: BaseSolution) -> dict[str, tuple[float, str, str]]:
-    """Return films and Hertz scales of a solution in SI units: value, unit and long name of each."""
-    if solution.contact is None:
-        return {}
-    hertz = solution.contact.hertz
-    scales = {"gap": hertz.indentation, "width": hertz.half_width, "pressure": hertz.pressure}
-    values = {row.film: getattr(solution, row.name) * scales[row.scale] for row in solution.outputs.rows if row.film}
-    values |= zip(HERTZ, (hertz.half_width, hertz.indentation, hertz.pressure), strict=True)
-    return {name: (values[name], *about) for name, about in solution.outputs.films.items()}
+    def _with_numbers(self, fields: xarray.Dataset) -> xarray.Dataset:
+        """Return the dataset of the fields with the numbers of the state and what they belong to."""
+        about = {
+            "title": f"State of a lubricated rough {self.groups.geometry} contact",
+            "outcome": self.outcome.value,
+            "rtol": self.rtol,
+            **problem_attributes(self.groups, self.contact, self.law == "smooth"),
+            "notes": "\n".join(self.notes),
+        }
+        return fields.merge(new_dataset(self._columns(), {}, {})).assign_attrs(about)
 
 
 def regime_of_state(solution: BaseSolution, definition: Definition) -> Regime:

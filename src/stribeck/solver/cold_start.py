@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.scaled import BlendedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import BASE_MODEL
@@ -158,37 +157,6 @@ def first_paths(groups: Groups) -> Iterator[Path[State]]:
     """Yield paths from cold to ``groups``: with the model of the article one, with others by several ways."""
     if groups.model != BASE_MODEL:
         ways = paths_to_cavity if groups.model.cavitation is Cavitation.REFORM else paths_to_model
-        yield from ways(groups, path_of_article)
+        yield from ways(groups, cold_start)
     else:
-        yield path_of_article(groups)
-
-
-def path_of_article(groups: Groups) -> Path[State]:
-    """Return the path from cold to groups with the model of the article."""
-    path = cold_start(groups)
-    settled = path.outcome.ok or path.outcome is Outcome.INTERRUPTED or groups.law is None
-    return path if settled else start_by_exponential(groups)
-
-
-def start_by_exponential(groups: Groups) -> Path[State]:
-    """Return the path from the state of the exponential law to that of another law, by changing one law into the other.
-
-    The fallback if :func:`cold_start` fails.
-    """
-    start = cold_start(replace(groups, law=None))
-    if not start.outcome.ok:
-        return start
-    shape = groups.law
-    assert shape is not None
-
-    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, law=shape if part == 1.0 else BlendedLaw(shape, part))
-        guess: Guess = extrapolate(history, part) if history else start.states[-1]
-        try:
-            # Halved, not laid anew: the many short steps of this way need meshes that hardly move.
-            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE, anew=False)
-        except MeshTooLargeError:
-            return None
-        return solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
-
-    return march(correct, 0.0, 1.0, Steps(0.25, 0.5, 1e-4))
+        yield cold_start(groups)

@@ -5,9 +5,9 @@ the fluid of the model replaces the Newtonian one, at once if Newton's iteration
 
 .. math::
 
-    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} ,
+    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} .
 
-else along milder laws.  Films that re-form behind a cavity come after these, see
+Films that re-form behind a cavity come after these, see
 :mod:`stribeck.solver.cavities.cavity_length`.
 """
 
@@ -15,12 +15,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import cast
+from dataclasses import replace
 
 import numpy as np
 
-from stribeck._types import Array, Numbers
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import Model
@@ -28,9 +26,9 @@ from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_a
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import Extrapolation, SeenFrom, extrapolate
-from stribeck.equations.state import MIN_GAP, State, is_thinning, mesh_for, solve_state
+from stribeck.equations.state import MIN_GAP, State, mesh_for, solve_state
+from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
@@ -50,73 +48,14 @@ MAX_FAILED_EXITS = 2  # Fixed exits without a state in a row before the exit is 
 MAX_EXIT_STEP_WIDTHS = 0.3  # Longest step of a fixed exit over the width of contact and film
 SCAN_POINTS = 4001  # Points at which the zero of the full film's pressure is searched
 MIN_EXIT_WIDTHS = 0.4  # Smallest distance of a first exit from the middle over the width of contact and film
-BLEND_STEPS = Steps(1.0, 1.0, 1e-3)  # First, longest and shortest step in the part of the fluid's own gradient
-# First, longest and shortest step in the part of the fluid's own law: at once, stiff fluids have false coarse states.
-MILDER_LAW_STEPS = Steps(0.25, 1.0, 1e-3)
-# Logarithmic decay of the Newtonian part of a blend with a fluid that thins: its films are powers of that part; without decay
-# the thinnest are lost (test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error).
-NEWTONIAN_DECAY = 8.0
+# First, longest and shortest step in the part of the fluid's own gradient; if the state at once is a false one, step by step.
+BLEND_STEPS = (Steps(1.0, 1.0, 1e-3), Steps(0.25, 1.0, 1e-3))
 MAX_PATH_WORK = 3000.0  # Newton steps of 300 unknowns after which a path is given up; the longest of 200 random ones took 2100
 WORK_UNIT_UNKNOWNS = 300.0  # Unknowns of a Newton step that counts as one unit of work
 
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """A corrector of :func:`march`: a state at a coordinate from those before, or None."""
-
-
-@dataclass(frozen=True)
-class BlendedFilm:
-    """A film whose gradient lies between that of a Newtonian fluid and its own."""
-
-    film: Film
-    part: float
-    plain: Film = Newtonian()
-
-    @property
-    def name(self) -> str:
-        """The name of the film."""
-        return self.film.name
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The parameters of the film."""
-        return self.film.parameters
-
-    @property
-    def uses_pressure(self) -> bool:
-        """Whether the film's gradient depends on the pressure."""
-        return self.film.uses_pressure
-
-    def at(self, speed: Numbers) -> BlendedFilm:
-        """Return the blend at a speed."""
-        return replace(self, film=self.film.at(speed))
-
-    def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
-        """Return the weighted mean of both gradients."""
-        own = self.film.gradient(gap, pressure, flux_gap)
-        return np.asarray((1 - self.part) * self.plain.gradient(gap, None, flux_gap) + self.part * own)
-
-    def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return the weighted mean of their derivatives."""
-        plain, own = self.plain.slopes(gap, None, flux_gap), self.film.slopes(gap, pressure, flux_gap)
-        return Slopes(
-            (1 - self.part) * plain.by_gap + self.part * own.by_gap,
-            None if own.by_pressure is None else self.part * own.by_pressure,
-            (1 - self.part) * plain.by_flux + self.part * own.by_flux,
-        )
-
-    def __getattr__(self, name: str) -> object:
-        """Return other attributes of the film: a blend is used for its gradient only."""
-        return getattr(self.film, name)
-
-
-def _blend_gradients(film: Film, part: float) -> Film:
-    newtonian = (1 - part) * (math.exp(-NEWTONIAN_DECAY * part) if is_thinning(film) else 1.0)
-    return cast(Film, BlendedFilm(film, 1 - newtonian))
-
-
-def _milder_law(film: Film, part: float) -> Film:
-    return film.milder(part)
 
 
 def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
@@ -127,8 +66,8 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
     elif groups.model.film == Newtonian():
         yield _resolve_on_adapted_mesh(with_final_state(path, state))
     else:
-        for film_at, steps in ((_blend_gradients, BLEND_STEPS), (_milder_law, MILDER_LAW_STEPS)):
-            yield _resolve_on_adapted_mesh(_follow_homotopy(groups, state, film_at, steps))
+        for steps in BLEND_STEPS:
+            yield _resolve_on_adapted_mesh(_follow_homotopy(groups, state, steps))
 
 
 def is_lost_to_rounding(path: Path[State]) -> bool:
@@ -236,12 +175,11 @@ def _guess_at_zero_crossing(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), MIN_EXIT_WIDTHS * width))
 
 
-def _follow_homotopy(groups: Groups, start: State, film_at: Callable[[Film, float], Film], steps: Steps) -> Path[State]:
+def _follow_homotopy(groups: Groups, start: State, steps: Steps) -> Path[State]:
     """Return the path on which the fluid changes into that of the groups."""
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        film = groups.model.film if part == 1.0 else film_at(groups.model.film, part)
-        here = replace(groups, model=replace(start.groups.model, film=film))
+        here = replace(groups, model=replace(start.groups.model, film=blend(groups.model.film, part)))
         return coarse_state(here, extrapolate(history, part) if history else start)
 
     return march(_limit_work(correct), 0.0, 1.0, steps, history=[(0.0, start)])

@@ -18,7 +18,7 @@ from stribeck.equations.prediction import extrapolate
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
-from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
@@ -30,7 +30,6 @@ __all__ = ["Neighbours"]
 
 MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
 MAX_STATES = 120  # States that are kept
-EQUALLY_NEAR = 1.01  # Ratio of distances up to which the state that has its factors is preferred
 STRAIGHT_RTOL = 1e-6  # Distance from a line over its length up to which states lie on it, so that a polynomial predicts
 MAX_WEIGHT_SUM = 8.0  # Sum of the absolute weights of a prediction of a ball above which it uses fewer states
 
@@ -89,21 +88,16 @@ class Neighbours:
 
     def _line(self, near: Sequence[_Known], away: Array, order: int) -> Line:
         """Return the nearest state, and others that lie on a line with it and the place that is wanted."""
-        lengths = np.abs(away).max(axis=1)
-        first = 0
-        if self._last is not None and self._last[0] in near:  # of two that are as near, the one that has its factors
-            last = near.index(self._last[0])
-            first = last if lengths[last] <= EQUALLY_NEAR * lengths[0] else 0
+        length = float(np.abs(away[0]).max())
         states = [each.state for each in near]
-        if self._last is not None and near[first] is self._last[0]:
-            states[first] = self._last[1]
-        length = float(lengths[first])
+        if self._last is not None and near[0] is self._last[0]:
+            states[0] = self._last[1]  # with its factors
         if length == 0:
-            return [(0.0, states[first])]
-        direction = away[first] / length
+            return [(0.0, states[0])]
+        direction = away[0] / length
         along = away @ direction / float(direction @ direction)
         straight = np.abs(away - along[:, None] * direction).max(axis=1) <= STRAIGHT_RTOL * length
-        line = [(length, states[first])]
+        line = [(length, states[0])]
         for i in np.flatnonzero(straight).tolist():
             s = float(along[i])
             if len(line) <= order and min(abs(s - other) for other, _ in line) > STRAIGHT_RTOL * length:

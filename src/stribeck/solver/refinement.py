@@ -98,7 +98,7 @@ def converge(
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         state = state.corrected() if own_inverse else state
-        fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_base_model
+        fine, values = FineOperators(mesh), values_of(state, groups)
         [estimate] = error_estimates(state.stacked, [values], fine)
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
         # share the cause of their error.
@@ -106,8 +106,8 @@ def converge(
         shared = state.equations.operators.has_exit or decay_of(film, 1.0).fractional
         shared |= is_rough(film)
         if last is not None and mesh.size >= FINER_SIZE_RATIO * last[0] and not shared:
-            estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
-        last = mesh.size, values.array(in_article)
+            estimate = estimate.at_most(np.abs(values.array() - last[1]))
+        last = mesh.size, values.array()
         before = math.inf if best.estimate is None else best.estimate.total
         if estimate.total < before:
             best = RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), (tail, gap_tail), fine)

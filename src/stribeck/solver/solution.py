@@ -12,15 +12,16 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, sliding_part
+from stribeck.contacts.friction import Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, LINE_BY_CAVITATION, NAMES, OutputTable
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ class Solution(BaseSolution):
     @property
     def counted_errors(self) -> Array:
         """The errors as the tolerance counts them, see :func:`stribeck.equations.observables.drag_scales`."""
-        parts = drag_parts(self.observables.array(in_article=False))
+        parts = drag_parts(self.observables.array())
         return np.asarray(self.relative_errors * parts[: len(self.relative_errors)])
 
     @property
@@ -283,13 +284,13 @@ class Solution(BaseSolution):
         )
 
     def to_dataset(self) -> xarray.Dataset:
-        """Return the fields along the contact as an xarray Dataset, in SI units if there is a contact.
+        """Return fields and numbers of the state as an xarray Dataset, in SI units where there is a contact.
 
         Returns
         -------
         xarray.Dataset
-            Along ``x`` of the nodes: gap, contact pressure, fluid pressure; numbers of :meth:`to_dict` as attributes; needs
-            the extra ``data``.
+            Along ``x`` of the nodes: gap, contact pressure, fluid pressure; beside them every number of the state and its
+            estimated error, and the inputs as attributes; needs the extra ``data``.
 
         Raises
         ------
@@ -297,6 +298,4 @@ class Solution(BaseSolution):
             If xarray is not installed.
         """
         own = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
-        numbers = {name: value for name, value in self.to_dict().items() if isinstance(value, float | int | str)}
-        numbers |= {f"friction_{each}": self.friction(definition=each).total for each in DEFINITIONS}
-        return (own if self.contact is None else self.to_si()).to_dataset().assign_attrs(numbers)
+        return self._with_numbers((own if self.contact is None else self.to_si()).to_dataset())

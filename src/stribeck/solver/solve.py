@@ -21,12 +21,12 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.error_estimate import SAFETY
 from stribeck.equations.observables import Observables, drag_parts
-from stribeck.equations.state import MIN_GAP, State
+from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import NAMES
+from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
 
 RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
 PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
-COARSE_RTOLS = (1e-2, 1e-3, 1e-4, 1e-5)  # Tolerances on the way to one that cannot be reached at once
 # A cavity too short for a mesh changes observables in proportion to what it takes from the largest suction: that fraction over
 # those of longer cavities, from which the change is extrapolated.
 CAVITY_SUCTION_RATIOS = (0.25, 0.1, 0.03, 0.01)
@@ -122,8 +121,8 @@ def solve(
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2, for a ball from 1e-8
         and without its minimum film, which has an error of its own.
     law : str or AsperityLaw, optional
-        Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
-        of the problem if omitted, by default the exponential law.
+        Contact law: an object such as :class:`stribeck.contact_laws.GreenwoodWilliamson`, or the name of one that needs no
+        parameters; that of the problem if omitted, by default the exponential law.
     on_failure : {"raise", "return"}
         What to do if the tolerance is not reached: raise :class:`SolveError`, or return the state with its outcome.
     **parts
@@ -134,7 +133,7 @@ def solve(
     -------
     Solution or PointSolution
         Fields, observables, outcome and error estimate, under the same names; that of a ball is a
-        :class:`stribeck.PointSolution`.
+        :class:`stribeck.results.PointSolution`.
 
     Raises
     ------
@@ -206,7 +205,7 @@ def _solve_by_paths(base: Groups, groups: Groups, rtol: float, far: str) -> Refi
             if is_lost_to_rounding(path):
                 thinnest = min(thinnest, float(path.states[-1].gap.min()))
             continue
-        point = _refine_in_stages(path.states[-1], groups, rtol)
+        point = _refined(path.states[-1], groups, rtol)
         if not _newton_failed(point):
             return point
     if point is None and thinnest < math.inf:
@@ -221,25 +220,9 @@ def _newton_failed(point: RefinedState) -> bool:
     return point.state is None or point.outcome in NEWTON_FAILURES
 
 
-def _refine_in_stages(start: State, groups: Groups, rtol: float) -> RefinedState:
-    """Return the refined state of ``groups`` from a coarse one, through larger tolerances if need be."""
-    guess = start
-    point = best = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
-    for coarse in COARSE_RTOLS:
-        wanted = _newton_failed(point) or (point.outcome is Outcome.ROUNDING and coarse < _stated_error(best))
-        if coarse > rtol and wanted and (found := converge(guess, groups, coarse)).state is not None:
-            guess = found.state if _newton_failed(point) else guess
-            best = found if _stated_error(found) < _stated_error(best) else best
-    if guess is not start:
-        point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
-    is_rounding = point.outcome is Outcome.ROUNDING or (best.state is not None and float(best.state.gap.min()) < MIN_GAP)
-    # Rounding grows with the nodes: where it is what is left, a coarse mesh may know more.
-    return replace(best, outcome=Outcome.ROUNDING) if is_rounding and _stated_error(best) < _stated_error(point) else point
-
-
-def _stated_error(point: RefinedState) -> float:
-    """Return the stated error of a state; infinite without one."""
-    return math.inf if point.estimate is None else point.estimate.total
+def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
+    """Return the refined state of ``groups`` from a coarse one."""
+    return converge(start, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
 
 
 def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
@@ -264,7 +247,7 @@ def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
 def _solve_with_cavity(groups: Groups, full: State, rtol: float) -> RefinedState | None:
     """Return the state of a film with a cavity, from its full film; None without a coarse one."""
     guess = cavitated_start(groups, full)
-    return None if guess is None else _refine_in_stages(guess, groups, rtol)
+    return None if guess is None else _refined(guess, groups, rtol)
 
 
 def _extrapolate_short_cavity(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
@@ -288,7 +271,7 @@ def _extrapolate_short_cavity(groups: Groups, full: RefinedState, rtol: float) -
             estimate = replace(full.estimate, discretisation=errors + missed)
             if not estimate.total <= rtol:
                 return None
-            values = replace(full.values, **dict(zip(NAMES, changed.tolist(), strict=True)))
+            values = replace(full.values, **dict(zip(ALL_NAMES, changed.tolist(), strict=True)))
             return replace(full, groups=groups, values=values, estimate=estimate)
     return None
 
@@ -367,7 +350,7 @@ def stated_errors(point: RefinedState, rtol: float) -> Array:
     """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
     assert point.values is not None and point.estimate is not None
     counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
-    return np.asarray(counted / drag_parts(point.values.array(in_article=False))[: len(counted)])
+    return np.asarray(counted / drag_parts(point.values.array())[: len(counted)])
 
 
 def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
@@ -443,7 +426,7 @@ def hertz_solution(groups: Groups, contact: Contact | None, rtol: float) -> Solu
         rtol=rtol,
         law="dry contact",
         observables=values,
-        relative_errors=np.full(len(NAMES), float(np.finfo(float).eps)),
+        relative_errors=np.where(np.isnan(values.array()), np.nan, np.finfo(float).eps),
         minimum_position_error=1.0,
         rounding_floor=0.0,
         mesh=mesh,

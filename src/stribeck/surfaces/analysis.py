@@ -7,6 +7,7 @@ r"""From a measured topography to the roughness of a case: rms height, spectrum,
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,9 +15,12 @@ import numpy as np
 
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
-from stribeck.files.results import Drawn
+from stribeck.files.datasets import number_columns
+from stribeck.files.results import Exported, Labelled
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.results import Shown
+from stribeck.quantities.number import Number, plain_numbers
+from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures
 from stribeck.surfaces.detrend import Form, Trend, detrended
@@ -28,10 +32,13 @@ from stribeck.surfaces.topography import Topography
 
 __all__ = ["Surface", "analyse"]
 
+# Ends of a self-affine spectrum, as lengths of waves.
+WAVES = {"q0": "longest wavelength", "roll_off": "roll-off wavelength", "q1": "shortest wavelength"}
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Surface(Drawn, Shown):
-    """What a scan says of a surface.
+class Surface(Exported, Told):
+    """What a scan says of a surface; its dataset has its numbers in SI units, each with its error or interval.
 
     Attributes
     ----------
@@ -104,63 +111,107 @@ class Surface(Drawn, Shown):
         """Persson's contact law of the fitted spectrum, tabulated on first use."""
         return persson_law(self.roughness, self.gamma)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return every number under its name, in SI units.
-
-        Returns
-        -------
-        dict
-            Numbers, None where nothing was found, and text.
-        """
-        r, errors = self.roughness, self.fit.errors
+    @cached_property
+    def numbers(self) -> tuple[Number, ...]:
+        """Every number of the surface with its unit, meaning and error, in the order of reports."""
+        r, fitted, spectrum = self.roughness, self.fit.errors, self.roughness.spectrum
+        texture, spikes = self.departures, self.spikes
+        radius, radius_error = self.shape.radius, self.shape.radius_error(r, self.topography)
+        convex = "convex" if self.shape.curvatures and self.shape.curvatures[0] < 0 else "concave"
         alpha, beta = self.fit.exponential_limit(self.gamma)
-        band = exponential_limit(self.spectrum, self.gamma)
-        spectrum = r.spectrum
+        measured = exponential_limit(self.spectrum, self.gamma)
+        with_spikes = f"rms height with {spikes} spike{'s' * (spikes > 1)}" if spikes else ""
+        lengths = [(name, getattr(r, name), fitted.get(name)) for name in WAVES]
+        body = f"radius of the {convex} body" if radius else ""
+        density = "m3" if self.measured.is_line else "m4"
+        wider = "angle to the first axis of the direction in which features are longer"
+        return (
+            _length("body_radius", body, "radius of the body", radius, radius_error),
+            _length("scan_rms_height", "rms height of the scan", "rms height of the scan about its trend", self.rms_height),
+            _length("scan_rms_height_with_spikes", with_spikes, "the same with its spikes", self.height_with_spikes),
+            Number("skewness", "skewness of the heights", "skewness of the heights; 0 if Gaussian", texture.skewness,
+                   texture.skewness_error),
+            Number("aspect_ratio", _if_there("aspect ratio of features", texture.aspect_ratio), "aspect ratio of features",
+                   _number(texture.aspect_ratio)),
+            Number("texture_direction", _if_there("their direction", texture.direction),
+                   wider, _number(texture.direction), unit="rad", sign="°", factor=180 / math.pi),
+            _length("h_rms", "rms height h_rms", "rms height of the fitted spectrum", r.h_rms, fitted["h_rms"]),
+            Number("hurst", "Hurst exponent", "Hurst exponent of the fitted spectrum", r.hurst, fitted["hurst"]),
+            *(Number(name, "", f"wave number of the {WAVES[name]}", _number(q), _number(error), unit="m-1")
+              for name, q, error in lengths),
+            *(_length(WAVES[name].replace(" ", "_"), WAVES[name], f"{WAVES[name]} of the fitted spectrum", 2 * math.pi / q,
+                      None if error is None else 2 * math.pi / q * error / q) for name, q, error in lengths if q is not None),
+            Number("rms_slope", "rms slope, grows with finer sampling", "rms slope", spectrum.rms_slope),
+            Number("rms_curvature", "rms curvature, grows too", "rms curvature", spectrum.rms_curvature, unit="m-1",
+                   dimension="wavenumber"),
+            Number("alpha", "alpha by Persson's theory", "decay of the contact law, alpha", alpha.value,
+                   interval=(alpha.low, alpha.high)),
+            Number("measured_alpha", "  from the measured spectrum", "alpha from the measured spectrum", measured[0]),
+            Number("beta", "beta by Persson's theory", "scale of the contact law, beta", beta.value,
+                   interval=(beta.low, beta.high)),
+            Number("measured_beta", "  from that spectrum", "beta from the measured spectrum", measured[1]),
+            _length("measured_rms_height", "", "rms height of the measured spectrum", self.spectrum.rms_height),
+            Number("gamma", "gamma of that theory", "reduction of the elastic energy in Persson's theory", self.gamma, 0.0),
+            Number("noise_density", "", "density of the noise in the spectrum", self.fit.noise, unit=density),
+            Number("deviance", "", "deviance of the fit", float(self.fit.deviance)),
+        )  # fmt: skip
+
+    @property
+    def _about(self) -> dict[str, Any]:
+        """What was analysed, and how."""
         return {
-            "source": self.topography.source,
+            "file": self.topography.source,
             "points": list(self.topography.heights.shape),
             "spacing": list(self.topography.spacing),
             "size": list(self.topography.size),
             "trend": self.shape.trend,
             "tilt": list(self.shape.tilt),
-            "body_radius": self.shape.radius,
-            "body_radius_error": self.shape.radius_error(r, self.topography),
             "body_curvatures": list(self.shape.curvatures),
-            "scan_rms_height": self.rms_height,
-            "scan_rms_height_with_spikes": self.height_with_spikes,
             "spikes": self.spikes,
-            "skewness": self.departures.skewness,
-            "skewness_error": self.departures.skewness_error,
-            "aspect_ratio": self.departures.aspect_ratio,
-            "texture_direction": self.departures.direction,
-            "h_rms": r.h_rms,
-            "h_rms_error": errors["h_rms"],
-            "hurst": r.hurst,
-            "hurst_error": errors["hurst"],
-            "q0": r.q0,
-            "q0_error": errors.get("q0"),
-            "roll_off": r.roll_off,
-            "roll_off_error": errors.get("roll_off"),
-            "q1": r.q1,
-            "q1_error": errors.get("q1"),
             "found": list(self.fit.found),
-            "deviance": float(self.fit.deviance),
-            "noise_density": self.fit.noise,
-            "rms_slope": spectrum.rms_slope,
-            "rms_curvature": spectrum.rms_curvature,
-            "alpha": alpha.value,
-            "alpha_interval": [alpha.low, alpha.high],
-            "beta": beta.value,
-            "beta_interval": [beta.low, beta.high],
-            "gamma": self.gamma,
-            "measured_alpha": band[0],
-            "measured_beta": band[1],
-            "measured_rms_height": self.spectrum.rms_height,
             "reliable_wavenumbers": [self.measured.lowest, self.measured.highest],
             "reliable_reasons": [self.measured.lowest_reason, self.measured.highest_reason],
             "window": self.window,
-            "notes": list(self.notes),
         }
+
+    def _card(self) -> Card:
+        scan = self.topography
+        points, kind = " x ".join(map(str, scan.heights.shape)), "line" if scan.is_line else "map"
+        size = " x ".join(format_si(length, "length") for length in scan.size)
+        tilt = ", ".join(f"{1e3 * slope:.3g} mrad" for slope in self.shape.tilt) or "none"
+        bounds = {"q0": "the longest wave is that of the scan", "q1": "the shortest is that of its reliable range"}
+        limited = ", ".join(words for name, words in bounds.items() if name not in self.fit.errors)
+        return Card(
+            f"{scan.source or 'Heights'}: {kind} of {points} points, {size}; tilt removed: {tilt}.",
+            table=[("quantity", "value", "error"), *((each.label, *each.texts) for each in self.numbers if each.label)],
+            sentences=[*([f"Not of the surface: {limited}."] if limited else []), *self.notes],
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers of :meth:`to_dataset` in SI units, with what was analysed, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers, nan where nothing was found, and text.
+        """
+        return self._about | plain_numbers(self.numbers) | {"notes": list(self.notes)}
+
+    def _labelled(self) -> Labelled:
+        about = {"title": "What a scan says of a surface"} | self._about | {"notes": "\n".join(self.notes)}
+        return number_columns(self.numbers), {}, about
+
+
+def _length(name: str, label: str, meaning: str, value: float | None, error: float | None = None) -> Number:
+    return Number(name, label, meaning, _number(value), _number(error), unit="m", dimension="length")
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else float(value)
+
+
+def _if_there(label: str, value: float | None) -> str:
+    return "" if value is None else label
 
 
 def analyse(

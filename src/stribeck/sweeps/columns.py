@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from stribeck.batches.chain import Ended
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.geometries import CONTACTS
+from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Physics
 from stribeck.contacts.parts import BASE_PARTS, Parts
-from stribeck.quantities.inputs import INPUT_TABLES, unit_of
-from stribeck.quantities.outputs import AREA_ROWS, GROUPS, LINE_BY_CAVITATION, OUTPUT_TABLES
-from stribeck.solver.base_solution import BaseSolution, si_films
+from stribeck.quantities.outputs import (
+    AREA_ROWS,
+    COLUMNS,
+    GROUPS,
+    LINE_BY_CAVITATION,
+    OUTPUT_TABLES,
+    friction_rows,
+)
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.numbers import numbers_of
 from stribeck.solver.solve_error import describe
 
 __all__ = ["ERROR", "StateInputs", "input_columns", "value_columns"]
@@ -33,30 +39,26 @@ def value_columns(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     line = physics["geometry"] == "line"
     table = LINE_BY_CAVITATION[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
     found = dict(table.listed)
-    for name in table.names:
-        if name in table.listed:
-            kind = "absolute" if name in table.absolute else "relative"
-            found[f"{name}_error"] = ("1", f"estimated {kind} error of {name}")
-    found["friction_contact"] = ("1", "contribution of asperities to the friction coefficient")
+    found |= _errors({name: table.listed[name] for name in table.names if name in table.listed})
+    found["friction_asperities"] = COLUMNS["friction_asperities"]
     for definition in DEFINITIONS:
-        label = f"friction coefficient, definition {definition}"
-        found[f"friction_{definition}"] = ("1", label)
-        found[f"friction_{definition}_viscous"] = ("1", f"{label}: contribution of the fluid")
-        found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
+        found |= friction_rows(definition)
     found["hersey_number"] = ("1", RULES[physics["geometry"]].hersey_name)
     if si:
-        found |= table.films
+        found |= table.films | _errors({row.film: table.films[row.film] for row in table.rows if row.film and row.error})
     if isinstance(physics["law"], WithArea):
         found |= AREA_ROWS
-    found["nodes"] = ("1", "unknown gaps in the discretisation")
-    found["newton_steps"] = ("1", "steps of the Newton iteration")
-    return found
+    return found | {name: COLUMNS[name] for name in ("nodes", "newton_steps")}
+
+
+def _errors(columns: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
+    return {f"{name}_error": (unit, f"estimated absolute error of {name}") for name, (unit, _) in columns.items()}
 
 
 def input_columns(names: Iterable[str], physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of the inputs and groups of a state."""
     table = INPUT_TABLES[physics["geometry"]]
-    inputs = {name: (unit_of(name, table), table.quantities[name].label) for name in names}
+    inputs = {name: (table.unit(name), table.quantities[name].label) for name in names}
     return inputs | {f"{name}_group": ("1", f"{name} group") for name in GROUPS}
 
 
@@ -75,32 +77,24 @@ class StateInputs:
             return None
         kind = CONTACTS[self.physics["geometry"]]
         kept = {name: self.columns[name][i] for name in kind.INPUTS.names if name in self.columns}
-        return kind.of_kept(kept if self.parts is BASE_PARTS else {**kept, "parts": self.parts}, self.physics["law"])
+        return kind.of_kept({**self.parts.part_values(), **kept}, self.physics["law"])
 
     def row(self, i: int, ended: Ended) -> Row:
         """Return what a sweep keeps of the i-th state."""
-        solution = ended.solution
+        solution, names = ended.solution, value_columns(self.si, self.physics)
         if solution is None:
-            missing = [math.nan] * len(value_columns(self.si, self.physics))
-            return missing, ERROR if ended.fault else ended.outcome.name, ended.message
-        values = _values(solution, self.columns["boundary_friction"][i], self.columns["beta"][i])
+            return [math.nan] * len(names), ERROR if ended.fault else ended.outcome.name, ended.message
+        values = _values(names, solution, self.columns["boundary_friction"][i], self.columns["beta"][i])
         if ended.outcome.ok:
             return values, solution.outcome.name, "\n".join(solution.notes)
         message = "\n".join((solution.outcome.value, *solution.notes))
         return values, solution.outcome.name, f"{describe(ended.groups)}: {message}"
 
 
-def _values(solution: BaseSolution, boundary_friction: float, beta: float) -> list[float]:
+def _values(names: Iterable[str], solution: BaseSolution, boundary_friction: float, beta: float) -> list[float]:
     """Return the numbers of a state in the order of :func:`value_columns`."""
-    table = solution.outputs
-    values: list[Any] = [getattr(solution, name) for name in table.listed]
-    values += [solution.errors[name] for name in table.names if name in table.listed]
-    frictions = [solution.friction(boundary_friction, beta, definition) for definition in DEFINITIONS]
-    values.append(frictions[0].contact)
-    for friction in frictions:
-        values += [friction.total, friction.viscous, friction.error]
-    values.append(solution.groups.hersey_number(beta))
-    values += [value for value, _, _ in si_films(solution).values()]
-    if isinstance(solution.groups.law, WithArea):
-        values += [getattr(solution, name) for name in AREA_ROWS]
-    return [float(value) for value in (*values, solution.nodes, solution.newton_steps)]
+    numbers = {each.name: each for each in numbers_of(solution, boundary_friction, beta)}
+    values = {"nodes": solution.nodes, "newton_steps": solution.newton_steps}
+    values |= {f"{name}_error": each.error for name, each in numbers.items()}
+    values |= {name: each.value for name, each in numbers.items()}
+    return [float(values[name]) for name in names]

@@ -15,7 +15,9 @@ from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.outputs import COLUMNS
+from stribeck.quantities.results import ByValue, Card, Told
+from stribeck.sweeps.columns import ERROR
 from stribeck.sweeps.store import PENDING, read_store
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ __all__ = ["Sweep", "open_sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sweep(Exported, Shown, ByValue):
+class Sweep(Exported, Told, ByValue):
     """The states of a store at the time it was read.
 
     Attributes
@@ -81,6 +83,18 @@ class Sweep(Exported, Shown, ByValue):
         """Number of finished states by outcome, the most frequent first."""
         return {name: count for name, count in Counter(self.outcome).most_common() if name != PENDING}
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return how many states there are and how they ended, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers and text; the states themselves are in :meth:`to_dataset`.
+        """
+        own = ("finished", "failed", "outcomes", "computed", "seconds", "interrupted")
+        found = {"title": self.about["title"], "store": str(self.path), "states": len(self), "rtol": self.about["rtol"]}
+        return found | {name: getattr(self, name) for name in own}
+
     def to_dataset(self, *, grid: bool = True) -> xarray.Dataset:
         """Return all states as an xarray Dataset.
 
@@ -106,10 +120,10 @@ class Sweep(Exported, Shown, ByValue):
         dims = dims if grid else ("state",)
         described = about["inputs"] | about["values"]
         columns: dict[str, tuple[Any, str, str]] = {name: (self.columns[name], *described[name]) for name in described}
-        columns["regime"] = (self._regimes(), "1", "lubrication regime, by the balanced friction")
-        columns["outcome"] = (np.array(self.outcome, dtype=object), "1", "how the solve of the state ended")
-        columns["message"] = (np.array(self.message, dtype=object), "1", "notes on the validity of the state")
-        coords: dict[str, Column] = {"state": ("state", np.arange(len(self)), "1", "number of the state")}
+        columns["regime"] = (self._regimes(), *COLUMNS["regime"])
+        columns["outcome"] = (np.array(self.outcome, dtype=object), *COLUMNS["outcome"])
+        columns["message"] = (np.array(self.message, dtype=object), *COLUMNS["message"])
+        coords: dict[str, Column] = {"state": ("state", np.arange(len(self)), *COLUMNS["state"])}
         if grid:
             coords = {}
             for axis, name in enumerate(dims):
@@ -137,18 +151,20 @@ class Sweep(Exported, Shown, ByValue):
         )
 
     def _card(self) -> Card:
-        rows = [
-            ("store", str(self.path)),
-            ("finished", f"{self.finished} of {len(self)}"),
-            *((name, str(count)) for name, count in self.outcomes.items()),
-            ("varied", ", ".join(self.about["varied"])),
-            ("rtol", f"{self.about['rtol']:g}"),
-        ]
-        return Card(self.about["title"] or "sweep", rows, (self.note,) if self.note else ())
+        varied = ", ".join(self.about["varied"])
+        speed = f", {self.computed / self.seconds:.3g} per second" if self.computed and self.seconds > 0 else ""
+        said = [f"Computed now: {self.computed}{speed}; found in the store: {self.finished - self.computed}."]
+        for name, count in self.outcomes.items():
+            meaning = "An error of the program; please report it." if name == ERROR else Outcome[name].value
+            said.append(f"{count} {name}: {meaning}")
+        finished = f"{self.finished} of {len(self)} states are finished in {self.path}; {varied} varied, {self.about['kind']}."
+        return Card(finished, sentences=said, notes=(self.note,) if self.note else ())
 
     def _regimes(self) -> np.ndarray[Any, np.dtype[np.object_]]:
         """Return the regime of each state, empty where there is none."""
-        fluid, contact, total = (self.columns[name] for name in ("fluid_load_share", "friction_contact", "friction_balanced"))
+        fluid, contact, total = (
+            self.columns[name] for name in ("fluid_load_share", "friction_asperities", "friction_balanced")
+        )
         numbers = regime_numbers(fluid, friction_share(contact, total - contact))
         return np.where(np.isfinite(total), np.array(REGIMES, dtype=object)[numbers], "")
 

@@ -1,14 +1,14 @@
-"""Sweep files: a TOML file that says what varies becomes a checked :class:`SweepDesign`, all states of which are possible.
+"""Sweep files: a TOML file that says what varies becomes a checked design, all states of which are possible.
 
 As with case files, everything that is wrong is reported at once, a sentence for each problem that names the key.
 """
+
+from __future__ import annotations
 
 import hashlib
 import json
 import math
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,32 +16,35 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.law import FIRST_TABLE_BY_LAW, INPUTS_OF_SURFACES, Law
+from stribeck.cases.law import INPUTS_OF_SURFACES, Law
 from stribeck.cases.model_parts import take_parts
 from stribeck.cases.reading import contact_inputs, geometry_of, group_inputs
-from stribeck.cases.tables import error_sentence
+from stribeck.cases.tables import noted, read_tables
+from stribeck.checks.body import unusual
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.geometries import CONTACTS
+from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.parts import BASE_PARTS, Parts
+from stribeck.files.datasets import Column
+from stribeck.files.results import Labelled, Tabled
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
+from stribeck.sweeps.columns import input_columns
 from stribeck.sweeps.points import Axis, Kind, points_of
-from stribeck.sweeps.tables import COEFFICIENTS, axis_of, design_problems, file_model, kind_of, missing
+from stribeck.sweeps.tables import COEFFICIENTS, axis_of, design_problems, keys_of_sweep, kind_of, missing
 
 __all__ = ["SweepDesign", "load_sweep"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SweepDesign(Shown):
-    """The states that a sweep is to solve, each checked.
+class SweepDesign(Tabled, Shown):
+    """The states that a sweep is to solve, each checked; its dataset has inputs and groups along ``state``.
 
     Attributes
     ----------
@@ -87,6 +90,13 @@ class SweepDesign(Shown):
     physics: Physics = field(repr=False)
     parts: Parts = field(default=BASE_PARTS, repr=False)
 
+    def _labelled(self) -> Labelled:
+        groups = {f"{name}_group": self.groups[:, i] for i, name in enumerate(GROUPS)}
+        about = input_columns(self.inputs, self.physics)
+        columns: dict[str, Column] = {name: ("state", values, *about[name]) for name, values in (self.inputs | groups).items()}
+        number: dict[str, Column] = {"state": ("state", np.arange(len(self)), *COLUMNS["state"])}
+        return columns, number, {"title": self.title or "States of a sweep", "rtol": self.rtol, "kind": self.kind}
+
     def _card(self) -> Card:
         points = " x ".join(map(str, self.shape))
         rows = [(name, self._range(name)) for name in self.varied]
@@ -99,6 +109,16 @@ class SweepDesign(Shown):
         dimension = INPUT_TABLES[self.physics["geometry"]].quantities[name].dimension if self.si else "number"
         low, high = (format_si(float(end), dimension) for end in (values[0], values[-1]))
         return f"{len(values)} values, {low} to {high}"
+
+    @property
+    def unusual(self) -> tuple[str, ...]:
+        """Sentences about inputs that are hardly meant, at the ends of what varies."""
+        table = INPUT_TABLES[self.physics["geometry"]]
+        inputs = {name: values for name, values in self.inputs.items() if name in table.quantities}
+        fixed = {"slide_to_roll": self.parts.slide_to_roll}
+        fixed |= {name: float(values[0]) for name, values in inputs.items() if name not in self.varied}
+        ends = ({name: float(end(inputs[name])) for name in self.varied if name in inputs} for end in (min, max))
+        return tuple(filter(None, (unusual(numbers, table) for numbers in (fixed, *ends))))
 
     @property
     def contact_law(self) -> AsperityLaw | None:
@@ -146,15 +166,13 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
         on each line, for all of its problems.
     """
-    import pydantic
-
     path = path_of(path)
     table = read_toml(path, "sweep file", "[vary]")
     problems: list[str] = []
     geometry: Geometry = "line"
-    with _noted(problems, f"[{'contact' if 'contact' in table else 'groups'}] "):
+    with noted(problems, "contact" if "contact" in table else "groups"):
         geometry, table = geometry_of(table)
-    known, model = INPUT_TABLES[geometry], file_model(geometry)
+    known = INPUT_TABLES[geometry]
     table, parts, wrong = take_parts(table, geometry)
     problems += wrong
     si, vary, kind = "groups" not in table, table.get("vary"), kind_of(table)
@@ -165,15 +183,13 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         )
     if "contact" in table and not si:
         problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
-    checked: dict[str, Any] = {}
-    try:
-        checked = model(**table).model_dump()
-    except pydantic.ValidationError as failure:
-        problems += [error_sentence(model, error, known) for error in failure.errors(include_url=False)]
+    checked = read_tables({name: each for name, each in table.items() if name != "vary"}, keys_of_sweep(known), problems)
+    if not isinstance(vary, dict):
+        problems.append("the table [vary] is missing." if vary is None else f"vary = {show(vary)} must be a table, [vary].")
     axes: list[Axis] = []
     if isinstance(vary, dict) and kind is not None:
         for name, entry in vary.items():
-            with _noted(problems, "[vary] "):
+            with noted(problems, "vary"):
                 axes.append(axis_of(name, entry, kind, si, known))
         if not vary:
             problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
@@ -183,13 +199,13 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     _refuse(path, problems)
     design, law = checked["design"], checked["contact" if si else "groups"]["law"]
     _refuse(path, design_problems(design, axes))
-    varying = points_of(design["kind"], axes, design["points"] or 0, design["seed"] or 0)
-    with _noted(problems):
-        source = FIRST_TABLE_BY_LAW.get(law)
+    varying = points_of(design["kind"], axes, design.get("points", 0), design.get("seed", 0))
+    with noted(problems):
+        source = next((name for name in ("surface", "asperities") if name in checked), "")
         for axis in axes:  # what varies is not also said by a table of the surface
-            if si and axis.name in INPUTS_OF_SURFACES and source not in (None, "table") and checked[source] is not None:
+            if si and axis.name in INPUTS_OF_SURFACES and source:
                 raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
-        fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
+        fixed = contact_inputs(checked, path.parent, known) if si else group_inputs(checked, path.parent)
         shape: AsperityLaw | None = fixed.pop("law")
         inputs, groups, of_first = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), BASE_MODEL)
     _refuse(path, problems)
@@ -210,15 +226,6 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     )
 
 
-@contextmanager
-def _noted(problems: list[str], where: str = "") -> Iterator[None]:
-    """Note what is refused among the problems of a file."""
-    try:
-        yield
-    except InputError as problem:
-        problems += [f"{where}{line}" for line in str(problem).splitlines()]
-
-
 def _refuse(path: Path, problems: list[str]) -> None:
     if problems:
         raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
@@ -236,7 +243,7 @@ def _contacts(
             raise InputError(f"state {i}: {problem}") from None
     kept = [contact.to_si() for contact in contacts]
     inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
-    for name in (row.name for row in INPUT_TABLES[geometry].rows if row.derived):
+    for name in INPUT_TABLES[geometry].stands_for:
         if name in varying or name in fixed:
             inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
     groups = [contact.groups for contact in contacts]

@@ -36,7 +36,7 @@ from stribeck.sweeps.design import SweepDesign
 
 __all__ = ["PENDING", "Store", "claimed_store", "read_store"]
 
-FORMAT = 3  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks
+FORMAT = 4  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks, 3 had relative errors
 APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
 
 CLAIM_ATTEMPTS = 5  # Times that a lock must be free for its holder to count as dead

@@ -19,6 +19,7 @@ from stribeck.batches.executors import (
     solve_on_processes,
 )
 from stribeck.batches.order import chains_of
+from stribeck.files.results import Record
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
@@ -38,7 +39,7 @@ RATE_WINDOW = 60.0  # Time over which the rate is measured [s]
 
 
 @dataclass(frozen=True)
-class SweepProgress:
+class SweepProgress(Record):
     """The progress of a sweep.
 
     Attributes
@@ -55,11 +56,25 @@ class SweepProgress:
         Time left at this rate [s]; infinite before the first.
     """
 
+    _labels = {
+        "done": ("1", "states finished, those of earlier runs included"),
+        "total": ("1", "states of the design"),
+        "failed": ("1", "states of this run that did not converge"),
+        "rate": ("s-1", "states per second over the last minute"),
+        "seconds_left": ("s", "time left at this rate"),
+    }
+
     done: int
     total: int
     failed: int
     rate: float
     seconds_left: float
+
+    @property
+    def text(self) -> str:
+        """Rate and failures in words."""
+        failed = f", {self.failed} failed" if self.failed else ""
+        return f"{self.rate:.3g} states/s{failed}, state"
 
 
 @answers_typos
@@ -84,7 +99,7 @@ def sweep(
     scheduler : str, optional
         Address of a Dask scheduler, such as ``"tcp://node1:8786"``, whose workers solve the states instead.
     on_progress : callable, optional
-        ``on_progress(progress)`` is called with a :class:`SweepProgress` as states are finished, and at least twice a second
+        ``on_progress(progress)`` is called with a ``SweepProgress`` as states are finished, and at least twice a second
         where others solve them.  It may raise KeyboardInterrupt.
 
     Returns

@@ -1,67 +1,42 @@
 """What the tables of a sweep file may hold: what stays fixed, what varies, and the sentences for what cannot be."""
 
-import functools
 import math
-from collections.abc import Callable, Iterable
-from typing import Annotated, Any, get_args
+from collections.abc import Callable
+from typing import Any, get_args
 
-from stribeck.cases.law import ASPERITY_KEYS, SURFACE_KEYS
-from stribeck.cases.tables import example_of, optional_table, shared_types
+from stribeck.cases.case import Case
+from stribeck.cases.hints import advice_on
+from stribeck.cases.law import KEYS_OF_SURFACES, LAW_KEY
+from stribeck.cases.tables import HEAD, Key, Keys, one_of, tolerance, whole
+from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.contact_values import check_alternatives
-from stribeck.quantities.hints import advice_on
-from stribeck.quantities.inputs import INPUT_TABLES, InputTable, quantity
+from stribeck.contacts.inputs import InputTable, ReadInputs, apply_forms, note_missing
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM_KINDS, Axis, Kind
 
-__all__ = ["COEFFICIENTS", "axis_of", "design_problems", "file_model", "kind_of", "missing"]
+__all__ = ["COEFFICIENTS", "axis_of", "design_problems", "keys_of_sweep", "kind_of", "missing"]
 
 MAX_STATES = 1_000_000
 
 COEFFICIENTS = ("boundary_friction", "beta")  # Inputs of friction beside groups
 
 
-@functools.cache
-def file_model(geometry: str) -> Any:
-    """Return the pydantic model of a sweep file of a geometry."""
-    from pydantic import BeforeValidator, Field, ValidationInfo, create_model
-
-    known, shared = INPUT_TABLES[geometry], shared_types()
-
-    def check_input(value: Any, info: ValidationInfo) -> float:
-        return quantity(str(info.field_name), value, known)
-
-    def check_group(value: Any, info: ValidationInfo) -> float:
-        return _group(str(info.field_name), value)
-
-    def optional(kind: Any, description: str, **limits: Any) -> Any:
-        return Annotated[kind | None, Field(strict=True, description=description, **limits)], None
-
-    def keys(check: Callable[..., float], names: Iterable[str]) -> dict[str, Any]:
-        return dict.fromkeys(names, (Annotated[float, BeforeValidator(check)] | None, None))
-
-    def table(name: str, **fields: Any) -> Any:
-        made = create_model(name, __base__=shared.Table, **fields)
-        return made, Field(description=f"a table, [{name}]", default_factory=made)
-
-    return create_model(
-        "File",
-        __base__=shared.Table,
-        contact=table("contact", **keys(check_input, known.quantities), law=shared.law),
-        groups=table("groups", **keys(check_group, (*GROUPS, *COEFFICIENTS)), law=shared.law),
-        vary=(dict[str, Any], Field(description="a table, [vary]")),
-        design=table(
-            "design",
-            kind=(Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")], "grid"),
-            points=optional(int, f"a whole number from 1 to {MAX_STATES}", ge=1, le=MAX_STATES),
-            seed=optional(int, "a whole number, zero or positive", ge=0, le=2**63 - 1),
-        ),
-        solver=table("solver", rtol=shared.rtol),
-        surface=optional_table("surface", SURFACE_KEYS),
-        asperities=optional_table("asperities", ASPERITY_KEYS),
-        **shared.ends,
-    )
+def keys_of_sweep(inputs: InputTable) -> dict[str, Keys]:
+    """Return what the tables of a sweep file may have; its reader checks what varies."""
+    groups = dict.fromkeys((*GROUPS, *COEFFICIENTS), Key(_group))
+    return {
+        "contact": {**dict.fromkeys(inputs.quantities, Key(inputs.checked)), "law": LAW_KEY},
+        "groups": {**groups, "law": LAW_KEY},
+        "design": {
+            "kind": Key(one_of(*KINDS), "grid"),
+            "points": Key(whole(1, MAX_STATES)),
+            "seed": Key(whole(0, 2**63 - 1, "a whole number, zero or positive")),
+        },
+        "solver": {"rtol": tolerance(Case.rtol)},
+        **KEYS_OF_SURFACES,
+        "": HEAD,
+    }
 
 
 def kind_of(table: dict[str, Any]) -> Kind | None:
@@ -77,7 +52,7 @@ def axis_of(name: str, entry: Any, kind: Kind, si: bool, inputs: InputTable) -> 
     if name not in known:
         hint = advice_on(name, known) or f"known are {', '.join(known)}"
         raise InputError(f"{show(name)} cannot vary; {hint}.")
-    check: Callable[[str, Any], float] = functools.partial(quantity, table=inputs) if si else _group
+    check: Callable[[str, Any], float] = inputs.checked if si else _group
     if isinstance(entry, list):
         if not entry:
             raise InputError(f"{name} = [] is empty; list its values.")
@@ -109,7 +84,7 @@ def axis_of(name: str, entry: Any, kind: Kind, si: bool, inputs: InputTable) -> 
 
 def design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     """Return what in ``[design]`` does not go with its kind or with the axes."""
-    kind, points = design["kind"], design["points"]
+    kind, points = design["kind"], design.get("points")
     problems = []
     if kind in RANDOM_KINDS:
         if points is None:
@@ -119,7 +94,7 @@ def design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
             problems.append(f"[design] points = {points} must be a power of two for kind = 'sobol', such as {near}.")
         return problems
     for key in ("points", "seed"):
-        if design[key] is not None:
+        if key in design:
             problems.append(
                 f"[design] {key} = {design[key]} is for {', '.join(RANDOM_KINDS)}; kind = '{kind}' does not use it."
             )
@@ -145,20 +120,16 @@ def missing(
     given = {**fixed, **varied}
     if not si:
         return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
-    for name in inputs.names:
-        if name not in given and name not in inputs.choices and name not in by_tables:
-            problems.append(f"[contact] {name} is missing; {example_of(name, inputs)}, or let it vary in [vary].")
-    try:
-        check_alternatives(given, inputs)
-    except InputError as problem:
-        problems.append(f"[contact] {problem}")
-    return problems
+    found = ReadInputs({name: inputs.quantities[name].typical_value for name in given if name in inputs.quantities})
+    apply_forms(found, given, inputs)
+    note_missing(found, inputs, by_tables, ", or let it vary in [vary]")
+    return problems + [f"[contact] {problem}" for problem in found.problems]
 
 
 def _group(name: str, value: Any) -> float:
     """Return a group or a coefficient, checked."""
     if name in COEFFICIENTS:
-        return quantity(name, value)
+        return INPUT_TABLES["line"].checked(name, value)
     if isinstance(value, str):
         raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -15,15 +14,17 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, PartInput, all_input_rows
+from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.keywords import known_names
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.schema import Input
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
@@ -43,8 +44,6 @@ LOG_STEP = 1e-3  # Of inputs in the differences that find the powers of scales, 
 
 # Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2.
 SUBSTITUTES = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
-
-LABELS = {"central_gap": "central film", "minimum_gap": "minimum film", "flux_gap": "flux film h*"}
 
 
 @one_blas_thread
@@ -138,18 +137,19 @@ def propagate(
     share = states["contact_load_share"]
     dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
+    labels = {row.name: row.label for row in solution.outputs.rows}
     spreads = [
         _spread("friction", "friction coefficient", given.total, friction),
-        _spread("contact_load_share", "load on asperities", solution.contact_load_share, share),
-        _spread("fluid_load_share", "load on the fluid", solution.fluid_load_share, 1 - share),
+        _spread("contact_load_share", labels["contact_load_share"], solution.contact_load_share, share),
+        _spread("fluid_load_share", labels["fluid_load_share"], solution.fluid_load_share, 1 - share),
     ]
     height = scale(lambda each: each.hertz.indentation)
     for name in films_of(groups.geometry):
         value = float(getattr(solution, name)) * contact.hertz.indentation
-        spreads.append(_spread(name, LABELS[name], value, states[name] * height, "length"))
+        spreads.append(_spread(name, labels[name], value, states[name] * height, "length"))
     if contact.roughness > 0:
         ratio = states["minimum_gap"] * height / scale(lambda each: each.roughness)
-        spreads.append(_spread("lambda_ratio", "Lambda (minimum film over h_rms)", solution.lambda_ratio, ratio))
+        spreads.append(_spread("lambda_ratio", labels["lambda_ratio"], solution.lambda_ratio, ratio))
     if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
     known = zip(names, moves, strict=True) if sensitivities else ()
@@ -177,10 +177,7 @@ def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[s
         if value is None and kept in PART_INPUTS:
             raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[kept].of}.")
         if value is None:
-            known = [each for each in rows if hasattr(contact, each)]
-            near = difflib.get_close_matches(name, rows, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
-            raise InputError(f"errors has {show(name)}, which is no input of a contact; {hint}")
+            raise InputError(f"errors has {show(name)}, which is no input of a contact; {known_names(name, rows)}")
         if value == 0:
             raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")
         if isinstance(error, str) or hasattr(error, "magnitude"):
@@ -196,7 +193,7 @@ def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[s
     return {name: found[name] for name in rows if name in found}
 
 
-def _check_range(row: PartInput, value: float, sigma: float) -> None:
+def _check_range(row: Input, value: float, sigma: float) -> None:
     """Refuse an error with which the states that are solved beside the middle would leave the range of a number."""
     low, high = row.range
     for end, bound in ((value * math.exp(-NODE_DEVIATION * sigma), low), (value * math.exp(NODE_DEVIATION * sigma), high)):

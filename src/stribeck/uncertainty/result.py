@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Collection
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from dataclasses import dataclass
+from typing import Any
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.part_inputs import all_input_rows
-from stribeck.files.datasets import Column, listed, new_dataset
-from stribeck.files.results import Exported
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
+from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import DIMENSIONS
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["Spread", "Uncertainty"]
 
@@ -31,7 +25,7 @@ MIN_NAMED_SHARE = 1e-3  # Smallest share of the variance that is named
 
 
 @dataclass(frozen=True)
-class Spread:
+class Spread(Record):
     """The distribution of one number.
 
     Attributes
@@ -56,6 +50,21 @@ class Spread:
     interval_95: tuple[float, float]
     dimension: str = "number"
 
+    _labels = {
+        "name": ("1", "quantity"),
+        "label": ("1", "its label in reports"),
+        "value": ("", "value for the inputs as given"),
+        "median": ("", "median"),
+        "interval_68": ("", "68 % interval"),
+        "interval_95": ("", "95 % interval"),
+        "unit": ("1", "SI unit"),
+    }
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its numbers; empty for bare ones."""
+        return DIMENSIONS[self.dimension].unit
+
     @property
     def texts(self) -> tuple[str, str]:
         """Value and 95 % interval, with units; numbers that no solver knows as a bound."""
@@ -75,8 +84,10 @@ class Spread:
 
 
 @dataclass(frozen=True, repr=False)
-class Uncertainty(Exported):
+class Uncertainty(Exported, Told):
     """A state with the propagated errors of its inputs.
+
+    Its dataset has value, median, ends of the intervals and SI unit along ``quantity``.
 
     Attributes
     ----------
@@ -119,6 +130,11 @@ class Uncertainty(Exported):
         """The probability of each regime in words."""
         return ", ".join(f"{name} {format_share(value, MIN_PROBABILITY)}" for name, value in self.regimes.items())
 
+    @property
+    def probability_sentence(self) -> str:
+        """The same as a sentence."""
+        return f"Probability of each regime: {self.probabilities}."
+
     def to_dict(self) -> dict[str, Any]:
         """Return spreads, probabilities and contributions, ready for JSON.
 
@@ -129,7 +145,7 @@ class Uncertainty(Exported):
         """
         return {
             "errors": self.errors,
-            "spreads": [asdict(each) for each in self.spreads],
+            "spreads": [each.to_dict() for each in self.spreads],
             "regime_probabilities": self.regimes,
             "contributions": self.contributions,
             "method": self.method,
@@ -146,49 +162,18 @@ class Uncertainty(Exported):
         """
         return {each.name: each.value for each in self.spreads}
 
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the spreads as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``quantity``: value, median, ends of the intervals and the SI unit; the probability of each regime, the
-            standard error and the share of each input as attributes; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        numbers = {
-            "value": ("value for the inputs as given", [each.value for each in self.spreads]),
-            "median": ("median", [each.median for each in self.spreads]),
-        }
-        for percent in (68, 95):
-            ends = [getattr(each, f"interval_{percent}") for each in self.spreads]
-            for end, name in enumerate(("low", "high")):
-                numbers[f"{name}_{percent}"] = (f"{name} end of the {percent} % interval", [each[end] for each in ends])
-        columns: dict[str, Column] = {
-            name: ("quantity", np.array(values), "SI, see unit", label) for name, (label, values) in numbers.items()
-        }
-        columns["unit"] = ("quantity", listed([DIMENSIONS[each.dimension].unit for each in self.spreads]), "1", "SI unit")
-        names: dict[str, Column] = {"quantity": ("quantity", listed([each.name for each in self.spreads]), "1", "quantity")}
+    def _labelled(self) -> Labelled:
+        columns = columns_of_records("quantity", self.spreads, Spread._labels)
+        names = {"quantity": columns.pop("name")}
         about = {f"probability_{name}": part for name, part in self.regimes.items()}
         about |= {f"error_{name}": error for name, error in self.errors.items()}
         about |= {f"share_{name}": part for name, part in self.contributions.items()}
-        return new_dataset(
-            columns,
-            names,
-            {"title": "Propagated errors of a state", "method": self.method, "notes": "\n".join(self.notes), **about},
-        )
+        title = {"title": "Propagated errors of a state", "method": self.method, "notes": "\n".join(self.notes)}
+        return columns, names, title | about
 
-    def __str__(self) -> str:
-        """Return the table as text."""
-        width = max(len(each.label) for each in self.spreads)
-        lines = [f"{each.label.ljust(width)}  {each.text}" for each in self.spreads]
-        return "\n".join([*lines, f"Regime: {self.probabilities}.", *self.sources])
-
-    __repr__ = __str__
+    def _card(self) -> Card:
+        rows = [("with errors of the inputs", "value", "95 %"), *((each.label, *each.texts) for each in self.spreads)]
+        return Card(self.probability_sentence, table=rows, right=(1, 2), sentences=self.sources)
 
     @property
     def sources(self) -> tuple[str, ...]:
@@ -198,14 +183,6 @@ class Uncertainty(Exported):
         named = {name: part for name, part in self.contributions.items() if part >= MIN_NAMED_SHARE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
         return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()), *self.notes)
-
-    def _repr_html_(self) -> str:
-        """Return the table for notebooks."""
-        rows = "".join(
-            f"<tr><td>{html.escape(each.label)}</td><td>{html.escape(each.text)}</td></tr>" for each in self.spreads
-        )
-        paragraphs = "".join(f"<p>{html.escape(each)}</p>" for each in (self.probabilities, *self.notes))
-        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table>{paragraphs}"
 
 
 def exact_inputs(contact: Contact, errors: Collection[str]) -> str:

@@ -12,7 +12,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Value
 from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, show
 
 LOGARITHM_COEFFICIENT = COUETTE + POISEUILLE  # Coefficient of lambda ln X, 16 pi/15.
 

@@ -25,7 +25,8 @@ import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, show
 
 
 @formula(

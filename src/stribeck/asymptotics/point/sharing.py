@@ -31,7 +31,8 @@ from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, show
 
 # Range of the states to which the coefficients are fitted.
 FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-3, 0.7), Limit("relative_roughness", 3e-4, 1e-1))

@@ -24,7 +24,8 @@ import numpy as np
 
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Value
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["FreeExit", "SmoothFilm", "boundary_film_with_free_exit", "rigid_film_with_free_exit", "slow_film_with_free_exit"]
 

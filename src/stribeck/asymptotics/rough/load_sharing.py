@@ -29,7 +29,8 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.asymptotics.smooth.hydrodynamic import GAP_SLOPE
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, show
 
 # Range of the states to which the coefficients are fitted.
 FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))

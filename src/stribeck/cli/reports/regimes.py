@@ -1,118 +1,162 @@
-"""The regime of a contact in words: its transitions, the margins to them, and the sensitivity of friction."""
+"""The regime of a contact in words: the answer that fits a screen, and everything, for Python too."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import html
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 
-from stribeck.checks.check import Checks
-from stribeck.cli.exits import say
-from stribeck.cli.reports.printing import (
-    Sensitivities,
-    mark_texts,
-    most_sensitive_input,
-    print_head,
-    print_outcome,
-    print_table,
-    table_of,
-)
+import stribeck as sb
+from stribeck.cli.reports.text import all_lines, answer_lines, mark_table, mark_texts, outcome_line
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.part_inputs import all_input_rows
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_si
-from stribeck.regimes.margins import RegimeMargins
-from stribeck.regimes.sentences import regime_sentence, ways_to
-from stribeck.solver.base_solution import BaseSolution
-from stribeck.uncertainty.result import Uncertainty
+from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.results import table_lines
+from stribeck.quantities.units import InputError, show
+from stribeck.regimes.levers import strongest_lever
+from stribeck.regimes.overview import Overview, overview_of
+from stribeck.regimes.sentences import answer_sentence, regime_sentence, step_text, ways_to
+from stribeck.solver.numbers import main_rows
 
-if TYPE_CHECKING:
-    from rich.console import Console
+__all__ = ["Explanation", "explain", "regimes_answer", "regimes_lines"]
 
-__all__ = ["print_regimes"]
+# Numbers that the sentence above the table has.
+OF_THE_SENTENCE = ("friction from", "hysteresis", "load on", "Lambda")
 
-
-def print_regimes(
-    console: Console,
-    solution: BaseSolution,
-    sensitivities: Sensitivities,
-    curve: StribeckCurve,
-    margins: RegimeMargins,
-    title: str,
-    checks: Checks | None = None,
-) -> None:
-    """Print the regime of a contact, its transitions, the margins and the sensitivity of friction."""
-    contact = solution.contact
-    assert contact is not None
-    print_head(console, title, contact, solution.groups, checks=checks)
-    friction = solution.friction(definition=curve.definition)
-    say(console, regime_sentence(solution, curve.definition))
-    for line in ways_to(margins):
-        say(console, line)
-    if curve.transitions:
-        table = table_of("transition", "speed", "change", "friction", right=(1, 3))
-        for mark in curve.transitions:
-            where, friction_there = mark_texts(curve, mark)
-            table.add_row(mark.name, where, _way(mark, contact.speed), friction_there)
-        print_table(console, table)
-    else:
-        say(
-            console,
-            "This contact has no transition between the boundary plateau and the hydrodynamic branch.",
-        )
-    _print_sensitivities(console, contact, sensitivities)
-    notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
-    error = max(solution.error_estimate, curve.error_estimate)
-    others = {"friction": max(friction.relative_error, float(curve.friction.relative_error.max(initial=0.0)))}
-    print_outcome(console, curve.outcome.value, error, notes, checks, others)
+MORE = "-v shows all inputs, sensitivities, transitions, intervals and full notes."
 
 
-def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sensitivities) -> None:
-    """Print by how much friction changes with each input, and with which most."""
-    if not sensitivities:
-        return
-    table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
-    rows = all_input_rows(contact.INPUTS)
-    for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
-        value, slope = getattr(contact, name), sensitivities[name]
-        table.add_row(
-            rows[name].label,
-            format_si(value, rows[name].dimension),
-            f"{slope:+.3f}",
-            _change_text(_change(1.1, slope)),
-        )
-    print_table(console, table)
-    most = most_sensitive_input(sensitivities)
-    if most is not None:
-        slope = sensitivities[most]
-        factor = 0.9 if slope > 0 else 1.1
-        way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
-        name = contact.INPUTS.quantities[most].label
-        say(console, f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.")
+def regimes_answer(found: Overview) -> Iterator[str]:
+    """Yield what people read first: verdict, regime, the main numbers, the way to other regimes, doubts and notes in short."""
+    body = [answer_sentence(found.solution, found.friction), *_main_table(found), *_margin_table(found), *_strongest(found)]
+    body += [] if found.errors is None else [found.errors.probability_sentence]
+    return answer_lines(found.case, found.checks, body, found.notes, MORE)
 
 
-def print_uncertainty(console: Console, found: Uncertainty) -> None:
-    """Print the uncertainty of friction, films, transitions and regime."""
-    table = table_of("with errors of the inputs", "value", "95 %", right=(1, 2))
-    for each in found.spreads:
-        table.add_row(each.label, *each.texts)
-    print_table(console, table)
-    say(console, f"Probability of each regime: {found.probabilities}.")
-    for sentence in found.sources:
-        say(console, sentence)
+def regimes_lines(found: Overview) -> Iterator[str]:
+    """Yield everything: the regime of a contact, its transitions, the margins, the sensitivity of friction, uncertainty."""
+    body = [regime_sentence(found.solution, found.friction), *ways_to(found.margins)]
+    body += [*_transition_table(found), *_sensitivity_table(found), *_strongest(found)]
+    along = float(found.curve.friction.relative_error.max(initial=0.0))
+    others = {"friction": max(found.friction.relative_error, along)}
+    body.append(outcome_line(found.curve.outcome.value, found.error_estimate, others))
+    body += [f"No sensitivities: {found.no_sensitivities}"] if found.no_sensitivities else []
+    body += [] if found.errors is None else [str(found.errors)]
+    return all_lines(found.case, found.case.contact, found.solution.groups, found.checks, body, found.notes)
 
 
-def _way(mark: Landmark, speed: float) -> str:
-    if speed == 0:
-        return "from rest"
-    factor = mark.value / speed
+def _main_table(found: Overview) -> list[str]:
+    """Return the main numbers that the sentence has not, with the 95 % interval where inputs have errors."""
+    numbers = main_rows(found.solution, definition=found.curve.definition)
+    rows = [(each.label, *each.texts) for each in numbers if not each.label.startswith(OF_THE_SENTENCE)]
+    if found.errors is not None:
+        spreads = {each.label: each.texts for each in found.errors.spreads}
+        rows = [(label, *spreads.get(label.partition(", ")[0], (value, ""))) for label, value, _ in rows]
+    minimum = found.curve.minimum
+    if minimum is not None:
+        where, friction_there = mark_texts(found.curve, minimum)
+        rows.append(("minimum of friction", f"{friction_there} at {where}", ""))
+    return table_lines([("quantity", "value", "error" if found.errors is None else "95 %"), *rows])
+
+
+def _margin_table(found: Overview) -> list[str]:
+    """Return how far each input is from other regimes, and what 10 % more of it does to friction."""
+    contact, targets = found.case.contact, found.margins.targets
+    rows = [("input", "value", "friction at +10 %", *(f"to {target}" for target in targets))]
+    for margin in found.margins.margins:
+        row = contact.INPUTS.quantities[margin.name]
+        slope = found.sensitivities.get(margin.name)
+        marks = [margin.crossing_into(target) for target in targets]
+        # Without its interval, which does not fit.
+        steps = [
+            "-" if mark is None else step_text(replace(mark, interval_95=None), row.dimension, 3).replace("(to ", "(")
+            for mark in marks
+        ]
+        value = format_si(getattr(contact, margin.name), row.dimension)
+        rows.append((margin.name, value, "" if slope is None else _change_text(slope), *steps))
+    return table_lines(rows, right=(1, 2))
+
+
+def _transition_table(found: Overview) -> list[str]:
+    marks, speed = found.curve.transitions, found.case.contact.speed
+    if not marks:
+        return ["This contact has no transition between the boundary plateau and the hydrodynamic branch."]
+    return mark_table(found.curve, ["from rest" if speed == 0 else _way(mark.value / speed) for mark in marks])
+
+
+def _sensitivity_table(found: Overview) -> list[str]:
+    """Return by how much friction changes with each input."""
+    slopes, contact = found.sensitivities, found.case.contact
+    if not slopes:
+        return []
+    rows, labels = [("input", "value", "sensitivity", "10 % increase gives")], all_input_rows(contact.INPUTS)
+    for name in sorted(slopes, key=lambda name: -abs(slopes[name])):
+        value = format_si(getattr(contact, name), labels[name].dimension)
+        change = _change_text(slopes[name])
+        more = change if change == "no change" else f"{change} friction"
+        rows.append((labels[name].label, value, f"{slopes[name]:+.3f}", more))
+    return table_lines(rows, right=(1, 2, 3))
+
+
+def _strongest(found: Overview) -> list[str]:
+    most = strongest_lever(found.sensitivities)
+    if most is None:
+        return []
+    slope = found.sensitivities[most]
+    factor, way = (0.9, "less") if slope > 0 else (1.1, "more")
+    name = found.case.contact.INPUTS.quantities[most].label
+    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {-100 * (factor**slope - 1):.3g} %."]
+
+
+def _way(factor: float) -> str:
     return f"{format_factor(factor)}x faster" if factor >= 1 else f"{format_factor(1 / factor)}x slower"
 
 
-def _change_text(change: float) -> str:
-    """Return a relative change of friction in per cent."""
-    return f"{100 * change:+.2g} % friction" if abs(change) >= MIN_STATED_SHARE else "no change"
+def _change_text(slope: float) -> str:
+    """Return in per cent by how much friction changes where an input with this sensitivity is larger by a tenth."""
+    change = 1.1**slope - 1
+    return f"{100 * change:+.2g} %" if abs(change) >= MIN_STATED_SHARE else "no change"
 
 
-def _change(factor: float, slope: float) -> float:
-    """Return the relative change of friction where an input with this sensitivity is multiplied."""
-    return float(factor**slope - 1)
+class Explanation(str):
+    """Text whose representation is the text itself."""
+
+    def __repr__(self) -> str:
+        """Return the text itself."""
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre style='white-space: pre-wrap'>{html.escape(self)}</pre>"
+
+
+@answers_typos
+def explain(problem: Contact | sb.Case, *, rtol: float = 1e-6, definition: Definition = "balanced") -> Explanation:
+    """Explain the regime of a contact: what carries the load, how far the next regimes are, what moves its friction.
+
+    Parameters
+    ----------
+    problem : LineContact or Case
+        The contact, or a case from :func:`stribeck.load_case`, whose tolerance, definition and facts then hold.
+    rtol : float
+        Relative tolerance of the states.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    Explanation
+        The words of ``stribeck regimes -v``, a string that shows itself as printed.
+
+    Raises
+    ------
+    InputError
+        If ``problem`` is no contact and no case, or an argument is out of range.
+    """
+    if isinstance(problem, Contact):
+        problem = sb.Case(path=Path(), contact=problem, rtol=rtol, definition=definition)
+    if not isinstance(problem, sb.Case):
+        raise InputError(f"problem = {show(problem)}; give a contact, or a case from load_case.")
+    return Explanation("\n".join(regimes_lines(overview_of(problem))))

@@ -7,6 +7,7 @@ its own lengths.  With the length given the frame stays where it is, and the pre
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +15,10 @@ from stribeck._types import Array
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations, Fields, Operators
 from stribeck.equations.state import State, unknowns_of
 from stribeck.numerics.newton import StepControl, root_find
+from stribeck.numerics.trace import value_of
 
 __all__ = ["solve_of_length"]
 
@@ -27,13 +29,13 @@ class FixedLengthEquations(Equations):
 
     given: float = 1.0
 
-    def cavity_stretch(self, y: Array) -> Array:
-        """Return the given one, a column of stacked states."""
-        return np.full_like(y[..., self.layout.cavity_stretch], self.given)
+    def stretch_of(self, u: Fields) -> Array:
+        """Return the given one."""
+        return np.full_like(value_of(u.cavity_stretch), self.given)
 
-    def cavity_pressure(self, y: Array) -> Array:
-        """Return the pressure of the cavity, a column of stacked states."""
-        return np.asarray(y[..., self.layout.cavity_stretch])
+    def cavity_pressure_of(self, u: Fields) -> Any:
+        """Return the pressure of the cavity, which takes the place of its stretch."""
+        return u.cavity_stretch
 
     def admissible(self, y: Array, dy: Array) -> float:
         """Return the longest fraction of a Newton step that doubles no gap."""
@@ -41,16 +43,6 @@ class FixedLengthEquations(Equations):
         at, step = self.layout, dy.copy()
         step[at.cavity_stretch] = 0.0
         return min(super().admissible(y, step), 1.0 / max(1.0, float((dy[at.gap] / y[at.gap]).max())))
-
-    def by_cavity_stretch_alone(self, y: Array, d: float, g: Array) -> Array:
-        """Return the derivative of the residual with respect to that pressure, at a fixed fluid pressure."""
-        found = np.zeros(y.size - self.layout.offset.start + g.size)
-        found[-3:] = self.flux_scale / self.speed * np.array([-1.0, 0.0, 1.0])
-        return found
-
-    def fluid_by_cavity_stretch(self, g: Array, d: float, by_pressure: Array | None) -> Array:
-        """Return the derivative of the fluid pressure by the cavity pressure, which takes the place of the stretch."""
-        return self.operators.in_cavity
 
 
 def solve_of_length(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int) -> State:

@@ -70,7 +70,6 @@ class ReformingEquations(CavitatedSystem):
 
     finest: ClassVar[float] = 2e-3
     order: ClassVar[float] = 1.0
-    slack: ClassVar[float] = 2.5
 
     @cached_property
     def spread(self) -> csc_matrix:

@@ -51,23 +51,11 @@ class CavitatedSystem(Equations):
     least: float = 0.0
 
     order: ClassVar[float] = 2.0
-    """Power of the number of angles with which errors fall."""
-    slack: ClassVar[float] = 1.25
-    """Stated error over the error by the difference between two meshes and the power ``order``."""
 
     @property
     def spread(self) -> csc_matrix | None:
         """Residuals by unit void at each node, node by node; None where a void acts at its own node alone."""
         return None
-
-    def shear_error(self, y: Unknowns) -> float:
-        """Return an estimate of the error of the integral of the shear over h, by the content of the cavity."""
-        raise NotImplementedError
-
-    def gas_error(self, y: Unknowns) -> float:
-        """Return the part of this by the gas that goes downstream, which the film feels too: none where it stays."""
-        del y
-        return 0.0
 
     def linear(self, y: Unknowns) -> CavitatedLinear:
         """Return the Jacobian at a solution."""
@@ -126,4 +114,5 @@ class CavitatedLinear(Linear):
 
 def just_above(least: float) -> float:
     """Return the lowest pressure of a film that is not cavitated."""
-    return least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))
+    # Of a full film it is any pressure.
+    return least if np.isinf(least) else least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))

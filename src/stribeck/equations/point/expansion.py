@@ -65,16 +65,16 @@ def expand(
     around = [beside(equations, groups_at(t)) for t in samples.places.tolist()]
     powers, nodes = samples.powers(order), y.gap.size
 
-    def local(k: int, w: Array) -> Array:
+    unknowns = np.zeros((order + 1, 2 * nodes + 1))
+    unknowns[0] = as_row(y)
+
+    def coefficient(k: int) -> Array:
         found = np.empty((len(around), 3 * nodes))
-        for one, row, values in zip(around, powers[:, :k] @ w[:k], found, strict=True):
+        for one, row, values in zip(around, powers[:, :k] @ unknowns[:k], found, strict=True):
             at = from_row(row, shape)
             values[:nodes], values[nodes : 2 * nodes] = at.gap.ravel(), one.law.pressure(at.gap).ravel()
             values[2 * nodes :] = one.flow(at.gap, at.fluid, at.offset).ravel()
-        return found
-
-    def residual(k: int, w: Array, v: Array) -> Array:
-        gap, contact, flow = v.reshape(3, *shape)
+        gap, contact, flow = (samples.weights[k] @ found).reshape(3, *shape)
         by_mode = mesh.to_modes @ contact
         gap = gap - mesh.cosines @ equations.deflect(by_mode)
         return np.concatenate([gap.ravel(), flow.ravel(), [float(op.load_row @ by_mode[0])]])
@@ -94,7 +94,7 @@ def expand(
 
     with np.errstate(all="ignore"):
         try:
-            unknowns = implicit_series(as_row(y), samples, local, residual, inverse, order)
+            implicit_series(unknowns, coefficient, inverse)
         except ArithmeticError:
             return None
         each = [smooth_observables(one, from_row(w, shape)) for one, w in zip(around, powers @ unknowns, strict=True)]

@@ -11,25 +11,15 @@ the fluxes and their derivatives only, whatever the law.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FlowFactors
-from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.newtonian import Newtonian, of_pressure
 from stribeck.numerics.fourier_panels import PolarMesh
-
-
-class Flow(NamedTuple):
-    """Mobility M and carried amount C, with their derivatives; None as the one by pressure stands for zero."""
-
-    mobility: Array
-    carried: Array
-    mobility_by_gap: Array
-    carried_by_gap: Array
-    mobility_by_pressure: Array | None = None
-    carried_by_pressure: Array | None = None
+from stribeck.numerics.trace import Trace
 
 
 class Fluxes(NamedTuple):
@@ -109,31 +99,37 @@ def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
     return part * mesh.local_weights * mesh.local_radii, part * mesh.ring_weights
 
 
-class LinearPlane:
-    """A film whose flow is linear in the pressure gradient."""
+@dataclass(frozen=True)
+class NewtonianPlane:
+    """A fluid whose flow is linear in the pressure gradient, with laws of viscosity, density and rough flow."""
+
+    film: Newtonian = Newtonian()  # That of the line
 
     def outside_film(self, speed: float, rim: float) -> None:
         """Return nothing: the film is that at ambient pressure."""
 
-    def flow(self, gap: Array, pressure: Array) -> Flow:
-        """Return the flow at nodes."""
-        raise NotImplementedError
+    def flow(self, gap: Any, pressure: Any) -> tuple[Any, Any]:
+        """Return mobility and carried amount at nodes, of values or of traces."""
+        film, wide, width = self.film, gap * gap * gap, gap
+        if not film.is_smooth:
+            phi, extra = film.roughness(gap)
+            wide, width = phi * wide, width + film.slide * extra
+        if not film.uses_pressure:
+            return wide, width
+        eta, rho = of_pressure(film.viscosity, film.density, pressure)
+        return rho / eta * wide, rho * width
 
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return C, the volume that the walls carry."""
-        return self.flow(gap, pressure).carried
+        return np.asarray(self.flow(gap, pressure)[1])
 
     def filled(self, gap: Array) -> Array:
-        """Return one."""
-        return np.ones_like(gap)
-
-    def viscosity(self, gap: Array, pressure: Array) -> Array:
-        """Return the viscosity over that at ambient pressure."""
-        return np.ones_like(gap)
+        """Return the volume that the walls carry where the gap is full of liquid, over the gap."""
+        return np.asarray(1 + self.film.slide * self.film.flow.shear(gap)[0] / gap)
 
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
-        return self.viscosity(gap, pressure)
+        return np.exp(self.film.viscosity.log(pressure)[0]) if self.film.uses_pressure else np.ones_like(gap)
 
     def sheared(self, speed: float, gap: Array) -> Array:
         """Return one."""
@@ -141,84 +137,65 @@ class LinearPlane:
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
-        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-        wide, carried = self.flow(gap, pressure)[:2]
-        weight, angle = weights_of(mesh)
-        gradient = mesh.radial_derivative(pressure)
-        radial = weight * (mesh.scattered(wide) * gradient - speed * cos[..., None] * mesh.scattered(carried))
-        angular = (angle / mesh.radii) * wide * (mesh.angular_derivative @ pressure) + speed * angle * sin * carried
+        wide, carried = self.flow(gap, pressure)
+        radial, angular = _moved(mesh, speed, pressure, wide, carried)
         return Fluxes(radial, angular, (wide[:, -1], carried[:, -1]))
 
     def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
         """Return its derivatives."""
-        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
         weight, angle = weights_of(mesh)
-        flow = self.flow(gap, pressure)
-        in_radius, in_angle = mesh.radial_derivative(pressure), (mesh.angular_derivative @ pressure) / mesh.radii
-
-        def moves(mobility: Array, carried: Array) -> tuple[Array, Array]:
-            """Return the changes of the flow along and across the radius by those of mobility and carried amount."""
-            along = mesh.scattered(mobility) * in_radius - speed * cos[..., None] * mesh.scattered(carried)
-            return weight * along, angle * (mobility * in_angle + speed * sin * carried)
-
-        of_value = None
-        if flow.mobility_by_pressure is not None and flow.carried_by_pressure is not None:
-            of_value = moves(flow.mobility_by_pressure, flow.carried_by_pressure)
+        mobility, carried = self.flow(Trace.number("gap", gap), Trace.number("pressure", pressure))
+        by_gap, by_pressure = (
+            [np.broadcast_to(each.columns.get(name, 0.0), gap.shape) for each in (mobility, carried)]
+            for name in ("gap", "pressure")
+        )
         return FluxSlopes(
-            weight * mesh.scattered(flow.mobility),
-            (angle / mesh.radii) * flow.mobility,
-            *moves(flow.mobility_by_gap, flow.carried_by_gap),
-            of_value,
+            weight * mesh.scattered(mobility.value),
+            (angle / mesh.radii) * mobility.value,
+            *_moved(mesh, speed, pressure, *by_gap),
+            _moved(mesh, speed, pressure, *by_pressure) if self.film.uses_pressure else None,
             None,
-            (flow.mobility[:, -1], flow.mobility_by_gap[:, -1], flow.carried_by_gap[:, -1]),
+            (mobility.value[:, -1], *(each[:, -1] for each in by_gap)),
         )
 
 
+def _moved(mesh: PolarMesh, speed: float, pressure: Array, mobility: Array, carried: Array) -> tuple[Array, Array]:
+    """Return the weighted flow along and across the radius by a mobility and what the walls carry."""
+    weight, angle = weights_of(mesh)
+    cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+    along = mesh.scattered(mobility) * mesh.radial_derivative(pressure) - speed * cos[..., None] * mesh.scattered(carried)
+    across = mobility * ((mesh.angular_derivative @ pressure) / mesh.radii) + speed * sin * carried
+    return weight * along, angle * across
+
+
 @dataclass(frozen=True)
-class PlainPlane(LinearPlane):
-    """A Newtonian fluid of constant viscosity between smooth walls."""
+class BlendedPlane:
+    """A film whose flow lies between that of a Newtonian fluid and its own; in all else it is its own."""
 
-    def flow(self, gap: Array, pressure: Array) -> Flow:
-        """Return the flow at nodes."""
-        return Flow(gap**3, gap, 3 * gap**2, np.ones_like(gap))
+    film: PlaneFilm
+    newtonian: float  # Part of the Newtonian fluid
 
+    def outside_film(self, speed: float, rim: float) -> None:
+        """Return nothing: states on the way to a film are coarse."""
 
-@dataclass(frozen=True)
-class NewtonianPlane(LinearPlane):
-    """A Newtonian fluid with laws of viscosity, density and rough flow."""
+    def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
+        """Return the weighted mean of both fluxes."""
+        both = (film.fluxes(mesh, speed, gap, pressure) for film in (ISOVISCOUS_PLANE, self.film))
+        return Fluxes(*(self._mean(*each) for each in zip(*both, strict=True)))
 
-    film: Newtonian  # That of the line
+    def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
+        """Return the weighted mean of both derivatives."""
+        both = (film.slopes(mesh, speed, gap, pressure) for film in (ISOVISCOUS_PLANE, self.film))
+        return FluxSlopes(*(self._mean(*each) for each in zip(*both, strict=True)))
 
-    def flow(self, gap: Array, pressure: Array) -> Flow:
-        """Return the flow at nodes."""
-        film, s = self.film, self.film.slide
-        phi, phi_slope = film.flow.pressure(gap)
-        extra, extra_slope = (np.broadcast_to(each, gap.shape) for each in film.flow.shear(gap))  # a law may give one number
-        width, wide = gap + s * extra, phi * gap**3
-        wider = phi_slope * gap**3 + 3 * phi * gap**2
-        if not film.uses_pressure:
-            return Flow(wide, width, wider, 1 + s * extra_slope)
-        log, log_slope = film.viscosity.log(pressure)
-        rho, rho_slope = film.density.ratio(pressure)
-        fluidity = rho * np.exp(-log)
-        return Flow(
-            fluidity * wide,
-            rho * width,
-            fluidity * wider,
-            rho * (1 + s * extra_slope),
-            fluidity * wide * (rho_slope / rho - log_slope),
-            rho_slope * width,
-        )
+    def _mean(self, plain: Any, own: Any) -> Any:
+        if isinstance(own, tuple):
+            return tuple(self._mean(None if plain is None else plain[k], each) for k, each in enumerate(own))
+        return own if own is None else (1 - self.newtonian) * own + (0.0 if plain is None else self.newtonian * plain)
 
-    def filled(self, gap: Array) -> Array:
-        """Return the volume that the walls carry where the gap is full of liquid, over the gap."""
-        return np.asarray(1 + self.film.slide * self.film.flow.shear(gap)[0] / gap)
-
-    def viscosity(self, gap: Array, pressure: Array) -> Array:
-        """Return the viscosity over that at ambient pressure."""
-        if not self.film.uses_pressure:
-            return np.ones_like(gap)
-        return np.exp(self.film.viscosity.log(pressure)[0])
+    def __getattr__(self, name: str) -> Any:
+        """Return any other attribute of the film."""
+        return getattr(self.film, name)
 
 
 def is_isotropic(factors: FlowFactors) -> bool:
@@ -226,4 +203,4 @@ def is_isotropic(factors: FlowFactors) -> bool:
     return getattr(factors, "gamma", 1.0) == 1.0 and not getattr(factors, "friction_factors", False)
 
 
-ISOVISCOUS_PLANE = PlainPlane()  # The fluid of the article
+ISOVISCOUS_PLANE = NewtonianPlane()  # The fluid of the article

@@ -75,15 +75,6 @@ def rim_change(y: Unknowns, step: Unknowns) -> float:
     return float(np.abs(step.fluid[:, -1]).max() / max(np.abs(y.fluid[:, -1]).max(), np.finfo(float).tiny))
 
 
-def distance(equations: Equations, y: Unknowns, preconditioner: BandedModes) -> float:
-    """Return an estimate of the Newton step from unknowns, by the preconditioner of a neighbour."""
-    with np.errstate(all="ignore"):
-        residual, linear = equations.residual(y), Linear(equations, y)
-        step = linear.changes(preconditioner(linear.right(residual)), residual[0])
-        size = step_size(equations.law, y.gap, step.gap)
-    return size if math.isfinite(size) else math.inf
-
-
 def iterate(
     equations: Equations,
     start: Unknowns,

@@ -69,7 +69,7 @@ MODES_PER_EDGE_WIDTH = 7.5
 
 MAX_MODES = 200  # The most modes of a mesh
 
-COARSE_MODES_RATIO = 0.25  # Modes for 1e-2 in all observables but the minimum film, over the modes for the minimum film
+DEGREE_STEP, MODES_RATIO = 2, 1.4  # Degrees by which the finer mesh of a pair exceeds the coarser one, and the ratio of modes
 
 # A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
 # of an edge fall with 4.4**-n on the panels that lead to it.
@@ -80,13 +80,7 @@ MIN_PANEL_WIDTH = 1e-3  # Width below which panels are not split [a]
 MAX_SPLITS = 16  # Most splits of the panels of one mesh
 
 
-# Panel edges around the line at which roughness closes the flow lie on multiples of this [scale of the contact]: neighbouring
-# states share a mesh.
-EDGE_GRID = 1 / 64
-
-EDGE_MARGIN = 0.25  # Least distance of the enclosing edges from the line of closing [steps of EDGE_GRID]
-
-MAX_EXTRA_EDGE_STEPS = 6.0  # Width of the rings between kept edges beyond what the line crosses, at most [steps of EDGE_GRID]
+KINKED_PANEL_WIDTH = 0.05  # Width to which panels are split on which roughness closes the flow [scale of the contact]
 
 
 class MeshTooLargeError(Exception):
@@ -107,7 +101,6 @@ class Resolution:
     model: Model = BASE_MODEL  # Fluid, cavitation and solid, whose equations are solved on the mesh
     farther: int = 0  # Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity
     far_growth: float = math.inf  # Largest width of panels beyond twice the scale over their radius
-    closing: tuple[float, ...] = ()
 
     @property
     def mesh(self) -> PolarMesh:
@@ -123,7 +116,7 @@ class Resolution:
             w *= PANEL_GROWTH
         near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), self._far
         scale = 2.0**self.doublings
-        near = np.unique(np.concatenate([near * scale, [r for r in (*self.splits, *self.closing) if 0.0 < r < 2.0 * scale]]))
+        near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
         widest = BODIES[type(self.model.solid)].widest_panel(self.model.solid)
         while (wide := np.flatnonzero(np.diff(near) > widest)).size:
             near = np.sort(np.append(near, 0.5 * (near[wide] + near[wide + 1])))
@@ -145,7 +138,29 @@ class Resolution:
 
     def coarser(self) -> Resolution:
         """Return a resolution coarser in radius and angle, whose results show the error of this one's."""
-        return replace(self, degree=self.degree - 2, modes=max(4, round(self.modes / 1.4)))
+        modes = max(4, round(self.modes / MODES_RATIO)) if self.is_full else self.modes // 2
+        return replace(self, degree=self.degree - DEGREE_STEP, modes=modes)
+
+    def finer(self) -> Resolution:
+        """Return a resolution finer in radius and angle."""
+        # Errors of a film that ends fall slowly.  The rays along which it ruptures far away lie midway between nodes on any
+        # multiple of five angles, so on ten and on half of them.
+        if not self.is_full:
+            return replace(
+                self, degree=self.degree + 1, modes=max(self.modes + 10, 10 * round(0.1 * MODES_RATIO * self.modes))
+            )
+        return replace(self, degree=self.degree + DEGREE_STEP, modes=2 * math.ceil(0.5 * MODES_RATIO * self.modes))
+
+    def leaner(self) -> Resolution:
+        """Return a resolution that has about this one as its finer one."""
+        if self.is_full:
+            return self.coarser()
+        return replace(self, degree=self.degree - 1, modes=10 * round(0.1 * self.modes / MODES_RATIO))
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the film is full everywhere."""
+        return self.model.cavitation is Cavitation.NONE
 
 
 def film_scale(speed: float) -> float:
@@ -201,14 +216,15 @@ def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[fl
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
     """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
-    return fewest_modes(speed, law) > MAX_MODES
+    return modes_of_edge(speed, law, BASE_MODEL, 0.1) > MAX_MODES
 
 
-def fewest_modes(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> float:
-    """Return the number of modes with which all but the minimum of a film that is thicker than roughness is good to 1e-2."""
+def modes_of_edge(speed: float, law: ContactLaw, model: Model, error: float) -> float:
+    """Return the number of modes with which the minimum of a film that is thicker than roughness has a relative error."""
+    if film_scale(film_speed(speed, model)) <= float(np.max(law.decay_length)):
+        return 0.0
     width = layout(speed, law, model)[0] / EDGE_WIDTH_RATIO
-    is_smooth = film_scale(film_speed(speed, model)) > float(np.max(law.decay_length))
-    return COARSE_MODES_RATIO * MODES_PER_EDGE_WIDTH * width**-0.675 if is_smooth else 0.0
+    return float(MODES_PER_EDGE_WIDTH * width**-0.675 * math.log(error) / math.log(1e-4))
 
 
 def cavitation_thickening(speed: float, model: Model) -> float:
@@ -257,71 +273,33 @@ def _panels_to(radius: float) -> float:
     return FAR_PANELS * math.log(radius / RIM_RADIUS) / math.log(RIM_RADIUS / 2.0)
 
 
-def fits(found: Resolution, speed: float, law: ContactLaw, least: float = -0.4) -> bool:
-    """Return whether the panels of a neighbour serve a state, the smallest being at most ``2**-least`` of it too wide."""
+def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
+    """Return whether the panels of a neighbour serve a state, the smallest being at most a third too wide."""
     width, scale = layout(speed, law, found.model)
     excess = math.log2(width) + found.halvings
     if not 0 <= found.farther - farther_panels(speed, found.model) <= 2:
         return False
-    return least <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
+    return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
 
 
-def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:
+def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array, gap: Array | None = None) -> Resolution:
     """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved."""
     # A law that saturates, or nearly full contact in the middle, has an edge of its own within the contact.
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
-    near = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9)
-    narrowest = np.full(mesh.panels, MIN_PANEL_WIDTH)
-    for inner, outer in zip(found.closing[::2], found.closing[1::2], strict=True):  # a kink, which no halves resolve
-        narrowest[(mesh.edges[:-1] >= inner) & (mesh.edges[1:] <= outer)] = 4.0 * EDGE_GRID
-    poor = np.flatnonzero(near & (tail > MIN_LEGENDRE_DECAY**-mesh.degree) & (np.diff(mesh.edges) > narrowest))
+    near, widths = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9), np.diff(mesh.edges)
+    is_poor = (tail > MIN_LEGENDRE_DECAY**-mesh.degree) & (widths > MIN_PANEL_WIDTH)
+    closed_at = closed_gap(found.model.film)
+    if closed_at is not None and gap is not None:
+        # The mobility has a kink where roughness closes the flow, whose error polynomials of all degrees share.
+        local = mesh.scattered(gap)
+        crossed = (local.min(axis=(0, 2)) < closed_at) & (local.max(axis=(0, 2)) > closed_at)
+        is_poor = np.where(crossed, widths > KINKED_PANEL_WIDTH * 2.0**found.doublings, is_poor)
+    poor = np.flatnonzero(near & is_poor)
     if poor.size == 0 or len(found.splits) > MAX_SPLITS:
         return found
     middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
     return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
-
-
-def with_closing(found: Resolution, mesh: PolarMesh, gap: Array) -> Resolution:
-    """Return a resolution with edges around the line at which roughness closes the last path of the flow, for a nodal gap."""
-    # The mobility has a kink on that line, and polynomials across it err as much on one degree as on the next.
-    closed_at = closed_gap(found.model.film)
-    crossed = [] if closed_at is None else rings_crossed(mesh, gap, closed_at)
-    step = EDGE_GRID * 2.0**found.doublings
-    known = list(zip(found.closing[::2], found.closing[1::2], strict=True))
-    if len(known) == len(crossed) and all(
-        a <= inner and outer <= b and b - a <= outer - inner + MAX_EXTRA_EDGE_STEPS * step
-        for (a, b), (inner, outer) in zip(known, crossed, strict=True)
-    ):
-        return found
-    edges: list[float] = []
-    for inner, outer in crossed:
-        low, high = step * math.floor(inner / step - EDGE_MARGIN), step * math.ceil(outer / step + EDGE_MARGIN)
-        if edges and low <= edges[-1]:
-            edges[-1] = high
-        else:
-            edges += [max(0.0, low), high]
-    return replace(found, closing=tuple(edges))
-
-
-def rings_crossed(mesh: PolarMesh, gap: Array, level: float) -> list[tuple[float, float]]:
-    """Return between which radii the lines lie along which a gap has a value, from the centre outwards."""
-    lowest_highest = np.log(np.stack([gap.min(axis=0), gap.max(axis=0)]) / level)
-    below = lowest_highest < 0.0
-    which, at = np.nonzero(below[:, 1:] != below[:, :-1])
-    before, after = lowest_highest[which, at], lowest_highest[which, at + 1]
-    radii = mesh.radii[at] + before / (before - after) * (mesh.radii[at + 1] - mesh.radii[at])
-    somewhere, everywhere = below[:, 0].tolist()
-    within = somewhere != everywhere
-    found = [(0.0, 0.0)] if within else []
-    for i in np.argsort(radii, kind="stable").tolist():
-        found.append((found.pop()[0] if within else float(radii[i]), float(radii[i])))
-        if which[i] == 0:
-            somewhere = not somewhere
-        else:
-            everywhere = not everywhere
-        within = somewhere != everywhere
-    return found
 
 
 def bytes_of(found: Resolution, band: int) -> int:

@@ -6,21 +6,26 @@ from collections.abc import Callable
 from typing import Any
 
 from stribeck.contacts.model import Model
-from stribeck.equations.point.films import ISOVISCOUS_PLANE, NewtonianPlane, PlaneFilm
+from stribeck.equations.point.films import BlendedPlane, NewtonianPlane, PlaneFilm
 from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.plane import ThinningPlane
+from stribeck.fluids.blend import Blend
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 
 # The flow in the plane, by the kind of film.
-PLANES: dict[type, Callable[[Any], PlaneFilm]] = {Newtonian: NewtonianPlane, ShearThinning: ThinningPlane}
+PLANES: dict[type, Callable[[Any], PlaneFilm]] = {
+    Newtonian: NewtonianPlane,
+    ShearThinning: ThinningPlane,
+    Blend: lambda film: BlendedPlane(plane_of(film.film), film.newtonian),
+}
 
 
 def plane_of(film: Film) -> PlaneFilm:
     """Return the flow in the plane of a film; a KeyError for one that has none."""
-    return ISOVISCOUS_PLANE if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
+    return PLANES[type(film)](film)
 
 
 def has_far_film(model: Model) -> bool:

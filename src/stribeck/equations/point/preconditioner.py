@@ -115,15 +115,17 @@ class Coupling:
     def columns(self, band: int) -> Iterator[tuple[range, Array]]:
         """Yield for each mode of the pressure the modes of the residual that it reaches, and the blocks."""
         mesh = self.mesh
+        radial_p, radial_h = (each.astype(np.float32) for each in (self.radial_p, self.radial_h))
         n, rings, diagonal = mesh.degree + 1, mesh.rings, np.arange(mesh.rings)
         for k in range(mesh.modes):
             reached = range(max(0, k - band), min(mesh.modes, k + band + 1))
             d, s = [abs(m - k) for m in reached], [m + k for m in reached]
-            local_h = 0.5 * (self.radial_h[d] + self.radial_h[s]) - self._crossed(1, np.array(reached), k)
-            local_p = 0.5 * (self.radial_p[d] + self.radial_p[s]) + self._crossed(0, np.array(reached), k)
-            blocks = np.stack([self._of_gap(m, k) for m in reached])[:, :, None] * self.deflection[k]
+            local_h = 0.5 * (radial_h[d] + radial_h[s]) - self._crossed(1, np.array(reached), k)
+            local_p = 0.5 * (radial_p[d] + radial_p[s]) + self._crossed(0, np.array(reached), k)
+            deflection = self.deflection[k].astype(np.float32)
+            blocks = np.stack([self._of_gap(m, k) for m in reached]).astype(np.float32)[:, :, None] * deflection
             for panel, at in enumerate(mesh.of_panel):
-                acting = local_h[:, panel].reshape(-1, n) @ self.deflection[k, at]
+                acting = local_h[:, panel].reshape(-1, n) @ deflection[at]
                 blocks[:, at] += acting.reshape(-1, n, rings)
                 own = slice(at[0], at[-1] + 1)
                 blocks[:, own, own] += local_p[:, panel]

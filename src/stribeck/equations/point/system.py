@@ -115,6 +115,8 @@ class Equations:
     far: ClassVar[FarFilm] = FULL_FAR_FILM
     finest: ClassVar[float] = 0.0
     """Smallest tolerance that is aimed at."""
+    order: ClassVar[float] = np.inf
+    """Power of the number of angles with which errors fall."""
 
     @property
     def load_row(self) -> Array:
@@ -129,6 +131,11 @@ class Equations:
     def friction_error_outside(self, y: Unknowns) -> float:
         """Return an estimate of the error of the friction integrals by a film that still thins beyond the rim."""
         return 0.0 if self.outside_film is None else self.outside_film.friction_error(y.offset)
+
+    def shear_error(self, y: Unknowns) -> float:
+        """Return an estimate of the error of the total shear over h that no mesh tells: none in a full film."""
+        del y
+        return 0.0
 
     @property
     def drag_beyond(self) -> float:

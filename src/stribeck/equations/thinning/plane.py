@@ -123,7 +123,7 @@ class ThinningPlane:
 
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return the amount that the walls carry, which is the same for all laws."""
-        return np.asarray(self.film._of_pressure(gap, pressure)[2] * gap)
+        return np.asarray(_laws_of_pressure(self.film, pressure)[2] * gap)
 
     def filled(self, gap: Array) -> Array:
         """Return one: walls are smooth."""
@@ -145,7 +145,7 @@ class ThinningPlane:
         along = np.stack([cos.ravel(), -sin.ravel()])
         in_angle = mesh.scattered((mesh.angular_derivative @ pressure) / mesh.radii)
         gradient = np.stack([mesh.radial_derivative(pressure).ravel(), in_angle.ravel()])
-        of_pressure = self.film._of_pressure(h, mesh.scattered(pressure).ravel())
+        of_pressure = _laws_of_pressure(self.film, mesh.scattered(pressure).ravel())
         time = self.film.law.time
         slope = 6 * time * h * gradient
         slip = -(speed * time * self.film.slide) * of_pressure[0] / h * along
@@ -162,6 +162,15 @@ def _local_weights(mesh: PolarMesh) -> tuple[Array, Array]:
     """Return the weights of ``r dr dtheta`` and of ``dr dtheta`` panel by panel, for half a turn."""
     radial = weights_of(mesh)[0]
     return radial, radial / mesh.local_radii
+
+
+def _laws_of_pressure(film: ShearThinning, pressure: Array) -> tuple[Array, Array, Array, Array]:
+    """Return viscosity, slope of its logarithm, density and its slope."""
+    if not film.uses_pressure:
+        one, zero = np.ones_like(pressure), np.zeros_like(pressure)
+        return one, zero, one, zero
+    log, log_slope = film.viscosity.log(pressure)
+    return np.exp(log), log_slope, *film.density.ratio(pressure)
 
 
 def _by(matrix: Array, vector: Array) -> Array:

@@ -1,6 +1,6 @@
 """The parts of the model that are chosen from lists: geometry, contact law, fluid, cavitation, motion, flow factors, solid.
 
-Each row is a table of a case and one of its keys; the keys of a choice come from the readers of cases.
+Each list is a table of a case and one of its keys; laws and their numbers are those that the package knows by name.
 """
 
 from __future__ import annotations
@@ -11,81 +11,48 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLUID_KINDS
+from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contact_laws.persson import GAMMA
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.model import Model
-from stribeck.contacts.part_inputs import KINDS
-from stribeck.explorer.inputs.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
-from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_model
+from stribeck.contacts.part_inputs import KINDS, LAW_NUMBERS
+from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_tables
+from stribeck.explorer.inputs.tables import case_of, fluid_table, json_text, tables_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.inputs import INPUT_TABLES, quantity
-from stribeck.quantities.schema import numbers_of
-from stribeck.quantities.units import InputError
+from stribeck.quantities.schema import Input, needed_of, numbers_of
+from stribeck.quantities.units import InputError, checked_word
 from stribeck.solver.point.solve import check_model
 
-__all__ = ["CHOICES", "Choice", "choose", "state_of", "with_detail"]
-
-Keys = tuple[tuple[str, ...], tuple[str, ...]]  # Keys that a choice needs, and keys that it may have.
-
-NO_KEYS: Keys = ((), ())
-
-# Relative tolerance of the states where the geometry is chosen on the page.
-RTOL_BY_GEOMETRY = {geometry: rtol for geometry, (_, rtol) in DEFAULT_POINTS_AND_RTOL.items()}
-
-CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
-"""What refuses models that the equations of a geometry do not have."""
-
-ROWS = {key: row for kind in KINDS.values() for law in kind.laws.values() for key, row in numbers_of(law).items()}
-"""The numbers of all laws."""
-
-TYPICAL: dict[str, Any] = {
-    **{key: tomllib.loads(f"value = {row.example}")["value"] for key, row in ROWS.items()},
-    "slide_to_roll": 0.5,
-    "hurst": 0.8,
-    "longest_wavelength": "150 um",
-    "shortest_wavelength": "1.5 um",
-}
-"""First value of a key that is needed."""
-
-# Labels of keys and names that differ from the key.
-LABELS: dict[str, str] = {
-    **{key: row.label for key, row in ROWS.items()},
-    **{name: law.label for kind in KINDS.values() for name, law in kind.laws.items() if hasattr(law, "label")},
-    "slide_to_roll": "slide-to-roll ratio",
-    "cavity_pressure": "cavity pressure, gauge",
-    "hurst": "Hurst exponent",
-    "gamma": "coefficient γ",
-    "roll_off_wavelength": "roll-off wavelength",
-    "roll_off": "roll-off wave number",
-    "q0": "wave number q₀",
-    "q1": "wave number q₁",
-    "newtonian": "Newtonian",
-    "exit": "film ends at the exit",
-    "reform": "cavity, film re-forms",
-}
-
-IF_EMPTY = {
-    **{key: format_si(row.default, row.dimension) for key, row in ROWS.items() if row.default is not None},
-    "cavity_pressure": "0",
-    "layer_thickness": "half-space",
-    "roll_off_wavelength": "no roll-off",
-    "gamma": str(GAMMA),
-}
-"""What stands for an optional key that is not given."""
+__all__ = ["CHOICES", "Choice", "choose", "list_of", "with_detail"]
 
 
-def _label(name: str) -> str:
-    return LABELS.get(name, name.replace("_", " ").replace("-", " "))
+class Option(NamedTuple):
+    """What may be chosen."""
+
+    label: str  # What it is called
+    needed: tuple[str, ...] = ()  # Keys that it needs
+    optional: tuple[str, ...] = ()  # Keys that it may have
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All its keys."""
+        return (*self.needed, *self.optional)
+
+
+# The numbers of laws and surfaces, which are the keys of options.
+NUMBERS = LAW_NUMBERS | RoughSurface.INPUTS.quantities
+
+SURFACE = Option("", ("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+NO_DETAILS = ("h_rms", "wavenumber", "density", "title", "shape_only")  # Keys of a surface that no field shows
 
 
 @dataclass(frozen=True)
@@ -94,186 +61,184 @@ class Choice:
 
     name: str  # Its name on the page
     label: str  # What is chosen
-    table: str  # The table of the case; empty for a key at the top of the model
+    table: str  # The table of the case; empty for a key at the top
     key: str  # The key that is chosen; empty where the table alone is the choice
-    options: Mapping[str, tuple[str, Keys]]
+    options: Mapping[str, Option]
 
     @property
     def first(self) -> str:
         """The choice by default."""
         return next(iter(self.options))
 
-
-def _keys(law: type | None) -> Keys:
-    """Return the numbers that a law needs, and those that it may have."""
-    rows = numbers_of(law)
-    needed = tuple(key for key, row in rows.items() if row.default is None)
-    return needed, tuple(key for key in rows if key not in needed)
+    @property
+    def where(self) -> str:
+        """The table in which the keys of its options stand."""
+        return "surface" if self.name == "law" else self.table
 
 
-def _bodies() -> dict[str, tuple[str, Keys]]:
+def _option(name: str, law: type | None) -> Option:
+    """Return a law as an option: numbers without default are needed."""
+    needed = needed_of(law)
+    words = "Newtonian" if name == "newtonian" else name if law is None else name.replace("-", " ")
+    label = getattr(law, "label", words)
+    return Option(label, needed, tuple(key for key in numbers_of(law) if key not in needed))
+
+
+def _bodies() -> dict[str, Option]:
     """Return the bodies; one with a memory may be a layer too."""
-    laws = {name: law for name, law in KINDS["solid"].laws.items() if law is not None}
-    shapes = tuple(key for law in laws.values() if not hasattr(law, "base") for key in numbers_of(law))
-    found = {KINDS["solid"].nothing: (KINDS["solid"].nothing, NO_KEYS)}
-    for name, law in sorted(laws.items(), key=lambda each: hasattr(each[1], "base")):
-        needed, optional = _keys(law)
-        found[name] = _label(name), (needed, (*optional, *shapes) if hasattr(law, "base") else optional)
-    return found
+    laws = sorted(KINDS["solid"].laws.items(), key=lambda each: hasattr(each[1], "base"))
+    found = {name: _option(name, law) for name, law in laws}
+    shapes = tuple(key for name, law in laws if not hasattr(law, "base") for key in found[name].keys)
+    return {
+        name: option._replace(optional=(*option.optional, *shapes)) if hasattr(dict(laws)[name], "base") else option
+        for name, option in found.items()
+    }
 
 
-SURFACE_KEYS: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+def _of_kind(name: str) -> Choice:
+    """Return the list of the laws of a kind."""
+    kind, names = KINDS[name], {"rheology": "fluid", "viscosity": "viscosity_law"}
+    options = {each: _option(each, law) for each, law in kind.laws.items()}
+    return Choice(names.get(name, name), kind.label, kind.table, kind.key, options)
+
 
 CHOICES = {
     each.name: each
     for each in (
-        Choice(
-            "geometry", "Geometry", "", "geometry", {"line": ("cylinder on flat", NO_KEYS), "point": ("ball on flat", NO_KEYS)}
-        ),
+        Choice("geometry", "Geometry", "", "geometry", {"line": Option("cylinder on flat"), "point": Option("ball on flat")}),
         Choice(
             "law",
             "Contact law",
             "",
             "law",
-            {law: (LAW_NAMES[law], SURFACE_KEYS if law == "persson" else NO_KEYS) for law in LAWS},
+            {
+                law: (SURFACE if law == "persson" else Option(""))._replace(
+                    label=" and ".join(map(str.capitalize, law.split("-")))
+                )
+                for law in LAWS
+            },
         ),
         Choice(
             "preset",
             "Fluid preset",
             "",
             "",
-            {"": ("choose ...", NO_KEYS)} | {k: (p.label.replace("degC", "°C"), NO_KEYS) for k, p in PRESETS.items()},
+            {"": Option("choose ...")} | {name: Option(each.label.replace("degC", "°C")) for name, each in PRESETS.items()},
         ),
-        *(
-            Choice(
-                kind.key if kind.key != "model" else "fluid",
-                kind.label,
-                "fluid",
-                kind.key,
-                {name: (_label(name), _keys(law)) for name, law in kind.laws.items()},
-            )
-            for kind in FLUID_KINDS.values()
-        ),
+        *(_of_kind(name) for name in FLUID_KINDS),
         Choice(
             "cavitation",
             "Cavitation",
             "cavitation",
             "model",
-            {str(each): (_label(each), ((), ("cavity_pressure",)) if each == "reform" else NO_KEYS) for each in Cavitation},
+            {
+                str(Cavitation.NONE): Option("none"),
+                str(Cavitation.EXIT): Option("film ends at the exit"),
+                str(Cavitation.REFORM): Option("cavity, film re-forms", (), ("cavity_pressure",)),
+            },
         ),
         Choice(
             "motion",
             "Motion",
             "motion",
             "",
-            {"sliding": ("one surface at rest", NO_KEYS), "rolling": ("both surfaces move", (("slide_to_roll",), ()))},
+            {"sliding": Option("one surface at rest"), "rolling": Option("both surfaces move", ("slide_to_roll",))},
         ),
-        Choice(
-            "flow_factors",
-            "Flow factors",
-            "flow_factors",
-            "model",
-            {name: (_label(name), NO_KEYS) for name in KINDS["flow_factors"].laws},
-        ),
+        _of_kind("flow_factors"),
         Choice("solid", KINDS["solid"].label, "solid", "", _bodies()),
     )
 }
-"""The rows, in the order of the page."""
+"""The lists, in the order of the page."""
 
-
-def _where(choice: Choice) -> str:
-    """Return the table in which the keys of a choice stand."""
-    return "surface" if choice.name == "law" else choice.table
+CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
+"""What refuses models that the equations of a geometry do not have."""
 
 
 def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
-    """Return what is chosen in the tables of a model."""
-    if not choice.table and not choice.key:
-        return choice.first
-    if not choice.key:
-        given = tables.get(choice.table, {})
-        fits = [name for name, (_, (needed, _)) in choice.options.items() if set(needed) <= given.keys()]
-        return fits[-1]
+    """Return what is chosen in tables."""
     given = tables.get(choice.table, {}) if choice.table else tables
-    if choice.name == "viscosity_law" and "pressure_coefficient" in given:
-        return str(given.get(choice.key, "barus"))
-    return str(given.get(choice.key, choice.first))
+    if not choice.key:
+        return [name for name, option in choice.options.items() if set(option.needed) <= given.keys()][
+            -1 if choice.table else 0
+        ]
+    implied = "barus" if choice.name == "viscosity_law" and "pressure_coefficient" in given else choice.first
+    return str(given.get(choice.key, implied))
 
 
 @functools.cache
 def available_values(name: str, geometry: str) -> tuple[str, ...]:
     """Return what contacts of a geometry can have of a choice."""
-    choice, check = CHOICES[name], CHECKS.get(geometry)
-    if check is None or not choice.table:
+    choice, tables = CHOICES[name], json_text({"geometry": geometry})
+    if geometry not in CHECKS or not choice.table:
         return tuple(choice.options)
     if choice.table == "motion":  # of a ball the slide-to-roll ratio is one of its inputs
         return (choice.first,)
-    inputs = INPUT_TABLES[geometry]
-    numbers = {row.name: None if row.optional else quantity(row.name, _number(row.typical), inputs) for row in inputs.rows}
-    found = []
-    for value, (_, (needed, _)) in choice.options.items():
-        table = {key: TYPICAL[key] for key in needed} | ({choice.key: value} if choice.key else {})
-        try:
-            check(
-                contact_of(json_text({"geometry": geometry} | ({choice.table: table} if table else {})), numbers).groups.model
-            )
-        except InputError:
-            continue
-        found.append(value)
-    return tuple(found)
+    typical = Inputs(case_of(tables).contact, tables=tables)
+    return tuple(value for value in choice.options if _can_have(typical, name, value))
 
 
-def state_of(now: Inputs, name: str) -> dict[str, Any]:
-    """Return what a row shows."""
-    choice, tables = CHOICES[name], tables_of(now.model)
-    value = chosen_value(choice, tables)
-    given = tables.get(_where(choice), {})
-    needed, optional = choice.options[value][1]
-    keys = (*needed, *optional)
+def _can_have(now: Inputs, name: str, value: str) -> bool:
+    try:
+        choose(now, name, value)
+    except InputError:
+        return False
+    return True
+
+
+def first_value(key: str) -> Any:
+    """Return the first value of a key that a choice needs."""
+    return tomllib.loads(f"value = {NUMBERS[key].example}")["value"]
+
+
+def _if_empty(row: Input) -> str:
+    """Return what stands where a number is not given."""
+    return row.without or ("" if row.default is None else format_si(row.default, row.dimension))
+
+
+def list_of(now: Inputs, name: str) -> dict[str, Any]:
+    """Return what a list and the fields of its choice show."""
+    choice, tables = CHOICES[name], tables_of(now.tables)
+    value, given = chosen_value(choice, tables), tables.get(choice.where, {})
+    keys = choice.options[value].keys
     if name == "law" and keys:
         # A measured spectrum has no numbers to change; others keep those with which they came.
-        own = [key for key in given if key not in ("h_rms", "wavenumber", "density", "title")]
+        own = [key for key in given if key not in NO_DETAILS]
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
-    details = [[key, _label(key), _text(given.get(key, "")), IF_EMPTY.get(key, "")] for key in keys]
+    details = [[key, NUMBERS[key].label, _text(given.get(key, "")), _if_empty(NUMBERS[key])] for key in keys]
     # A table of a contact law comes from a file only.
-    known = [key for key in available_values(name, tables.get("geometry", "line")) if key != "table"]
-    options = [[key, label] for key, (label, _) in choice.options.items() if key in known or key == value]
-    return {"hidden": len(known) < 2, "value": value, "options": options, "details": details}
+    known = [key for key in available_values(name, now.table.geometry) if key != "table"]
+    options = [[key, option.label] for key, option in choice.options.items() if key in known or key == value]
+    return {"name": name, "label": choice.label, "value": value, "options": options, "details": details} | (
+        {"hidden": True} if len(known) < 2 else {}
+    )
 
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:
     """Return the inputs after something was chosen; what it needs has typical values."""
-    choice, tables = CHOICES[name], tables_of(now.model)
-    if value not in choice.options:
-        raise InputError(f"{name} = {value!r} must be one of {', '.join(map(repr, choice.options))}.")
+    choice, tables = CHOICES[name], tables_of(now.tables)
+    checked_word(name, value, choice.options)
     if name == "preset":
         if not value:
             return now
         liquid = PRESETS[value]()
-        tables["fluid"] = fluid_table(liquid.fluid)
-        return _with(now, tables, viscosity=liquid.viscosity)
-    old, where = chosen_value(choice, tables), _where(choice)
+        return _with(now, tables | {"fluid": fluid_table(liquid.fluid)}, viscosity=liquid.viscosity)
+    old = chosen_value(choice, tables)
+    needed = {key: first_value(key) for key in choice.options[value].needed}
     if name == "law":
-        for each in ("surface", "table"):
-            tables.pop(each, None)
-        if value == "persson":
-            tables["surface"] = {key: TYPICAL[key] for key in SURFACE_KEYS[0]}
-            return _of_surface(now, tables | {"law": value})
-        return _with(now, {**tables, "law": value}, **_same_pressure(now, named_law(value)))
+        tables = {key: table for key, table in tables.items() if key not in ("surface", "table")} | {"law": value}
+        if needed:
+            return _of_surface(now, tables | {"surface": needed})
+        return _with(now, tables, **_same_pressure(now, named_law(value)))
     if name == "geometry":
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
-        motion = tables.pop("motion", {})
-        title = now.title if value == old else ""
-        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL_BY_GEOMETRY[value], title=title)
-    table = dict(tables.get(where, {}))
-    for key in (*choice.options[old][1][0], *choice.options[old][1][1]):
-        table.pop(key, None)
-    table |= {key: TYPICAL[key] for key in choice.options[value][1][0]}
+        motion, rtol = tables.pop("motion", {}), DEFAULT_POINTS_AND_RTOL[value][1]
+        return replace(_with(now, tables | {name: value}, **motion), rtol=rtol, title=now.title if value == old else "")
+    kept = {key: each for key, each in tables.get(choice.where, {}).items() if key not in choice.options[old].keys}
     if choice.key:
-        table[choice.key] = value
-        if value == choice.first:
-            del table[choice.key]
-    return _with(now, {**tables, where: table})
+        kept |= {choice.key: value}
+    if value == choice.first:
+        kept.pop(choice.key, None)
+    return _with(now, tables | {choice.where: kept | needed})
 
 
 def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
@@ -292,43 +257,43 @@ def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
 
 def with_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed for a key of a choice."""
-    choice, tables = CHOICES[name], tables_of(now.model)
-    where, text = _where(choice), text.strip()
-    table = {each: value for each, value in tables.get(where, {}).items() if each != key}
+    choice, tables, text = CHOICES[name], tables_of(now.tables), text.strip()
+    table = {each: value for each, value in tables.get(choice.where, {}).items() if each != key}
     if text:
-        several = isinstance(TYPICAL.get(key), list)
-        table[key] = [_number(each.strip()) for each in text.split(",")] if several else _number(text)
-    elif key in choice.options[chosen_value(choice, tables)][1][0]:
-        raise InputError(f"{key} is missing, which this choice needs; add {key} = {_text(TYPICAL[key])}.")
-    tables[where] = table
-    return _of_surface(now, tables) if where == "surface" else _with(now, tables)
+        several = isinstance(first_value(key), list)
+        table[key] = [_number(key, each.strip()) for each in text.split(",")] if several else _number(key, text)
+    elif key in choice.options[chosen_value(choice, tables)].needed:
+        raise InputError(f"{key} is missing, which this choice needs; add {key} = {_text(first_value(key))}.")
+    tables[choice.where] = table
+    return _of_surface(now, tables) if choice.where == "surface" else _with(now, tables)
 
 
 def _text(value: Any) -> str:
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
 
 
-def _number(text: str) -> float | str:
+def _number(key: str, text: str) -> float | str:
     try:
         found = float(text)
     except ValueError:
         return text
     if not math.isfinite(found):
-        raise InputError(f"{text} is not a finite number; give one from 1e-300 to 1e300.")
+        raise InputError(f"{key} = {text} is not a finite number; give one from 1e-300 to 1e300.")
     return found
 
 
 def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
     """Return the inputs on the surface of these tables with the present roughness, alpha and beta being those of it."""
-    tables["surface"] = tables["surface"] | {"h_rms": exact_text(now, "roughness")}
-    found = law_of_file(tables["law"], {}, {"surface": tables["surface"]}, Path())
-    return _with(now, tables, alpha=found.coefficients["alpha"], beta=found.coefficients["beta"])
+    surface = {key: value for key, value in tables["surface"].items() if key != "shape_only"}
+    surface["h_rms"] = exact_text(now, "roughness")
+    _, found = law_of_file(tables["law"], {}, {"surface": dict(surface)}, Path())
+    return _with(now, tables | {"surface": surface}, alpha=found["alpha"], beta=found["beta"])
 
 
 def _with(now: Inputs, tables: Mapping[str, Any], **numbers: float) -> Inputs:
-    """Return the inputs with the tables of another model, of which nothing is kept that is as in the article."""
+    """Return the inputs with other tables, of which nothing is kept that is as in the article."""
     kept = {name: value for name, value in tables.items() if value and value not in ("line", "exponential")}
-    found = with_model(now, json_text(kept), **numbers)
+    found = with_tables(now, json_text(kept), **numbers)
     if found.table.geometry in CHECKS:
         CHECKS[found.table.geometry](found.contact.groups.model)
     return found

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, get_args
-from urllib.parse import quote, urlencode
+from urllib.parse import parse_qsl, quote, urlencode
 
-from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import DEFINITIONS, Definition, check_definition
-from stribeck.explorer.inputs.carried import check_rest, contact_of, geometry_of, json_text
-from stribeck.explorer.inputs.inputs import FIELDS, NAMES, Abscissa, Inputs, exact_text, read_field, with_model
-from stribeck.quantities.units import InputError, read_number, show
+from stribeck.contacts.friction import check_definition
+from stribeck.explorer.inputs.inputs import NAMES, Abscissa, Inputs, exact_text, read_field, with_tables
+from stribeck.explorer.inputs.tables import geometry_of, json_text
+from stribeck.quantities.units import InputError, checked_word, read_number, show
 from stribeck.solver.solve import check_rtol
 
-__all__ = ["Opened", "Pin", "check_length", "decode", "encode"]
+__all__ = ["MAX_PINS", "MAX_URL_LENGTH", "Opened", "check_length", "decode", "encode"]
 
-SEPARATOR = "~"
 MAX_URL_LENGTH = 60_000  # Characters of an address that the server and all browsers take.
-
 MAX_PINS = 6  # Pinned contacts of a page.
 
-
-@dataclass(frozen=True)
-class Pin:
-    """A curve that was kept for comparison."""
-
-    name: str  # What it is called
-    contact: Contact  # Its contact
-    definition: Definition  # Its friction
-    model: str = ""  # Its model, as in :mod:`stribeck.explorer.inputs.carried`
+# Keys of an address beside the inputs, tables and pins, and what reads them.
+OTHERS: dict[str, Callable[[str], Any]] = {
+    "definition": check_definition,
+    "abscissa": lambda text: checked_word("abscissa", text, get_args(Abscissa)),
+    "rtol": lambda text: check_rtol(read_number("rtol", text)),
+    "title": str,
+}
 
 
 @dataclass(frozen=True)
@@ -37,32 +32,26 @@ class Opened:
     """What an address asks for."""
 
     inputs: Inputs  # The inputs; where the address is wrong, those that it should have changed
-    pins: tuple[Pin, ...]  # The pinned curves
+    pins: tuple[Inputs, ...]  # The pinned contacts, with their names as titles
     problems: dict[str, tuple[str, str]]  # What is wrong: for each key the text received and the sentence about it
 
 
-def encode(inputs: Inputs, pins: Sequence[Pin] = ()) -> str:
+def encode(inputs: Inputs, pins: Sequence[Inputs] = ()) -> str:
     """Return the query string, without question mark, that :func:`decode` reads back to the same values."""
     # Empty ones too: whoever opens the link may have started with a case that has them.
-    items = [(name, getattr(inputs, name)) for name in ("model", "title", "rest")]
+    items = [("tables", inputs.tables), ("title", inputs.title)]
     items += [(name, exact_text(inputs, name)) for name in inputs.fields]
     items += [("definition", inputs.definition), ("abscissa", inputs.abscissa), ("rtol", repr(inputs.rtol))]
-    models = list(dict.fromkeys(pin.model for pin in pins if pin.model))
-    items += [("pinmodel", model) for model in models]
-    for pin in pins:
-        values = [getattr(pin.contact, name) for name in FIELDS[pin.contact.INPUTS.geometry]]
-        texts = ["" if value is None else repr(float(value)) for value in values]
-        model = f"@{models.index(pin.model)}" if pin.model else ""
-        items.append(("pin", SEPARATOR.join([*texts, pin.definition + model, pin.name])))
+    items += [("pin", encode(pin)) for pin in pins]
     return urlencode(items, safe=",:/*", quote_via=quote)
 
 
-def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
+def check_length(inputs: Inputs, pins: Sequence[Inputs] = ()) -> None:
     """Refuse what no address can hold."""
     length = len(encode(inputs, pins))
     if length > MAX_URL_LENGTH:
-        parts = {"the title": inputs.title, "the contact law": inputs.model, "notes and [fit]": inputs.rest}
-        parts["the pinned curves"] = "".join(pin.model for pin in pins)
+        parts = {"the title": inputs.title, "the contact law and other tables": inputs.tables}
+        parts["the pinned curves"] = "".join(pin.tables for pin in pins)
         most = max(parts, key=lambda name: len(parts[name]))
         raise InputError(
             f"the address of this state would have {length} characters, but at most {MAX_URL_LENGTH} are "
@@ -75,15 +64,14 @@ def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
     """Return what a query string asks for, beginning with ``start``."""
     given = list(items)
     problems: dict[str, tuple[str, str]] = {}
-    pins: list[Pin] = []
-    models: list[str] = []
+    pins: list[Inputs] = []
     numbers: dict[str, Any] = {}
-    inputs, model = start, dict(given).get("model", start.model)
+    inputs, tables = start, dict(given).get("tables", start.tables)
     try:
-        if geometry_of(model) != start.table.geometry:
-            inputs = with_model(start, json_text({"geometry": geometry_of(model)}))
+        if geometry_of(tables) != start.table.geometry:
+            inputs = with_tables(start, json_text({"geometry": geometry_of(tables)}))
     except InputError as problem:
-        problems["model"], model = (model, str(problem)), start.model
+        problems["tables"], tables = (tables, str(problem)), start.tables
     for key, text in given:
         try:
             if key in NAMES:
@@ -91,62 +79,27 @@ def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
                     raise InputError(f"{key} = {show(text)}: {inputs.table.contact} has no such input.")
                 numbers[key], unit = read_field(inputs, key, text)
                 inputs = replace(inputs, units={**inputs.units, key: unit}) if unit else inputs
-            elif key == "pinmodel":
-                geometry_of(text)
-                models.append(text)
             elif key == "pin":
-                pins.append(_pin(text, models))
-            elif key != "model":
-                inputs = _changed(inputs, key, text)
+                pins.append(_pin(text, start))
+            elif key in OTHERS:
+                changed: dict[str, Any] = {key: OTHERS[key](text)}
+                inputs = replace(inputs, **changed)
+            elif key != "tables":
+                known = ", ".join([*NAMES, *OTHERS, "tables", "pin"])
+                raise InputError(f"{show(key)[1:-1]} = {show(text)} is not a known key; known are {known}.")
         except InputError as problem:
             problems[key] = (text, str(problem))
     try:
         # All together: some alone may not go with what the start has.
-        inputs = with_model(inputs, model, **numbers) if numbers or model != inputs.model else inputs
+        inputs = with_tables(inputs, tables, **numbers) if numbers or tables != inputs.tables else inputs
     except InputError as problem:
-        problems["state" if model == start.model else "model"] = (model, str(problem))
+        problems["state" if tables == start.tables else "tables"] = (tables, str(problem))
     return Opened(inputs, tuple(pins[:MAX_PINS]), problems)
 
 
-def _changed(inputs: Inputs, key: str, text: str) -> Inputs:
-    if key == "definition":
-        return replace(inputs, definition=check_definition(text))
-    if key == "abscissa":
-        return replace(inputs, abscissa=_abscissa(text))
-    if key == "title":
-        return replace(inputs, title=text)
-    if key == "rest":
-        return replace(inputs, rest=check_rest(text))
-    if key == "rtol":
-        rtol = read_number("rtol", text)
-        rtol = check_rtol(rtol)
-        return replace(inputs, rtol=rtol)
-    known = ", ".join([*NAMES, "definition", "abscissa", "rtol", "title", "model", "rest", "pinmodel", "pin"])
-    raise InputError(f"{show(key)[1:-1]} = {show(text)} is not a known key; known are {known}.")
-
-
-def _abscissa(text: str) -> Abscissa:
-    for known in get_args(Abscissa):
-        if text == known:
-            return known  # type: ignore[no-any-return]
-    raise InputError(f"abscissa = {show(text)}; it must be 'speed' or 'hersey'.")
-
-
-def _pin(text: str, models: Sequence[str]) -> Pin:
-    kind = next((part for part in text.split(SEPARATOR) if part.partition("@")[0] in DEFINITIONS), "")
-    definition, mark, number = kind.partition("@")
-    if mark and number not in map(str, range(len(models))):
-        raise InputError(f"in pin, {show(kind)} names a model that the address does not contain.")
-    model = models[int(number)] if mark else ""
-    names = FIELDS[geometry_of(model)]
-    parts = text.split(SEPARATOR, len(names) + 1)
-    if len(parts) != len(names) + 2:
-        raise InputError(f"pin = {show(text)} must hold {len(names)} numbers, the definition and a name.")
-    *values, _, name = parts
-    numbers: dict[str, Any] = {}
-    for key, value in zip(names, values, strict=True):
-        try:
-            numbers[key] = float(value) if value else None
-        except ValueError:
-            raise InputError(f"in pin, {key} = {show(value)} is not a number.") from None
-    return Pin(name, contact_of(model, numbers), check_definition(definition), model)
+def _pin(text: str, start: Inputs) -> Inputs:
+    """Return a pinned contact, which is the address of a state within that of the page."""
+    found = decode(((key, value) for key, value in parse_qsl(text, keep_blank_values=True) if key != "pin"), start)
+    for _, sentence in found.problems.values():
+        raise InputError(f"in pin, {sentence}")
+    return found.inputs

@@ -9,11 +9,10 @@ from typing import Any
 
 from stribeck.numerics.ending import ended_by
 
-__all__ = ["FILES", "OPENING", "Threads", "run"]
+__all__ = ["FILES", "Threads", "run"]
 
-OPENING = ThreadPoolExecutor(2, "explorer")
 FILES = ThreadPoolExecutor(2, "explorer-files")
-"""Of all pages: what a page opens with, and files, which are read in processes that end by themselves."""
+"""Of all pages: addresses, and files, which are read in processes that end by themselves."""
 
 
 class Threads:

@@ -51,9 +51,11 @@ def _compute(report: Report) -> xarray.Dataset:
         "hersey_number": column(speed, curve.hersey_number, "Hersey number eta U/F_N for beta = 1"),
         "friction_published": column(speed, curve.friction, "friction coefficient, definition published"),
         "friction_balanced": column(speed, balanced.friction, "friction coefficient, definition balanced"),
-        "friction_contact": column(speed, curve.friction_contact, "contribution of asperities to the friction coefficient"),
-        "viscous_published": column(speed, curve.friction_viscous, "part from the fluid, definition published"),
-        "viscous_balanced": column(speed, balanced.friction_viscous, "part from the fluid, definition balanced"),
+        "friction_asperities": column(
+            speed, curve.friction.asperities, "contribution of asperities to the friction coefficient"
+        ),
+        "viscous_published": column(speed, curve.friction.fluid, "part from the fluid, definition published"),
+        "viscous_balanced": column(speed, balanced.friction.fluid, "part from the fluid, definition balanced"),
         "contact_load_share": column(speed, curve.observable("contact_load_share"), "part of the load on asperities"),
     }
     variables |= {
@@ -69,7 +71,7 @@ def _compute(report: Report) -> xarray.Dataset:
         f"{hersey * marks['hydrodynamic_begin'][0]:.2g}; minimum friction {marks['minimum'][1]:.5f} at "
         f"{hersey * marks['minimum'][0]:.3g} (force balance: {fair['minimum'][1]:.5f} at {hersey * fair['minimum'][0]:.3g}). "
         f"The printed friction exceeds mu_0 by {100 * excess:.1f} % before it falls, since its fluid part is up to "
-        f"{float((curve.friction_viscous / balanced.friction_viscous).max()):.0f} times that of the force balance."
+        f"{float((curve.friction.fluid / balanced.friction.fluid).max()):.0f} times that of the force balance."
     )
     coords = {
         speed: column(speed, curve.values, "speed group lambda"),
@@ -99,7 +101,7 @@ def _draw_curve(axes: Axes, data: xarray.Dataset) -> None:
     x = data.hersey_number
     axes.loglog(x, data.friction_published, color=style.INK, lw=2.2, label="as published")
     axes.plot(x, data.friction_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
-    axes.plot(x, data.friction_contact, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="part from asperities")
+    axes.plot(x, data.friction_asperities, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="part from asperities")
     axes.plot(data.minimum_hersey, data.minimum_friction, "o", color=style.INK, ms=7, mec="white", label="minimum friction")
     axes.set(ylim=(8e-3, 4), ylabel=r"friction coefficient $\mu$")
     axes.tick_params(labelbottom=False)

@@ -39,7 +39,7 @@ def _compute(report: Report) -> xarray.Dataset:
     work = FigureJob(report, steps=1)
     curve = work.curve(load=LOAD, roughness=0.0, speed=SPEED_RANGE, points=121)
     film = curve.observable("central_gap")
-    friction = curve.friction_viscous / LOAD**0.5
+    friction = curve.friction.fluid / LOAD**0.5
     groups = Groups(curve.values, LOAD, 0.0)
     laws = {
         "film_large": hydrodynamic.central_gap_large.function(groups),

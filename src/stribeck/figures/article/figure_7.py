@@ -44,7 +44,7 @@ def _compute(report: Report) -> xarray.Dataset:
     friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
     law = over(curves, "hydrodynamic_friction")
     uniform = np.array([hydrodynamic.friction_uniform.function(curve.groups) for curve in curves])
-    fluid_film = over(curves, "friction_contact") < MAX_SOLID_FRICTION_SHARE * friction
+    fluid_film = over(curves, "friction.asperities") < MAX_SOLID_FRICTION_SHARE * friction
     off, ours = (np.where(fluid_film, friction / x - 1, np.nan) for x in (law, uniform))
     minima = [curve.minimum for curve in curves]
     lowest = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -61,7 +62,7 @@ def report_variables() -> dict[str, Column]:
 
 def over(curves: list[StribeckCurve], name: str) -> Array:
     """Return an array of each curve, such as ``"friction"``, as rows."""
-    return np.array([getattr(curve, name) for curve in curves])
+    return np.array([attrgetter(name)(curve) for curve in curves])
 
 
 def drawn_cases(data: xarray.Dataset) -> Iterator[tuple[int, dict[str, Any], str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
@@ -22,7 +21,7 @@ from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.neighbours import Neighbours
-from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.state import PointState
 from stribeck.solver.refinement import RefinedState
@@ -31,12 +30,16 @@ from stribeck.solver.solve import stated_errors
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
 
-__all__ = ["OnState", "solved_parts"]
+__all__ = ["OnState", "count_states", "solved_parts"]
 
-OnState = Callable[[int], object]
-"""What is called with the number of states so far after each one that takes long to solve."""
+OnState = Callable[[], object]
+"""What is called after each state that takes long to solve."""
 
 SAFETY = 8.0  # Largest fourth derivative of a part of the friction by ln(speed), over its size (test_point_fit)
+
+# Residual of the slopes of balls over the tolerance of the states: with the preconditioner of a neighbour their error is a
+# hundred times that.  To solve them to rounding takes a sixth more of a fit of a ball in Carreau's fluid.
+SLOPE_RESIDUAL = 1e-3
 
 Columns = tuple[Array, Array, Array]
 """Values, slopes and errors of states."""
@@ -45,9 +48,9 @@ Read = Callable[[Any, Sequence[str], Sequence[str], Sequence[ModelChange]], Colu
 """What gives some parts of a state, derivatives by some groups and along changes of the model, and errors."""
 
 
-def solved_parts(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState = lambda n: None) -> PartsOf:
+def solved_parts(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState = lambda: None) -> PartsOf:
     """Return the function that solves states, each from the nearest of those before, for searches that come near again."""
-    neighbours, count = Neighbours(rtol), itertools.count(1)
+    neighbours = Neighbours(rtol)
     names = ("contact_load_share", *model.rule.parts(definition))
     read = READERS[model.contact.groups.geometry](model, rtol)
     moves = np.abs(model.exponents[:, :, :3]).max(axis=(0, 1)) > 0
@@ -57,7 +60,7 @@ def solved_parts(model: FrictionModel, definition: Definition, rtol: float, on_s
         found = []
         for row in zip(*(each.tolist() for each in (groups.speed, groups.load, groups.roughness)), strict=True):  # type: ignore[union-attr]
             found.append(read(neighbours.solved(Groups(*row, **groups.physics)), names, by, changes))
-            on_state(next(count))
+            on_state()
         return tuple(np.stack(column, axis=-1) for column in zip(*found, strict=True))  # type: ignore[return-value]
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
@@ -78,6 +81,12 @@ def solved_parts(model: FrictionModel, definition: Definition, rtol: float, on_s
         return FrictionParts(values, slopes, errors, definition)
 
     return one_blas_thread(parts)
+
+
+def count_states(model: FrictionModel, rtol: float) -> int:
+    """Return how many states are solved for all rows at one place."""
+    speeds = [np.unique(model.data.values[model.data.curve == curve])[::-1] for curve in np.unique(model.data.curve)]
+    return sum(map(len, speeds)) if any(model.remembers) else sum(len(_places(each, rtol)) for each in speeds)
 
 
 def _places(speeds: Array, rtol: float) -> Array:
@@ -110,7 +119,7 @@ def _cylinder_reader(model: FrictionModel, rtol: float) -> Read:
         assert state.state is not None and state.values is not None
         rows = [ROW[name] for name in names]
         derivatives = log_derivatives(state.state, [each[1:] for each in changes])
-        values = state.values.array(in_article=False)[rows]
+        values = state.values.array()[rows]
         return values, np.stack([derivatives[name] for name in names]), stated_errors(state, rtol)[rows]
 
     return read
@@ -123,10 +132,11 @@ def _ball_reader(model: FrictionModel, rtol: float) -> Read:
     def read(state: PointState, names: Sequence[str], by: Sequence[str], changes: Sequence[ModelChange]) -> Columns:
         groups = state.groups
         values, errors = (np.array([each[name] for name in names]) for each in (state.values, state.relative_errors))
-        by_groups = state_derivatives(state, by)
+        by_groups = state_derivatives(state, by, tolerance=SLOPE_RESIDUAL * rtol)
         slopes = np.array([by_groups[name] for name in names])
         if changes:
-            along = derivatives_along(state, {str(change.input): partial(_moved, groups, change) for change in changes})
+            moved = {str(change.input): partial(_moved, groups, change) for change in changes}
+            along = derivatives_along(state, moved, tolerance=SLOPE_RESIDUAL * rtol)
             slopes = np.append(slopes, [along[name] for name in names], axis=1)
         if groups.model.film.uses_speed and isinstance(state.work, Pair):
             fine = state.work.fine

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stribeck import atlas
+from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
@@ -20,13 +22,17 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
 
-__all__ = ["Ways", "atlas_or", "atlas_parts", "between", "in_atlas", "ways_of"]
+__all__ = ["Ways", "atlas_or", "atlas_parts", "between", "in_atlas", "rtol_of_states", "ways_of"]
 
 
 FAR_DOUBT = 1e-2  # Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`
 
 
-MIN_RTOL = {"line": 0.0, "point": 1e-4}  # Smallest tolerance of solved states, by geometry: far below what rigs resolve
+# Smallest and largest tolerance of states of balls that the noise of the data may ask for: what a rig resolves lies between
+# them.  That of the case holds where it is larger.
+BALL_RTOL = 1e-4, 1e-3
+
+ERROR_SHARE = 1 / 3  # Tolerance of states over the standard error of a common factor on the friction, which it widens by 5 %
 
 
 class Ways(NamedTuple):
@@ -38,9 +44,18 @@ class Ways(NamedTuple):
 
 def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     """Return how the states of a fit are obtained: off the atlas where one holds, else read between solved ones."""
-    rtol = max(rtol, MIN_RTOL[model.contact.groups.geometry])
     solved = Made(solved_parts, model, definition, rtol, on_state=on_state)
     return Ways(Made(atlas_or, solved, definition), solved) if in_atlas(model) else between(solved)
+
+
+def rtol_of_states(model: FrictionModel, rtol: float, relative_noise: Array | float = math.inf) -> float:
+    """Return the tolerance of solved states, given that of the case and the relative noise of each row where it is known."""
+    if model.contact.groups.geometry == "line":  # which takes milliseconds at any tolerance
+        return rtol
+    low, high = BALL_RTOL
+    with np.errstate(divide="ignore"):
+        standard_error = np.sum(np.broadcast_to(relative_noise, len(model.data)) ** -2.0) ** -0.5
+    return max(rtol, min(max(low, ERROR_SHARE * float(standard_error)), high))
 
 
 def in_atlas(model: FrictionModel) -> bool:

@@ -11,11 +11,11 @@ from typing import Literal
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.contacts.geometries import LINE
 from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
 from stribeck.files.text_table import TextTable, as_comparable
 from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
-from stribeck.quantities.input_rows import ROWS
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
@@ -54,9 +54,9 @@ WORDS = {
     "curve": "curve|series|sample",
     MADE_RATIO: "slide to roll",
 } | {
-    row.name: "|".join(map(re.escape, (row.name.replace("_", " "), *row.headers)))
-    for row in ROWS
-    if not row.derived and row.name not in ("speed", "boundary_friction")
+    name: "|".join(re.escape(each.replace("_", " ").lower()) for each in (name, *row.letters) if len(each) > 1)
+    for name, row in LINE.kept.items()
+    if name not in ("speed", "boundary_friction")
 }
 
 # Headers of a speed that is taken where there is none by a plainer name.

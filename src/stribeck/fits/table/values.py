@@ -9,7 +9,6 @@ from stribeck.files.cells import MISSING_CELLS, number_of, split_header
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.columns import ABSCISSAS
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension, si_factor
-from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Values"]
@@ -87,7 +86,7 @@ class Values:
             raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
         if meaning in self.settings.inputs.quantities and meaning != "speed":
             try:
-                quantity(meaning, value, self.settings.inputs)
+                self.settings.inputs.checked(meaning, value)
             except InputError as problem:
                 raise InputError(f"{where}: {problem}") from None
         return value

@@ -78,10 +78,6 @@ class Eyring(RateLaw):
         """Return the law in Hertz units."""
         return type(self)(self.eyring_stress / units.stress)
 
-    def milder(self, part: float) -> Self:
-        """Return the fluid with a higher stress."""
-        return type(self)(self.eyring_stress * STRESS_RATIO_AT_START ** (part - 1))
-
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return arsinh(x) and its slope."""
         return np.arcsinh(rate), 1 / np.hypot(1.0, rate)

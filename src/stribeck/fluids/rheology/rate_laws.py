@@ -124,12 +124,6 @@ class Carreau(_BetweenPlateaus):
     name: ClassVar[str] = "carreau"
     label: ClassVar[str] = "Carreau"
 
-    def milder(self, part: float) -> Self:
-        """Return the fluid whose viscosity is that to the power of the part, nearly."""
-        return type(self)(
-            self.relaxation_time, 1 - part * (1 - self.exponent), _homotopy_plateau(self.infinite_viscosity, part)
-        )
-
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
         n, rest, square = self.exponent, self.infinite_viscosity, rate * rate
@@ -158,10 +152,6 @@ class Cross(_BetweenPlateaus):
         highest=1 - MIN_EXPONENT,
         reason="the viscosity of a Cross fluid falls as the rate to the power -exponent, which of a Carreau fluid is 1 - n",
     )
-
-    def milder(self, part: float) -> Self:
-        """Return the fluid with a higher plateau at high rates."""
-        return type(self)(self.relaxation_time, self.exponent, _homotopy_plateau(self.infinite_viscosity, part))
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
@@ -233,10 +223,6 @@ class PowerLaw(RateLaw):
             f"much of the drag of a power law with exponent {self.exponent:g} comes from far outside the contact, up to where "
             "its viscosity is constant; take films and load shares, or give Carreau's law for the friction",
         )
-
-    def milder(self, part: float) -> Self:
-        """Return the fluid whose viscosity is that to the power of the part."""
-        return type(self)(self.relaxation_time, 1 - part * (1 - self.exponent))
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""

@@ -51,10 +51,6 @@ class Constant(ViscosityLaw):
         """Return itself: it has no numbers."""
         return self
 
-    def milder(self, part: float) -> Self:
-        """Return itself: it does nothing."""
-        return self
-
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return zero twice."""
         return np.zeros_like(pressure), np.zeros_like(pressure)
@@ -88,10 +84,6 @@ class Barus(ViscosityLaw):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
         return type(self)(self.pressure_coefficient * units.pressure)
-
-    def milder(self, part: float) -> Self:
-        """Return the law with a part of the coefficient."""
-        return type(self)(part * self.pressure_coefficient)
 
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return ``a p`` and a."""
@@ -158,10 +150,6 @@ class Roelands(ViscosityLaw):
             )
         return type(self)(self.pressure_coefficient * units.pressure, self.reference_pressure / units.pressure, ratio)
 
-    def milder(self, part: float) -> Self:
-        """Return the law with a part of the coefficient."""
-        return type(self)(part * self.pressure_coefficient, self.reference_pressure, self.reference_viscosity)
-
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return ``S [(1 + p/p_r)**z - 1]`` and its slope; below ``-p_r/2`` the tangent there."""
         p_r, S = self.reference_pressure, -math.log(self.reference_viscosity)
@@ -184,10 +172,6 @@ class Incompressible(DensityLaw):
 
     def scaled(self, units: FilmUnits) -> Self:
         """Return itself: it has no numbers."""
-        return self
-
-    def milder(self, part: float) -> Self:
-        """Return itself: it does nothing."""
         return self
 
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
@@ -247,10 +231,6 @@ class DowsonHigginson(DensityLaw):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
         return type(self)(self.density_pressure / units.pressure, self.density_limit)
-
-    def milder(self, part: float) -> Self:
-        """Return the law with a part of the growth."""
-        return type(self)(self.density_pressure, 1 + max(part, 1e-9) * (self.density_limit - 1))
 
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""

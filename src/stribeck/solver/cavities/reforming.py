@@ -10,11 +10,11 @@ from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.cavities.cavitated import follow_cavitated, holds_cavitated, is_cavitated, refine_cavitated
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import Level
-from stribeck.solver.point.refinement import Pair, follow, holds_along_path, refine
+from stribeck.solver.point.refinement import follow, is_cavitated, refine
 
-__all__ = ["follow_reforming", "full_model", "holds_reforming", "refine_reforming"]
+__all__ = ["follow_reforming", "full_model", "refine_reforming"]
 
 FULL_FILM_SUCTION_RATIO = 1.1  # Suction of a coarse full film over the cavity's below which the full film is tried first
 
@@ -30,12 +30,12 @@ def refine_reforming(
     """Return a state that holds a tolerance, from a coarse one or a ``known`` one with a larger error, or the best found."""
     full = guess.relabelled(full_model(model))
     if known is not None and not isinstance(known.fine.equations, CavitatedSystem):
-        return _refine_full_film(speed, law, full, rtol, model, known) or refine_cavitated(speed, law, guess, rtol, model)
+        return _refine_full_film(speed, law, full, rtol, model, known) or refine(speed, law, guess, rtol, model)
     if known is None and guess.unknowns.fluid.min() >= FULL_FILM_SUCTION_RATIO * model.cavity_pressure:
         found = _refine_full_film(speed, law, full, rtol, model)
         if found is not None:
             return found
-    cavitated = refine_cavitated(speed, law, guess, rtol, model, known)
+    cavitated = refine(speed, law, guess, rtol, model, known)
     if not isinstance(cavitated, Pair):
         return cavitated
     if cavitated.outcome.ok and not is_cavitated(cavitated):
@@ -53,7 +53,7 @@ def follow_reforming(
     if any(isinstance(each.fine.equations, CavitatedSystem) is not is_cavitated_film for _, each in line):
         line = ()
     if is_cavitated_film:
-        found = follow_cavitated(speed, law, neighbour, rtol, line)
+        found = follow(speed, law, neighbour, rtol, line)
         if found is None or is_cavitated(found):
             return found
         return _refine_full_film(speed, law, found.fine.relabelled(full_model(model)), rtol, model)
@@ -63,21 +63,16 @@ def follow_reforming(
         return None
     if found.fine.unknowns.fluid.min() >= model.cavity_pressure:
         return found.relabelled(model)
-    cavitated = refine_cavitated(speed, law, found.fine, rtol, model)
+    cavitated = refine(speed, law, found.fine, rtol, model)
     return cavitated if isinstance(cavitated, Pair) and cavitated.outcome.ok else None
-
-
-def holds_reforming(pair: Pair, rtol: float) -> bool:
-    """Return whether the errors of a state along a path hold a tolerance."""
-    is_cavitated_film = isinstance(pair.fine.equations, CavitatedSystem)
-    return holds_cavitated(pair, rtol) if is_cavitated_film else holds_along_path(pair, rtol)
 
 
 def _refine_full_film(
     speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
 ) -> Pair | None:
     """Return the full film relabelled with the model, or None if its suction exceeds the cavity's or none is found."""
-    found = refine(speed, law, guess, rtol, None if known is None else known.relabelled(guess.resolution.model))
+    full = guess.resolution.model
+    found = refine(speed, law, guess, rtol, full, None if known is None else known.relabelled(full))
     if not isinstance(found, Pair) or not found.fine.unknowns.fluid.min() >= model.cavity_pressure:
         return None
     return found.relabelled(model)

@@ -25,7 +25,7 @@ from stribeck.numerics.newton import Inverse
 from stribeck.numerics.series import interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import shift_along
-from stribeck.solver.path.expansion import Direction, Expanded, expand_any_film
+from stribeck.solver.path.expansion import Direction, Expanded, expand
 from stribeck.solver.path.line_path import (
     MAX_SAMPLE_RADIUS_RATIO,
     POSITION,
@@ -125,7 +125,7 @@ class ReformingLine(LineProblem):
             models = (
                 [] if self.uniform else [with_ending_of(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
             )
-            found = expand_any_film(state.equations, state.y, inverse, state.groups, *direction, samples, models, self.order)
+            found = expand(state.equations, state.y, inverse, state.groups, *direction, self.order, samples, models)
             own = radius(found.unknowns[:, : state.mesh.size], reach)
             if np.isfinite(own) and np.isfinite(found.unknowns).all() and reach < MAX_SAMPLE_RADIUS_RATIO * own:
                 break
@@ -157,7 +157,7 @@ class ReformingLine(LineProblem):
         point = self._solved(0.5 * (left.coordinate + right.coordinate), [left, right])
         if point is None or point.values is None or not point.outcome.ok:
             return None
-        return np.array([*point.values.array(in_article=False), point.values.minimum_position])
+        return np.array([*point.values.array(), point.values.minimum_position])
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return the minimum position by a parabola, or all observables where a cavity opens or closes."""

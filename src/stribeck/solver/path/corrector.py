@@ -13,7 +13,6 @@ from stribeck.equations.line import Operators
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
-from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
@@ -49,8 +48,6 @@ class Corrector:
         if _cavity_may_vanish(groups):
             return self._kept(solve_cold_line(groups, self.rtol))
         path = first_path(with_positive_gap(groups)[0])
-        if path.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
         if not path.outcome.ok:
             return None
         return self._adopt(
@@ -139,7 +136,7 @@ class Corrector:
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
         """Take another mesh, and drop the largest operators of the meshes left longest ago."""
         if self.operators is not None:
-            vars(self.operators).pop("deflection_of_gradient", None)
+            vars(self.operators).pop("deflecting", None)
             self.left.append((self.operators, self.fine))
         while sum(each.mesh.size**2 for each, _ in self.left) > CACHED_ENTRIES:
             for operators_left in filter(None, self.left.popleft()):

@@ -169,21 +169,20 @@ class HermitePath:
         return self.knots
 
     def continued(
-        self, end: float, rtol: float, on_interval: Callable[[float, float], object], span: float = math.inf
+        self,
+        end: float,
+        rtol: float,
+        on_interval: Callable[[float, float], object] | None = None,
+        until: Callable[[HermitePath], bool] | None = None,
     ) -> HermitePath:
-        """Return the path from the nearer end of this one to ``end``, or as far as ``span``."""
+        """Return the path from the nearer end of this one to ``end``, or as far as ``until`` holds of it."""
         here = min(self.knots[0], self.knots[-1], key=lambda one: abs(one.coordinate - end))
-        goal = here.coordinate + math.copysign(min(span, abs(end - here.coordinate)), end - here.coordinate)
-        return interpolate_to(self.problem, here.coordinate, goal, rtol, on_interval, (here,))
+        return interpolate_to(self.problem, here.coordinate, end, rtol, on_interval, (here,), until)
 
     def places(self, parts: Array) -> Array:
         """Return coordinates at parts of all intervals, and the last one."""
         lengths = np.diff(self.coordinates)
         return np.append((self.coordinates[:-1, None] + parts * lengths[:, None]).ravel(), self.coordinates[-1])
-
-    def between(self, first: float, last: float) -> HermitePath:
-        """Return the path, which holds what lies between two coordinates."""
-        return self
 
     def nearest(self, s: float) -> Knot:
         """Return the solved state that is nearest to a coordinate."""
@@ -207,8 +206,9 @@ def interpolate_to(
     rtol: float,
     on_interval: Callable[[float, float], object] | None = None,
     known: Sequence[Knot] = (),
+    until: Callable[[HermitePath], bool] | None = None,
 ) -> HermitePath:
-    """Return the path between two coordinates whose interpolation holds ``rtol``; ``known`` are states on it."""
+    """Return the path between two coordinates, or as far as ``until`` holds of it; ``known`` are states on it."""
     knots = {knot.coordinate: knot for knot in known}
     outcome = Outcome.CONVERGED
 
@@ -225,7 +225,7 @@ def interpolate_to(
                 return HermitePath(problem, (), first)
             else:
                 outcome, here = first, here + sign * FIRST_STEP
-        while (left := abs(end - here)) > 0:
+        while (left := abs(end - here)) > 0 and not (until is not None and until(path())):
             step = min(step, MAX_STEP, left)
             there = end if step == left else here + sign * step
             new = knots.get(there) or problem.solve(there)

@@ -17,8 +17,9 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
 from stribeck.equations.state import State, decay_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
 from stribeck.numerics.newton import Inverse, Root
-from stribeck.numerics.panels import Mesh
 from stribeck.numerics.series import COEFFICIENT_NOISE, beyond, interval, radius
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -29,8 +30,7 @@ from stribeck.solver.path.expansion import (
     Direction,
     Expanded,
     around_state,
-    expand_any_film,
-    expand_article,
+    expand,
     from_logs,
     observables_of_rows,
     residuals,
@@ -52,7 +52,6 @@ POLYNOMIAL_ORDERS = (14, 16)  # Orders for rtol >= 1e-7 and below, base model wi
 SAMPLED_ORDER = 9  # Order of series of films that are sampled
 CUSP_ORDER = 6  # Order where the flow has a cusp at zero shear rate: it moves through the nodes, and high orders amplify it
 SAMPLE_RADIUS_RATIO = 0.2  # Distance of the samples over the radius of convergence
-MIN_SAMPLE_RADIUS_RATIO = 0.1  # Samples nearer than this are taken once more
 MAX_SAMPLE_RADIUS_RATIO = 0.27  # Samples farther than this are taken once more
 # A node at which the shear rate of a power law passes zero turns sharply with the speed: at twice this distance series were
 # wrong from order two on.
@@ -67,16 +66,13 @@ GAP_TAIL_RATIO = 0.2  # Tail of the gap over the usual one where the minimum is 
 MAX_LAW_MISFIT = 1e-3  # Misfit of a law's local polynomial over rtol above which its series are checked between states
 ERROR_FLOOR_RATIO = 0.25  # Least error of an observable over the largest: one estimate may vanish by accident
 KEPT_INVERSES = 3  # Inverses held at a time, for both ends of an interval and a state between; each fills a matrix
-SECOND_MESH_RTOL_FRACTION = 0.6  # Error of the minimum gap over rtol above which it is read on both meshes
 NEGLIGIBLE_RTOL_FRACTION = 0.1  # Error of the minimum gap's polynomial over rtol up to which it replaces the reading
-MAX_LOG_GAP_CHANGE = 12.0  # Change of the least or largest log gap in a step above which a prediction is refused
 MAX_PREDICTION_DOUBT = 0.8  # Uncertainty of a prediction's log unknowns above which Newton's iteration does not start
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
 READ_COLUMNS = [ROW["minimum_gap"], POSITION]
 SERIES_COLUMNS = [ROW[name] for name in NAMES if name != "minimum_gap"]
 SHARE_COLUMNS = [ROW[name] for name in ABSOLUTE]
 UNCONTROLLED_COLUMNS = [POSITION, ROW["exit_position"], ROW["reformation_position"]]
-ANY_MESH = Mesh(np.array([-1.0, 0.0, 1.0]), 2)  # Operators of a model are asked which film they have before any mesh is known
 
 
 class LineProblem:
@@ -102,7 +98,7 @@ class LineProblem:
         )
         self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
-        self.analytic = uniform and Operators(ANY_MESH, start.model).is_base_model
+        self.analytic = uniform and has_formulas(start.model)
         exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDERS if exact else POLYNOMIAL_ORDERS
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= MAX_LAW_MISFIT * rtol)
@@ -157,15 +153,20 @@ class LineProblem:
             gap = guess.y[guess.equations.layout.gap]
             if not (np.isfinite(gap).all() and gap.min() > 0 and guess.cavity_stretch > 0):
                 return Outcome.NOT_FINITE
-            if any(
-                abs(np.log(of(gap) / of(one.point.state.gap))) > MAX_LOG_GAP_CHANGE for of in (np.min, np.max) for one in near
-            ):
-                return Outcome.PATH_LOST
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
             refined = self.corrector.solve(guess, groups, spread)
         else:
             refined = self.corrector.cold(groups)
         return self._accepted(s, refined, near)
+
+    def begin(self, s: float, refined: RefinedState) -> Expansion | Outcome:
+        """Return the expansion of a state that is known already, with a full film, or the outcome of the failure."""
+        self.corrector.move_to(refined)
+        groups = self.groups_at(s)
+        if refined.state is not None:  # series need the groups of the path to the last digit, and the state's own Jacobian
+            state = replace(refined.state.without_inverse(), groups=with_positive_gap(groups)[0])
+            refined = replace(refined, groups=groups, state=state)
+        return self._accepted(s, refined, [])
 
     def _accepted(self, s: float, refined: RefinedState | None, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expansion of a state whose error is within the tolerance, else its outcome."""
@@ -187,11 +188,11 @@ class LineProblem:
         with np.errstate(all="ignore"):  # values that are not finite are cut off below
             if self.analytic:
                 direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, self.order)
-                found = expand_article(state.equations, y, inverse, state.groups, direction, shifts, self.order)
+                found = expand(state.equations, y, inverse, state.groups, direction, shifts, self.order)
                 known = self._radius(s, state, found, 1.0)
             else:
                 found, known = self._sampled(s, state, inverse, near)
-        numbers = values.array(in_article=False)
+        numbers = values.array()
         exists = [column for column in (SERIES_COLUMNS if self.moves else []) if np.isfinite(numbers[column])]
         finite = np.isfinite(np.hstack([found.unknowns, found.observables[:, exists]])).all(axis=1)
         order = self.order if finite.all() else max(1, int(np.argmin(finite)) - 1)
@@ -204,8 +205,6 @@ class LineProblem:
         errors = np.full(POSITION + 1, np.nan)
         errors[: len(estimate.relative)] = np.maximum(estimate.relative, ERROR_FLOOR_RATIO * estimate.total)
         errors[POSITION] = estimate.minimum_position
-        if state.equations.operators.is_base_model:
-            errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
         self._keep(state, inverse)
         point = LinePoint(replace(refined, state=state), state, unknowns, refined.fine)
         return Expansion(s, point, series, logs, errors, known)
@@ -231,21 +230,21 @@ class LineProblem:
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
         """Return the series of a film from samples, and its radius of convergence."""
         reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * near)
-        for trial in range(MAX_EXPANSIONS):
+        for _ in range(MAX_EXPANSIONS):
             samples = interval(self.interval * reach, degree=self.degree)
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.places) - 1)
             models = (
                 [] if self.uniform else [with_ending_of(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
             )
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
-            found = expand_any_film(*around, samples, models, self.order)
+            found = expand(*around, self.order, samples, models)
             known = self._radius(s, state, found, reach)
             if not (
                 np.isfinite(found.unknowns).all() and np.isfinite(known)
             ):  # the law is too steep for so wide a neighbourhood
                 known = reach
                 reach = 0.25 * reach
-            elif reach > MAX_SAMPLE_RADIUS_RATIO * known or (trial == 0 and reach < MIN_SAMPLE_RADIUS_RATIO * known):
+            elif reach > MAX_SAMPLE_RADIUS_RATIO * known:
                 reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * known)
             else:
                 break
@@ -376,7 +375,7 @@ class LineProblem:
         models = (
             [] if self.uniform else [with_ending_of(state, self.groups_at(end.coordinate + each).model) for each in t.tolist()]
         )
-        around, load = around_state(state.equations, state.groups, direction, t, models)
+        around, load = around_state(state.equations, state.equations.law, state.groups, direction, t, models)
         y, inverse = from_logs(state.equations, between(left, right, end.point, parts)), self._inverse_of(state)
         with np.errstate(all="ignore"):
             for _ in range(times):
@@ -399,11 +398,23 @@ class LineProblem:
         at_ends = np.maximum(left.errors[READ_COLUMNS], right.errors[READ_COLUMNS])
         finer, coarser = sorted((left.point, right.point), key=lambda point: -point.state.mesh.size)
         values, error = minimum_between(left, right, finer, parts)
-        if finer.state.mesh is not coarser.state.mesh and (error > SECOND_MESH_RTOL_FRACTION * self.tolerance).any():
+        if finer.state.mesh is not coarser.state.mesh:
             others, of_others = minimum_between(left, right, coarser, parts)
             better = of_others < error
             values, error = np.where(better, others, values), np.where(better, of_others, error)
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ_COLUMNS
+
+
+def has_formulas(model: Model) -> bool:
+    """Return whether the gradient of a film and its drag are smooth functions that jets and complex numbers pass through."""
+    film = model.film
+    return (
+        model.cavitation is not Cavitation.REFORM
+        and isinstance(film, Newtonian)
+        and film.is_smooth
+        and isinstance(film.viscosity, Constant | Barus | Roelands)
+        and isinstance(film.density, Incompressible | DowsonHigginson)
+    )
 
 
 def same_unknowns(*near: Expansion) -> bool:

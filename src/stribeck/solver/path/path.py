@@ -39,9 +39,8 @@ MIN_LENGTH = 1e-300  # Keeps the single state of a path of length zero from divi
 INNER_PLACES = np.array([0.25, 0.5, 0.75])  # Where the equations are checked: laws with kinks may agree by accident at one
 MAX_END_INTERVAL = 0.05  # Longest interval on which an observable may cease to exist
 MIN_INTERVAL = 0.01  # Intervals are not split below this length: where a film ruptures no series converges
-ROUNDING_LENGTH = 0.4  # Length of intervals below which an error that splitting does not reduce is rounding
+ROUNDING_LENGTH = 0.4  # Length below which an error that a shorter interval does not reduce is rounding
 MAX_HALVING_RATIO = 0.6  # Error of a half over that of the whole above which splitting does not reduce the error
-MIN_STEP_AT_ROUNDING = 0.2  # A path ends at a shorter step once rounding exceeds rtol: farther states are no better
 MAX_INTERVALS = 500
 MAX_EXPANSIONS = 4  # Expansions of one state, each with a new distance of the samples
 BETWEEN_RTOL_FRACTION = 0.2  # Share of rtol for states between two others, which lie on meshes made for those
@@ -287,22 +286,20 @@ class SolvedPath:
         return _Pieces(self.intervals)
 
     def continued(
-        self, end: float, rtol: float, on_interval: Callable[[float, float], object], span: float = math.inf
+        self,
+        end: float,
+        rtol: float,
+        on_interval: Callable[[float, float], object] | None = None,
+        until: Callable[[SolvedPath], bool] | None = None,
     ) -> SolvedPath:
-        """Return the path from the nearer end of this one to ``end``, or as far as ``span``."""
+        """Return the path from the nearer end of this one to ``end``, or as far as ``until`` holds of it."""
         here = min(self.expansions[0], self.expansions[-1], key=lambda one: abs(one.coordinate - end))
-        is_far = lambda one: abs(one.coordinate - here.coordinate) >= span  # noqa: E731
-        return follow(self.problem, here, end, rtol, on_interval, until=is_far)
+        return follow(self.problem, here, end, rtol, on_interval, until)
 
     def places(self, parts: Array) -> Array:
         """Return coordinates at parts of all intervals, and the last one."""
         inside = [interval.left.coordinate + parts * interval.length for interval in self.intervals]
         return np.append(np.concatenate(inside), self.coordinates[-1])
-
-    def between(self, first: float, last: float) -> SolvedPath:
-        """Return the intervals between two coordinates."""
-        inside = (one for one in self.intervals if one.right.coordinate > first and one.left.coordinate < last)
-        return SolvedPath(self.problem, tuple(inside), self.outcome)
 
     def interval_of(self, s: Array) -> Array:
         """Return the number of the interval of each coordinate."""
@@ -329,9 +326,9 @@ def follow(
     end: float,
     rtol: float,
     on_interval: Callable[[float, float], object] | None = None,
-    until: Callable[[Expansion], bool] | None = None,
+    until: Callable[[SolvedPath], bool] | None = None,
 ) -> SolvedPath:
-    """Return the path between ``start`` and ``end``."""
+    """Return the path between ``start`` and ``end``, or as far as ``until`` holds of it."""
     found: list[Interval] = []  # in the order of the march
     alone: tuple[Interval, ...] = ()
     outcome = Outcome.CONVERGED
@@ -341,7 +338,9 @@ def follow(
             return SolvedPath(problem, (), here)
         alone = (Interval(problem, here, here),)
         upwards = end > here.coordinate
-        while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
+        while (left := abs(here.coordinate - end)) > 0:
+            if until is not None and until(SolvedPath(problem, _sorted_intervals(found) or alone, outcome)):
+                break
             if len(found) >= MAX_INTERVALS:
                 return SolvedPath(problem, _sorted_intervals(found), Outcome.STATE_LIMIT)
             step = min(left, MAX_STEP, max(MIN_INTERVAL, _step_length(here, rtol) * (1.0 if found else FIRST_STEP_RATIO)))
@@ -349,8 +348,7 @@ def follow(
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_next_coordinate(here, end, step if upwards else -step), [here]), Outcome):
                 step *= RETRY_STEP_RATIO
-                shortest = MIN_STEP_AT_ROUNDING if new is Outcome.ROUNDING else MIN_STEP
-                if step < shortest or new is Outcome.INTERRUPTED:
+                if step < (ROUNDING_LENGTH if new is Outcome.ROUNDING else MIN_STEP):
                     return SolvedPath(problem, _sorted_intervals(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
             parts = _split_until_accurate(Interval(problem, low, high), rtol)

@@ -28,8 +28,8 @@ from stribeck.solver.path.path import (
     Expansion,
     SolvedPath,
 )
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import Level, band_for
-from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, ReadState
 
@@ -129,7 +129,7 @@ class PointProblem:
             start, predicted = nearest.point.state, self.guess(nearest, s)
             if self._last is not None and self._last[0] == nearest.coordinate:
                 start = self._last[1]
-        state = solve_cold(groups, self.rtol) if start is None else solve_from(start, groups, self.rtol, predicted=predicted)
+        state = solve_cold(groups, self.rtol) if start is None else solve_from(start, groups, self.rtol, (), predicted)
         if not state.outcome.ok:
             self.failure = state
             return state.outcome
@@ -258,11 +258,12 @@ class PointProblem:
         for s, row, errors in zip(places.tolist(), *path.at(places), strict=True):
             yield CurveState(self, path, s, row, errors) if (errors <= self.allowed).all() else self.solved_at(path, s)
 
-    def solved_at(self, path: SolvedPath, s: float) -> PointState:
-        """Return the state at a coordinate of a path, solved to the given tolerance."""
+    def solved_at(self, path: SolvedPath, s: float, rtol: float | None = None) -> PointState:
+        """Return the state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
         left, right = ends_of(path, s)
         nearest = min((left, right), key=lambda one: abs(one.coordinate - s))
-        return solve_from(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.between(left, right, s)[0])
+        predicted = self.between(left, right, s)[0]
+        return solve_from(nearest.point.state, self.groups_at(s), rtol or self.allowed, predicted=predicted)
 
 
 def with_factors(state: PointState) -> PointState:

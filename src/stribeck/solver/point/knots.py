@@ -17,9 +17,10 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.curve_path import error_scales, speeds_at
+from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.sensitivity import derivatives_along
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import LOOSE_OBSERVABLES, PointState, ReadState
+from stribeck.solver.point.state import PointState, ReadState
 
 __all__ = ["BallKnots", "KnotState"]
 
@@ -125,9 +126,9 @@ class BallKnots:
         """Forget the factors of the last state, which fill the memory."""
         self.neighbours.release()
 
-    def solved_at(self, path: HermitePath, s: float) -> PointState:
-        """Return the state at a coordinate of a path, solved to the tolerance of its states."""
-        return solve_from(path.nearest(s).state, self.groups_at(s), self.rtol)
+    def solved_at(self, path: HermitePath, s: float, rtol: float | None = None) -> PointState:
+        """Return the state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
+        return solve_from(path.nearest(s).state, self.groups_at(s), rtol or self.rtol)
 
 
 class KnotState(ReadState):

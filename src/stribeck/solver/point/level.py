@@ -16,7 +16,7 @@ from stribeck.equations.cavities.active_set import iterate_cavitated
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
 from stribeck.equations.cavities.system import just_above
-from stribeck.equations.point.iteration import MAX_BAND, Iterated, distance, iterate
+from stribeck.equations.point.iteration import MAX_BAND, Iterated, iterate
 from stribeck.equations.point.mesh_choice import MAX_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Operators, Unknowns
@@ -56,6 +56,17 @@ class Level:
     def relabelled(self, model: Model) -> Level:
         """Return the level relabelled with a model whose states start from it."""
         return replace(self, resolution=replace(self.resolution, model=model))
+
+    def at(self, speed: float, law: ContactLaw, y: Unknowns) -> Level:
+        """Return a guess of the state of another speed and law on the same mesh."""
+        equations = replace(self.equations, speed=speed, law=law)
+        return replace(self, equations=equations, iterated=replace(self.iterated, unknowns=y))
+
+    def on(self, resolution: Resolution) -> Level:
+        """Return the state on another mesh, without operators."""
+        operators = Operators(resolution.mesh, resolution.model.solid)
+        y = transfer(self.unknowns, self.mesh, operators.mesh, self.equations.least)
+        return Level(resolution, replace(self.equations, operators=operators), replace(self.iterated, unknowns=y))
 
     def without_operators(self) -> Level:
         """Return the level without the operators and factors that fill the memory."""
@@ -117,9 +128,8 @@ def solve_level(
     kept: Any = None,
     max_steps: int = 40,
     largest: float = MAX_BYTES,
-    predicted: Unknowns | None = None,
 ) -> Level:
-    """Return the state on a mesh, from unknowns on any mesh or those ``predicted`` on this one, whichever is closer."""
+    """Return the state on a mesh, from unknowns on any mesh."""
     band = band_for(speed, law, resolution.model)
     if bytes_of(resolution, band) > largest:
         raise MeshTooLargeError
@@ -131,8 +141,6 @@ def solve_level(
     guess = transfer(start, start_mesh, operators.mesh, equations.least)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
-    if predicted is not None and kept is not None:
-        guess = min((guess, predicted), key=lambda y: distance(equations, y, kept))
     return Level(resolution, equations, iteration(equations, guess, tolerance, band, kept, max_steps))
 
 

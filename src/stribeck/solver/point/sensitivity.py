@@ -20,20 +20,22 @@ from stribeck.equations.point.sensitivity import MIN_RESIDUAL, Direction, Measur
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.krylov import Apply
 from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import band_for
-from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
 
 __all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
 
 
-def state_derivatives(state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables) -> dict[str, Array]:
+def state_derivatives(
+    state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables, tolerance: float = MIN_RESIDUAL
+) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness)."""
     groups = state.groups
     alive = {name: partial(_moved, groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
     if not alive:
         return {name: np.zeros(len(GROUPS)) for name in state.values}
-    found = derivatives_along(state, alive, measure)
+    found = derivatives_along(state, alive, measure, tolerance)
     zero = np.array([name not in alive for name in GROUPS])
     columns = np.cumsum(~zero) - 1
     return {name: np.where(zero, 0.0, column[columns]) for name, column in found.items()}

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction import Definition
@@ -19,12 +17,11 @@ from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.results import ByValue, Shown
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
 from stribeck.solver.notes import (
     MAX_FILM_SLOPE,
@@ -359,8 +356,8 @@ class PointSolution(BaseSolution):
         Returns
         -------
         xarray.Dataset
-            Gap and pressures over y and x, in SI units where there is a contact and in Hertz units else; observables, groups
-            and inputs as attributes. Needs the extra ``data``.
+            Gap and pressures over y and x, in SI units where there is a contact and in Hertz units else; beside
+            them every number of the state and its estimated error, and the inputs as attributes. Needs the extra ``data``.
 
         Raises
         ------
@@ -373,28 +370,7 @@ class PointSolution(BaseSolution):
             raise InputError(f"reach = {show(reach)}; it must be a positive number of Hertz radii.")
         found, scale = (self.field, 1.0) if self.contact is None else (self.to_si, self.contact.hertz.half_width)
         along = np.linspace(-reach, reach, points) * scale
-        return found(along, along[:, None]).to_dataset().assign_attrs(self._attributes())
-
-    def _attributes(self) -> dict[str, Any]:
-        """Return provenance, groups, inputs, observables and outcome for a dataset."""
-        found: dict[str, Any] = {
-            "title": "State of a lubricated rough ball on a flat",
-            "source": f"stribeck {version('stribeck')}",
-            "geometry": self.groups.geometry,
-            "outcome": self.outcome.value,
-            "rtol": self.rtol,
-            **law_attributes(self.groups.law, self.law == "smooth"),
-        }
-        found |= {f"{name}_group": float(getattr(self.groups, name)) for name in GROUPS}
-        if self.contact is not None:
-            inputs, table = dict(self.contact.inputs()), self.contact.INPUTS
-            found |= {f"input_{name}": value for name, value in inputs.items()}
-            found["input_units"] = ", ".join(f"{name} {unit_of(name, table)}" for name in inputs)
-        found |= {row.name: getattr(self, row.name) for row in self.outputs.rows if row.listed}
-        friction = self.friction()
-        found |= {"friction": friction.total, "friction_contact": friction.contact, "friction_viscous": friction.viscous}
-        found["notes"] = "\n".join(self.notes)
-        return found
+        return self._with_numbers(found(along, along[:, None]).to_dataset())
 
 
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -30,10 +29,10 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.cavities.cavitated import follow_cavitated, holds_cavitated, refine_cavitated
-from stribeck.solver.cavities.reforming import follow_reforming, full_model, holds_reforming, refine_reforming
+from stribeck.solver.cavities.reforming import follow_reforming, full_model, refine_reforming
+from stribeck.solver.point.estimate import Pair, pair_of
 from stribeck.solver.point.level import Level
-from stribeck.solver.point.refinement import Pair, follow, holds_along_path, pair_of, refine
+from stribeck.solver.point.refinement import follow, holds, refine
 from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import PointFields, PointState
 from stribeck.solver.refinement import newton_tolerance
@@ -60,7 +59,12 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     first = first_state(speed, law, full)
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
-    return _state(groups, rtol, CAVITATION_METHODS[model.cavitation].refine(speed, law, first, rtol, model))
+    return _state(groups, rtol, _methods(model)[0](speed, law, first, rtol, model))
+
+
+def _methods(model: Model) -> tuple[Callable[..., Pair | Outcome], Callable[..., Pair | None]]:
+    """Return how states of a model are refined and followed."""
+    return (refine_reforming, follow_reforming) if model.cavitation is Cavitation.REFORM else (refine, follow)
 
 
 def _of_constant_viscosity(film: Film) -> Film:
@@ -93,14 +97,14 @@ def solve_from(
             return cold
     warm = None
     if pair.fine.resolution.model == model:
-        method = CAVITATION_METHODS[model.cavitation]
+        refined, followed = _methods(model)
         pairs = [(weight, state.work.relabelled(model)) for weight, state in line if isinstance(state.work, Pair)]
         by_series = {} if predicted is None else {"predicted": predicted}
         with suppress(MeshTooLargeError):
-            found = method.follow(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
+            found = followed(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
             if found is not None:
-                held = method.holds(found, rtol)
-                warm = _state(groups, rtol, found if held else method.refine(speed, law, found.fine, rtol, model, found))
+                held = holds(found, rtol)
+                warm = _state(groups, rtol, found if held else refined(speed, law, found.fine, rtol, model, found))
     if warm is not None and warm.outcome.ok:
         return warm
     cold = solve_cold(groups, rtol) if cold is None else cold
@@ -112,29 +116,6 @@ def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
     fine, model = neighbour.fine, neighbour.fine.resolution.model
     here, there = layout(speed, law, model)[0], layout(fine.equations.speed, fine.equations.law, model)[0]
     return max(here, there) > COLD_START_WIDTH_RATIO * min(here, there) and not fits(fine.resolution, speed, law)
-
-
-class CavitationMethod(NamedTuple):
-    """How states of a cavitating film are refined, followed and judged."""
-
-    refine: Callable[..., Pair | Outcome]  # From a first state, and from a neighbour's meshes, to a state on two meshes
-    follow: Callable[..., Pair | None]  # From a first state, and from a neighbour's meshes, to a state on two meshes
-    holds: Callable[[Pair, float], bool]  # Whether the errors of such a pair hold a tolerance along a path
-
-
-def _refine_full(
-    speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
-) -> Pair | Outcome:
-    del model
-    return refine(speed, law, guess, rtol, known)
-
-
-# How states are refined, by cavitation.
-CAVITATION_METHODS = {
-    Cavitation.NONE: CavitationMethod(_refine_full, follow, holds_along_path),
-    Cavitation.EXIT: CavitationMethod(refine_cavitated, follow_cavitated, holds_cavitated),
-    Cavitation.REFORM: CavitationMethod(refine_reforming, follow_reforming, holds_reforming),
-}
 
 
 def same_kinds(model: Model, other: Model) -> bool:

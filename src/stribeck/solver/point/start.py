@@ -2,12 +2,11 @@
 
 A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and
 the pressure of the cushion is the first guess of the film pressure.  So elastic shape and load hold from the beginning.
-If Newton's iteration does not converge from there, the speed comes up from the dry contact, or down from a rigid ball.
+If Newton's iteration does not converge from there, the film is guessed thicker, then comes from that of a Newtonian fluid.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -22,14 +21,13 @@ from stribeck.equations.point.mesh_choice import (
     Resolution,
     film_scale,
     film_speed,
-    gaps_at,
     is_too_thin,
-    layout,
     operators_of,
     resolution,
     split_where_poor,
 )
 from stribeck.equations.point.system import Unknowns
+from stribeck.fluids.blend import blend
 from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
@@ -38,34 +36,17 @@ DEGREE = 8  # Degree of the panels of a first state
 
 TOLERANCE = 1e-4  # Relative error of the gap that its iteration may leave
 
-# Angular modes of the first trial: the steps cost as their square, and a state on few shows how many more it needs.
-FEW_MODES = 16
+MODES = 8  # Angular modes of a first state: refinement reads off it how many more a tolerance needs
 
 MAX_STEPS = 25  # Newton steps after which a first guess is given up
 
 CUSHION_STEEPNESS = 4.0  # Film thickness over the decay of the cushion that stands for the film in a first guess
 
-MIN_RIGID_SPEED = 30.0  # Least speed at which the path from the rigid ball begins
-
-MIN_DRY_SPEED_RATIO = 1e-3  # Least speed at which the path from the dry contact begins, over the speed of the state
+THICKER = 1.5  # Film thickness of a second guess over that of the first
 
 MAX_PANEL_SPLITS = 8  # Most times that the panels of a first guess are split
 
-HOMOTOPY_STEPS = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own law
-
-MAX_STATES = 60  # States of a path after which it is given up
-
-
-def first_modes(speed: float, law: ContactLaw, model: Model) -> int:
-    """Return the number of angular modes of a first state."""
-    width, _ = layout(speed, law, model)
-    film = film_scale(film_speed(speed, model))
-    return int(min(40, max(8, round(1.2 * (width / 0.6) ** -0.6)))) if film > _dry_gap(law) else 8
-
-
-def _dry_gap(law: ContactLaw) -> float:
-    """Return an estimate of the central gap of the dry contact."""
-    return float(gaps_at(law, np.zeros(1))[0]) if float(np.max(law.decay_length)) > 0 else 0.0
+HOMOTOPY_STEPS = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own flow
 
 
 @dataclass(frozen=True)
@@ -136,7 +117,7 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
     if is_too_thin(speed, law):
         return Outcome.MESH_LIMIT
     last: Outcome = Outcome.STALLED
-    for path in (_direct, _upward, _downward, _milder):
+    for path in (_direct, _from_newtonian):
         try:
             for level in path(speed, law, model):
                 if level.outcome.ok:
@@ -148,40 +129,25 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
 
 
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    modes = first_modes(speed, law, model)
-    few = [(FEW_MODES, 1.0)] if modes > FEW_MODES else []
-    for count, thickness_ratio in (*few, (modes, 1.0), (modes, 1.5), (modes, 0.7)):
-        guess = first_guess(resolution(speed, law, DEGREE, count, model), speed, law, thickness_ratio)
+    for thickness_ratio in (1.0, THICKER):
+        guess = first_guess(resolution(speed, law, DEGREE, MODES, model), speed, law, thickness_ratio)
         if guess is not None:
             found, y = guess
             yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
 
 
-def _upward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    """Yield the state at the end of the path from slow to the speed, if it gets there."""
-    slow = speed
-    while film_scale(film_speed(slow, model)) > 0.1 * _dry_gap(law) and slow > MIN_DRY_SPEED_RATIO * speed:
-        slow /= 4.0
-    yield from _path(slow, speed, law, model)
-
-
-def _downward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    """Yield the same from fast."""
-    yield from _path(max(MIN_RIGID_SPEED, 2.0 * speed), speed, law, model)
-
-
-def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
+def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
     if model.film == BASE_MODEL.film:
         return
-    here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
+    here = resolution(speed, law, DEGREE, MODES, model)
 
     def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
         if not history:
             plain = first_state(speed, law, replace(model, film=BASE_MODEL.film))
             return plain if isinstance(plain, Level) else None
         weights = extrapolation_weights([at for at, _ in history], part)
-        on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=model.film.milder(part)))
+        on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=blend(model.film, part)))
         mesh = operators_of(on).mesh
         guess = extrapolate_levels(weights, [level for _, level in history], mesh)
         return solve_level(on, speed, law, guess, mesh, TOLERANCE, max_steps=12)
@@ -190,29 +156,3 @@ def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     if found.outcome.ok:
         last = found.states[-1]
         yield replace(last, resolution=replace(last.resolution, model=model))
-
-
-def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    count = 0
-
-    def correct(s: float, history: Sequence[tuple[float, Level]]) -> Level | None:
-        nonlocal count
-        count += 1
-        if count > MAX_STATES:
-            return None
-        speed = math.exp(s)
-        here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
-        if history:
-            here = replace(here, splits=history[-1][1].resolution.splits)
-            weights = extrapolation_weights([at for at, _ in history], s)
-            guess = here, extrapolate_levels(weights, [level for _, level in history], operators_of(here).mesh)
-        else:
-            first = first_guess(here, speed, law)
-            if first is None:
-                return None
-            guess = first
-        return solve_level(guess[0], speed, law, guess[1], operators_of(guess[0]).mesh, TOLERANCE, max_steps=12)
-
-    found = march(correct, math.log(begin), math.log(end), Steps(0.5, 3.0, 0.02, order=2, aim=3.0))
-    if found.outcome.ok:
-        yield found.states[-1]

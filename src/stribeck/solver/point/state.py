@@ -17,17 +17,13 @@ from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.point import PointContact
-from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
+from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, equal_values
-from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.estimate import LOOSE_OBSERVABLES, WITHOUT_TOLERANCE, Pair
 
-WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
-# Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
-# the rupture line crosses, are less accurate than the film.
-LOOSE_OBSERVABLES = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
 # Friction integrals whose errors are relative to themselves; J_pcx vanishes in full films, so its scale is the friction.
 SELF_SCALED = ("J_couette", "J_poiseuille", "J_balanced", "J_published")
 

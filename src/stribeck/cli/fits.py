@@ -1,0 +1,129 @@
+"""Commands that fit: inputs from measured friction, what to measure next, and which contact law the data prefer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+import stribeck as sb
+from stribeck.cli.arguments import Quantities, Whole, check_outputs
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
+from stribeck.cli.progress import interruptible
+from stribeck.files.writing import need_extra
+
+
+def fit_command(
+    data: Path,
+    case: Path,
+    /,
+    *,
+    free: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
+    out: Path | None = None,
+    plot: Path | None = None,
+    no_notes: bool = False,
+    robust: bool = False,
+    posterior: Whole | None = None,
+    json: bool = False,
+    force: bool = False,
+) -> int:
+    """Fit inputs to measured friction, with confidence intervals and what the data cannot determine.
+
+    Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
+
+    Example: stribeck fit measured.csv case.toml --free boundary_friction h_rms modulus --robust
+    """
+    from stribeck.fits.case_file import check_fitted_case, load_fit_case, write_fitted_case
+
+    loaded = load_fit_case(data, case)
+    check_outputs(force, plot, out)
+    if posterior is not None:
+        need_extra("a posterior", "fit", "emcee")
+    from stribeck.fits.fit import names_to_fit
+    from stribeck.fits.posterior import draw_posterior
+
+    if out is not None:
+        check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)
+    with interruptible() as progress:
+        found = sb.fit(data, loaded, free=free, robust=True if robust else None, on_step=progress.of_fit)
+        drawn = None
+        if posterior is not None:
+            drawn = draw_posterior(found, steps=posterior, on_step=lambda n, m: progress(n, m, "posterior"))
+    actions: dict[Path | None, Callable[[], object]] = {
+        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
+    }
+    if out is not None and found.converged:
+        actions[out] = partial(write_fitted_case, found, loaded, out, force=force)
+    written, problems = write_each(actions)
+
+    def content() -> dict[str, Any]:
+        posterior = {} if drawn is None else {"posterior": drawn.to_dict()}
+        return {"title": loaded.title} | found.to_dict() | posterior | {"files": written}
+
+    said = filter(None, [found.checks.first_line, loaded.title, str(found), str(drawn or "")])
+    answer(json, content, lambda: said, found.checks, None, written)
+    if problems:
+        return complain("\n".join(problems), EXIT_BAD_INPUT)
+    if not found.converged:
+        return complain(found.outcome.value, EXIT_FAILED)
+    return 0
+
+
+def next_command(
+    data: Path,
+    case: Path,
+    /,
+    *,
+    count: Whole = 3,
+    speeds: Quantities = None,
+    loads: Quantities = None,
+    viscosities: Quantities = None,
+    plot: Path | None = None,
+    json: bool = False,
+    force: bool = False,
+) -> int:
+    """Fit measured friction and report which runs to measure next: those that shrink the intervals most for their cost.
+
+    Example: stribeck next examples/pdms_measured.csv examples/pdms_fit.toml --count 5 --plot next.png
+
+    Example: stribeck next measured.csv case.toml --loads "10 N/m" "100 N/m"
+    """
+    from stribeck.fits.case_file import load_fit_case
+
+    loaded = load_fit_case(data, case)
+    check_outputs(force, plot)
+    with interruptible() as progress:
+        found = sb.fit(data, loaded, intervals=False, on_step=progress.of_fit)
+        plan = sb.next_runs(
+            found,
+            count,
+            speeds=speeds,
+            loads=loads,
+            viscosities=viscosities,
+            on_step=lambda n, m: progress(n, m, "states"),
+        )
+    if plot is not None:
+        plan.plot(plot, force=force, title=loaded.title)
+    files = {"files": [str(plot)] if plot is not None else []}
+    said = filter(None, [found.checks.first_line, str(plan)])
+    answer(json, lambda: plan.to_dict() | files, lambda: said, found.checks, None, [plot])
+    return 0
+
+
+def compare_command(data: Path, case: Path, /, *, models: str | None = None, json: bool = False) -> int:
+    """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
+
+    Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
+
+    Example: stribeck compare measured.csv case.toml --models cavitation
+    """
+    from stribeck.fits.case_file import load_fit_case
+
+    loaded = load_fit_case(data, case)
+    with interruptible() as progress:
+        found = sb.compare(data, loaded, models=models, on_step=progress.of_fit)
+    answer(json, found.to_dict, lambda: filter(None, [found.candidates[0].fit.checks.first_line, str(found)]))
+    return 0

@@ -1,0 +1,219 @@
+"""Inputs in other forms: as data sheets, tribometers and tables of materials have them, and what follows from them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["FORMS", "Form"]
+
+_TURNS = re.compile(r"hz|1\s*/\s*s\b|s\s*\^?\s*-1|s⁻¹", re.IGNORECASE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rotation(Input):
+    """An angular velocity, whose text must say whether it counts turns or radians."""
+
+    dimension: str = "rotation"
+
+    def checked(self, value: Any) -> float:
+        """Return a value in SI units, or refuse one out of bounds, or in a unit that people use for both."""
+        if isinstance(value, str) and _TURNS.search(value):
+            raise InputError(f"{self.name} = {show(value)} may mean turns or radians per second; write it in rpm or rad/s.")
+        return super().checked(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Form:
+    """Inputs that may be given in place of another."""
+
+    of: str  # The input that follows
+    inputs: tuple[Input, ...]  # Inputs that are given in its place, all together
+    value: Callable[..., float]  # Value of the result from the inputs, in SI units
+    geometry: str = ""  # The geometry that it is for; empty for all
+    formula: str = ""  # For people; empty where it need not be said
+    source: str = ""  # For people
+    error: float = 0.0  # Standard error of the formula itself over the value
+    assumed: dict[str, float] = field(default_factory=dict)  # Other inputs that it takes for granted where they are not given
+    meaning: str = ""  # Meaning of the input that follows, where people mistake it
+    second: tuple[Input, ...] = ()  # Inputs of the other body, which may be given besides, all together
+    joins: bool = False  # Whether the input that follows is given too, as that of the first body
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of its inputs."""
+        return tuple(each.name for each in (*self.inputs, *self.second))
+
+
+def _in_series(*bodies: float) -> float:
+    """Return the modulus E* of one or two bodies from Young's modulus and Poisson ratio of each."""
+    return 1 / sum((1 - nu**2) / E for E, nu in zip(bodies[::2], bodies[1::2], strict=True))
+
+
+def modulus_of_shore_a(hardness: float) -> float:
+    """Return Young's modulus [Pa] of rubber of a Shore A hardness."""
+    return 0.0981e6 * (56 + 7.62336 * hardness) / (0.137505 * (254 - 2.54 * hardness))
+
+
+def modulus_of_shore_d(hardness: float) -> float:
+    """Return Young's modulus [Pa] of an elastomer of a Shore D hardness."""
+    return float(1e6 * 10 ** (0.0235 * (hardness + 50) - 0.6403))
+
+
+def _hardness(letter: str, typical: str, ends: tuple[float, float], **relation: Any) -> Form:
+    """Return how Young's modulus of an incompressible solid follows from a Shore hardness."""
+    scale = Input(
+        name=f"shore_{letter.lower()}",
+        label=f"Shore {letter} hardness",
+        dimension="number",
+        typical=typical,
+        lowest=ends[0],
+        zero=True,
+        highest=ends[1],
+        reason="there the relation holds",
+    )
+    return Form(of="youngs_modulus", inputs=(scale,), assumed={"poisson_ratio": 0.5}, **relation)
+
+
+def _height(name: str, label: str, typical: str, **relation: Any) -> Form:
+    """Return how the rms roughness follows from another height."""
+    return Form(of="roughness", inputs=(Input(name=name, label=label, dimension="length", typical=typical),), **relation)
+
+
+_FORCE = Input(name="force", label="force", dimension="force", typical="50 N")
+_WIDTH = Input(name="width", label="width", dimension="length", typical="20 mm")
+
+_YOUNGS_MODULUS = Input(
+    name="youngs_modulus",
+    label="Young's modulus",
+    symbol="$E$",
+    dimension="pressure",
+    typical="2.0 MPa",
+    source="PDMS Sylgard 184",
+    letters=("E",),
+)
+_POISSON_RATIO = Input(
+    name="poisson_ratio",
+    label="Poisson's ratio",
+    symbol=r"$\nu$",
+    dimension="number",
+    typical="0.5",
+    source="rubber and gels",
+    letters=("nu",),
+    zero=True,
+    highest=0.5,
+)
+
+
+def _of_other(row: Input) -> Input:
+    """Return a number of the other body, which is rigid without it."""
+    symbol, source = f"${row.symbol.strip('$')}_2$", f"{row.source}; without it the other body is rigid"
+    return replace(row, name=f"{row.name}_2", label=f"{row.label} of the other body", symbol=symbol, source=source, letters=())
+
+
+# The forms, in the order in which they are applied. A new one is a row here.
+FORMS = (
+    _hardness(
+        "A",
+        "70",
+        (20, 90),
+        value=modulus_of_shore_a,
+        formula="E = 0.0981 (56 + 7.62336 S)/(0.137505 (254 - 2.54 S)) MPa",
+        source="Gent 1958; other relations differ by a factor of up to 2",
+        error=0.3,
+    ),
+    _hardness(
+        "D",
+        "50",
+        (30, 85),
+        value=modulus_of_shore_d,
+        formula="lg(E/MPa) = 0.0235 (S + 50) - 0.6403",
+        source="Qi, Joyce and Boyce 2003",
+        error=0.4,
+    ),
+    _height(
+        "ra",
+        "Ra",
+        "0.4 um",
+        value=lambda ra: math.sqrt(math.pi / 2) * ra,
+        formula="Rq = (pi/2)^(1/2) Ra",
+        source="Gaussian heights; 1.1 to 1.4 on machined surfaces",
+        error=0.1,
+    ),
+    _height("rq", "Rq", "0.5 um", value=lambda rq: rq, formula="h_rms = Rq", source="ISO 21920"),
+    Form(
+        of="viscosity",
+        inputs=(
+            Input(name="kinematic_viscosity", label="kinematic viscosity", dimension="kinematic", typical="46 cSt"),
+            Input(name="density", label="density", dimension="density", typical="870 kg/m^3"),
+        ),
+        value=lambda nu, rho: nu * rho,
+        formula="eta = nu rho",
+        source="definition",
+    ),
+    Form(
+        of="speed",
+        inputs=(
+            Rotation(name="rotational_speed", label="rotational speed", typical="1500 rpm"),
+            Input(name="shaft_diameter", label="diameter of the shaft", dimension="length", typical="30 mm"),
+        ),
+        value=lambda omega, diameter: omega * diameter / 2,
+        formula="U = omega d/2, the counterface at rest",
+        source="definition",
+    ),
+    Form(
+        of="load",
+        geometry="line",
+        inputs=(_FORCE, _WIDTH),
+        value=lambda force, width: force / width,
+        formula="load = force/width",
+        source="definition",
+    ),
+    Form(
+        of="load", geometry="point", inputs=(_FORCE,), value=lambda force: force, formula="load = force", source="definition"
+    ),
+    Form(
+        of="modulus",
+        inputs=(_YOUNGS_MODULUS, _POISSON_RATIO),
+        second=(_of_other(_YOUNGS_MODULUS), _of_other(_POISSON_RATIO)),
+        value=_in_series,
+        meaning="which is E*",
+    ),
+    Form(
+        of="speed",
+        inputs=(
+            Input(
+                name="entrainment_speed",
+                label="entrainment speed",
+                symbol=r"$\bar U$",
+                dimension="speed",
+                typical="1 mm/s",
+                source="the mean of both surface speeds, which tribometers report",
+                zero=True,
+            ),
+        ),
+        value=lambda mean: 2 * mean,
+        meaning="the sum of the surface speeds, twice their mean",
+    ),
+    Form(
+        of="radius",
+        joins=True,
+        inputs=(
+            Input(
+                name="radius_2",
+                label="radius of the other body",
+                symbol="$R_2$",
+                dimension="length",
+                typical="50 mm",
+                source="a second curved body; without it the other is flat",
+            ),
+        ),
+        value=lambda first, second: 1 / (1 / first + 1 / second),
+    ),
+)

@@ -1,0 +1,173 @@
+"""Curves off the atlas: observables and friction of its tables, with their exact slopes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck._types import Array
+from stribeck.atlas.tables import TableRow, table_for
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.groups import Groups
+from stribeck.curves.coordinate import Coordinate
+from stribeck.curves.source import Coefficients, Parts, Source
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ABSOLUTE
+from stribeck.solver.solve import solve
+
+__all__ = ["AtlasSource"]
+
+OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
+PLACES_PER_DECADE = 20  # Places between which events are looked for
+ERROR_LENGTH = 2.0  # Change of ln(value) over which the error of a table may turn, in that of a slope
+
+
+@dataclass(frozen=True, eq=False)
+class AtlasReadings:
+    """What the atlas has at groups."""
+
+    source: AtlasSource
+    groups: Groups
+
+    solutions = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the observables that the table holds."""
+        return tuple(each for each in OBSERVABLES if each != "flux_gap" or each in self.source.table.functions)
+
+    @cached_property
+    def values(self) -> dict[str, Array]:
+        """Observables by name."""
+        return {name: np.asarray(getattr(atlas, name)(self.groups)) for name in self.names}
+
+    @cached_property
+    def relative_errors(self) -> Array:
+        """The stated error of the table, of load shares over themselves."""
+        scales = [self.values[name] if name in ABSOLUTE else np.ones(self.groups.shape) for name in self.names]
+        return self.source.rtol * np.stack(scales, axis=-1)
+
+    @property
+    def position_error(self) -> Array:
+        """Not known."""
+        return np.full(self.groups.shape, np.nan)
+
+    @property
+    def error_estimate(self) -> float:
+        """The stated error of the table."""
+        return self.source.rtol
+
+    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
+        share, viscous = atlas.friction_terms(self.groups, self.source.inputs(self.groups, beta), definition)
+        contact = boundary_friction * self.source.sliding * share
+        total = contact + viscous
+        return np.stack([contact, viscous, total, self.source.rtol * np.abs(total)], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class AtlasSource(Source):
+    """Numbers off the atlas between two values of the coordinate."""
+
+    coordinate: Coordinate
+    low: float
+    high: float
+    rtol: float = field(init=False)  # Stated relative error of the table
+
+    outcome = Outcome.CONVERGED
+    states = 0
+
+    def __post_init__(self) -> None:
+        """Refuse a geometry, model or law that the atlas does not hold."""
+        object.__setattr__(self, "rtol", self.table.error)
+
+    @cached_property
+    def table(self) -> TableRow:
+        """The table of the atlas that holds for the curve."""
+        return table_for(self._groups(np.log([self.low])))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Logarithms of both values."""
+        return math.log(self.low), math.log(self.high)
+
+    @property
+    def places(self) -> Array:
+        """Places evenly along the curve."""
+        low, high = self.ends
+        return np.linspace(low, high, 2 + round(PLACES_PER_DECADE * (high - low) / math.log(10)))
+
+    def _groups(self, s: Array) -> Groups:
+        """Return the groups at places, which are inside but for rounding."""
+        return self.coordinate.groups_along(np.clip(np.exp(s), self.low, self.high))
+
+    def read(self, s: Array, rtol: float | None = None) -> AtlasReadings:
+        """Return what the table has at places."""
+        return AtlasReadings(self, self._groups(s))
+
+    def parts(self, s: Array, coefficients: Coefficients) -> Parts:
+        """Return the load share of the fluid and both parts of the friction."""
+        found = self.read(s)
+        contact, viscous, _, _ = found.friction_terms(*coefficients).T
+        return np.asarray(atlas.fluid_load_share(found.groups)), contact, viscous
+
+    def slopes(self, s: Array, coefficients: Coefficients) -> Array:
+        """Return the derivatives of the friction by the coordinate."""
+        boundary_friction, beta, definition = coefficients
+        groups = self._groups(s)
+        inputs = self.inputs(groups, beta)
+        motion = {name: value for name, value in inputs.items() if name != "beta"}
+        slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition, **motion)
+        found = np.tensordot(self.coordinate.direction, slopes, 1)
+        for name, power in self._moving.items():
+            moved = {**inputs, name: inputs[name] * (1 + 1j * COMPLEX_STEP)}
+            found = found + power * np.imag(atlas.friction_terms(groups, moved, definition)[1]) / COMPLEX_STEP
+        return np.asarray(found)
+
+    def length_at(self, s: float) -> float:
+        """Return the length over which the error of a table may turn."""
+        return ERROR_LENGTH
+
+    def holds(self, s: float, accepted: float) -> bool:
+        """Return that nothing is solved."""
+        return True
+
+    def solved(self, s: float, rtol: float) -> Any:
+        """Return the solution at a place, solved from cold."""
+        return solve(self.coordinate.contact_at(s) or self.coordinate.groups_at(s), rtol=rtol)
+
+    def solution_at(self, s: float) -> Any:
+        """Return the solution at a place, or raise the error of its outcome."""
+        return self.solved(s, self.rtol)
+
+    @property
+    def _contact(self) -> Contact | None:
+        return self.coordinate.base if isinstance(self.coordinate.base, Contact) else None
+
+    @cached_property
+    def sliding(self) -> float:
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
+        rule = RULES[self.table.geometry]
+        return float(rule.sliding_factor(self._groups(np.log([self.low])), rule.of_contact(self._contact)))
+
+    def inputs(self, groups: Groups, beta: float) -> dict[str, Any]:
+        """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
+        found: dict[str, Any] = {**RULES[self.table.geometry].of_contact(self._contact), "beta": beta}
+        for name, power in self._moving.items():
+            assert self._contact is not None
+            found[name] = found[name] * (groups.load / self._contact.groups.load) ** power
+        return found
+
+    @property
+    def _moving(self) -> dict[str, float]:
+        """Exponents of the load in those of these arguments that change with it along the curve."""
+        if self._contact is None or self.coordinate.over != "load":
+            return {}
+        return {name: powers["load"] for name, powers in RULES[self.table.geometry].exponents.items()}

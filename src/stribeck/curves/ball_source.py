@@ -1,0 +1,195 @@
+"""Curves of balls: observables off Taylor series, or off solved states with their slopes where films have no series."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import log_cut_offs
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.curves.coordinate import Coordinate
+from stribeck.curves.line_source import PathSource
+from stribeck.curves.source import Coefficients, Parts, Progress
+from stribeck.equations.point.observables import OBSERVABLES
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.path.hermite_path import HermitePath, interpolate_to
+from stribeck.solver.path.path import SolvedPath, follow
+from stribeck.solver.point.curve_path import PointProblem
+from stribeck.solver.point.knots import BallKnots
+from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
+from stribeck.solver.point.solve import RTOL_RANGE
+from stribeck.solver.solve_error import SolveError, describe
+
+__all__ = ["BallSource", "ball_source"]
+
+SLOPE_LOG_STEP = 1e-4  # Step of ln(value) in central differences of the friction, for its minimum
+
+
+@dataclass(frozen=True, eq=False)
+class BallReadings:
+    """Solutions at places of the path of a ball."""
+
+    solutions: tuple[PointSolution, ...]
+
+    names = OBSERVABLES
+
+    @cached_property
+    def values(self) -> dict[str, Array]:
+        """Observables by name."""
+        return {name: np.array([one.state.values[name] for one in self.solutions]) for name in OBSERVABLES}
+
+    @cached_property
+    def relative_errors(self) -> Array:
+        """Estimated relative errors of the observables, absolute ones of load shares."""
+        stated = [one.state.relative_errors for one in self.solutions]
+        return np.array([[each[name] for name in OBSERVABLES] for each in stated]).reshape(-1, len(OBSERVABLES))
+
+    @property
+    def position_error(self) -> Array:
+        """Estimated absolute error of the radius of the minimum gap."""
+        return np.array([one.minimum_radius_error for one in self.solutions])
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest error of all solutions."""
+        return max((one.error_estimate for one in self.solutions), default=math.nan)
+
+    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
+        found = [one.friction(boundary_friction, beta, definition) for one in self.solutions]
+        return np.array([[f.asperities, f.fluid, f.total, f.error] for f in found]).reshape(-1, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class BallSource(PathSource):
+    """Numbers of a ball along a path."""
+
+    coordinate: Coordinate
+    rtol: float
+    path: SolvedPath | HermitePath = field(compare=False)
+
+    def read(self, s: Array, rtol: float | None = None) -> BallReadings:
+        """Return the solutions at places; a state is solved where the error of the series exceeds the tolerance."""
+        states = self.path.problem.states_at(self.path, s)  # type: ignore[union-attr]
+        contacts = map(self.coordinate.contact_at, s.tolist())
+        return BallReadings(tuple(solution_of(state, contact) for state, contact in zip(states, contacts, strict=True)))
+
+    def _inputs(self, beta: float) -> dict[str, Any]:
+        """Return what friction hangs on beside the groups, where what varies is one."""
+        contact = self.coordinate.contact_at(0.0)
+        found: dict[str, Any] = {**RULES["point"].of_contact(contact), "beta": beta}
+        if contact is None:
+            found["slide_to_roll"] = 2.0 * self.coordinate.groups_at(0.0).model.film.slide
+        return found
+
+    @cached_property
+    def sliding(self) -> float:
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
+        return float(RULES["point"].sliding_factor(self.coordinate.groups_at(0.0), self._inputs(1.0)))
+
+    def parts(self, s: Array, coefficients: Coefficients) -> Parts:
+        """Return the load share of the fluid and both parts of the friction."""
+        boundary_friction, beta, definition = coefficients
+        if isinstance(self.path, HermitePath):
+            found = self.read(s)
+            contact, viscous = found.friction_terms(*coefficients)[:, :2].T
+            return found.values["fluid_load_share"], contact, viscous
+        rule, start, inputs = RULES["point"], self.coordinate.groups_at(0.0), self._inputs(beta)
+        rows = dict(zip(self.path.problem.names, self.path.smooth(s).T, strict=True))  # type: ignore[attr-defined]
+        rates = dict(zip(GROUPS, self.coordinate.direction.tolist(), strict=True))
+        speed, load = (float(getattr(start, name)) * np.exp(rates[name] * s) for name in ("speed", "load"))
+        if math.isfinite(inputs["wetted_radius"]):
+            inputs["wetted_radius"] *= np.exp(rule.exponents["wetted_radius"].get(self.coordinate.over, 0.0) * s)
+        viscous = rule.viscous(rows, speed, load, inputs, definition)
+        return rows["fluid_load_share"], boundary_friction * self.sliding * rows["contact_load_share"], viscous
+
+    def slopes(self, s: Array, coefficients: Coefficients) -> Array:
+        """Return the derivatives of the friction by the coordinate."""
+        ahead, behind = (sum(self.parts(s + step, coefficients)[1:]) for step in (SLOPE_LOG_STEP, -SLOPE_LOG_STEP))
+        return np.asarray((ahead - behind) / (2 * SLOPE_LOG_STEP))
+
+    def solution_at(self, s: float) -> PointSolution:
+        """Return the solution at a place, or raise the error of its outcome."""
+        return self.solved(s)
+
+    def solved(self, s: float, rtol: float | None = None) -> PointSolution:
+        """Return the solution at a place, solved to a tolerance."""
+        state = self.path.problem.solved_at(self.path, s, rtol)  # type: ignore[union-attr]
+        return finish_point(state, self.coordinate.contact_at(s))
+
+
+@dataclass(frozen=True)
+class CutOffs:
+    """The logarithms of the radii up to which friction by shear and by pressure counts, along a curve."""
+
+    coordinate: Coordinate
+    beta: float
+
+    def __call__(self, s: float) -> tuple[float, float]:
+        """Return both at a coordinate."""
+        wetted = float(RULES["point"].of_contact(self.coordinate.contact_at(s))["wetted_radius"])
+        by_shear, by_pressure = log_cut_offs(float(self.coordinate.groups_at(s).slope(self.beta)), wetted)
+        return float(by_shear), float(by_pressure)
+
+
+def _has_closed_friction(coordinate: Coordinate, ends: Array) -> bool:
+    """Return whether the friction follows from the observables alone: the far film has a closed form up to where it ends."""
+    rule = RULES["point"]
+    inputs = [rule.of_contact(coordinate.contact_at(math.log(end))) for end in ends]
+    return rule.is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
+
+
+def ball_source(
+    coordinate: Coordinate,
+    values: Array,
+    rtol: float,
+    beta: float,
+    on_point: Callable[[int, int], object] | None = None,
+    ends: Array | None = None,
+) -> tuple[BallSource, Array, BallReadings]:
+    """Return the path of a ball from fast to slow, which may be continued to ``ends``, and the points that it has."""
+    # The film is smooth at high speed.
+    start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
+    ends = values[[0, -1]] if ends is None else ends
+    is_closed = _has_closed_friction(coordinate, ends)
+    has_series = start.speed > 0 and start.model.cavitation is Cavitation.NONE and is_closed and coordinate.is_uniform(ends)
+    progress = Progress(places, on_point)
+    problem: PointProblem | BallKnots
+    path: SolvedPath | HermitePath
+    if has_series:
+        problem = PointProblem(coordinate.groups_at, rtol_of_states)
+        path = follow(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
+    else:
+        cut_offs = None if is_closed else CutOffs(coordinate, beta)
+        problem = BallKnots(coordinate.groups_at, rtol_of_states, cut_offs)
+        path = interpolate_to(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
+    problem.release()
+    if not len(path.coordinates):
+        if problem.failure is not None:
+            finish_point(problem.failure, coordinate.base if isinstance(coordinate.base, Contact) else None)
+        raise SolveError(path.outcome, None, f"{describe(start)}: {path.outcome.value}")
+    source, found, missing = BallSource(coordinate, rtol, path), {}, path.outcome
+    try:
+        for value in coordinate.inside(values, source.ends)[::-1].tolist():
+            [solution] = source.read(np.log([value])).solutions
+            if solution.outcome.ok:
+                found[value] = solution
+            else:
+                missing = solution.outcome
+    except KeyboardInterrupt:
+        missing = Outcome.INTERRUPTED
+    if not found:
+        raise SolveError(missing, None, f"{describe(start)}: {missing.value}")
+    where = sorted(found)
+    points = BallReadings(tuple(found[value] for value in where))
+    return source.along(replace(path, outcome=missing)), np.array(where), points

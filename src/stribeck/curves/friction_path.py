@@ -1,0 +1,200 @@
+"""Friction as a function along a path, and its events: the transitions between regimes, and its minima."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
+from stribeck.contacts.regime import friction_share
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.line_source import PathSource
+from stribeck.curves.regime import Transition, excess
+from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
+from stribeck.numerics.events import Event, first_zero, least_by_slope
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.lazy import cached_property
+from stribeck.solver.solve_error import SolveError
+
+__all__ = ["FrictionPath", "vanishing"]
+
+LOCATION_LOG_TOLERANCE = 1e-9  # Change of ln(value) to which a landmark is located; errors of its state are added
+COMPLEX_STEP = 1e-20  # Imaginary step of a derivative, which cancels nothing
+LOG_STEP = 1e-3  # Step of ln(value) in derivatives by real differences
+MAX_POLISH_STATES = 4  # Most states solved for one landmark: each squares the error
+
+
+def vanishing(mark: Transition, fluid: Array, contact: Array, viscous: Array) -> Array:
+    """Return what vanishes at a transition, from the fluid's load share and both parts of the friction."""
+    # Of the minimum the friction itself: where it changes its sign its size is least.
+    if mark is Transition.MINIMUM:
+        return np.asarray(contact + viscous)
+    return np.asarray(excess(mark, fluid, friction_share(contact, viscous)))
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionPath:
+    """The friction along a source of numbers, for given coefficients."""
+
+    source: Source
+    boundary_friction: float
+    beta: float
+    definition: Definition
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """Those of the friction."""
+        return self.boundary_friction, self.beta, self.definition
+
+    def friction(self, found: Readings, is_number: bool = False) -> Friction | FrictionArray:
+        """Return the friction of readings, which may be called for other coefficients."""
+
+        def friction(
+            boundary_friction: float | None = None, beta: float | None = None, definition: Definition | None = None
+        ) -> Friction | FrictionArray:
+            given = coefficients(
+                None,
+                self.boundary_friction if boundary_friction is None else boundary_friction,
+                self.beta if beta is None else beta,
+            )
+            of = self.definition if definition is None else check_definition(definition)
+            return friction_of(found.friction_terms(*given, of), friction, is_number)
+
+        return friction()
+
+    def values(self, value: float | Array) -> CurveValues:
+        """Return all that is known at one value, or at many."""
+        found = self.source.read(np.log(np.atleast_1d(value)))
+        return CurveValues.of(value, found, self.friction(found, not np.ndim(value)))
+
+    def parts(self, s: Array) -> Parts:
+        """Return the load share of the fluid and both parts of the friction."""
+        return self.source.parts(s, self.coefficients)
+
+    def slopes(self, s: Array) -> Array:
+        """Return the derivatives of the friction by the coordinate."""
+        return self.source.slopes(s, self.coefficients)
+
+    def slope(self, s: float) -> float:
+        """Return the derivative of the friction at a place."""
+        return float(self.slopes(np.array([s]))[0])
+
+    @property
+    def moves(self) -> bool:
+        """Whether the surfaces move: at rest the friction is that of the dry contact everywhere."""
+        return bool(self.source.coordinate.groups_at(self.source.ends[0]).speed > 0)
+
+    def known(self, places: Array) -> tuple[Array, Array, Array, Array]:
+        """Return those places at which there are numbers, the fluid's load share and both parts of the friction."""
+        parts = np.stack(self.parts(places))
+        known = np.isfinite(parts).all(axis=0)  # no series holds close to where a cavity opens
+        return places[known], *parts[:, known]
+
+    @cached_property
+    def _searched(self) -> tuple[Array, Array, Array, Array]:
+        return self.known(self.source.places)
+
+    def first(self, mark: Transition, places: Array, fluid: Array, contact: Array, viscous: Array) -> Event | None:
+        """Return where first on the way along places what vanishes at a transition does, or None."""
+
+        def at(s: float) -> float:
+            return float(vanishing(mark, *self.parts(np.array([s])))[0])
+
+        return first_zero(at, places, vanishing(mark, fluid, contact, viscous), LOCATION_LOG_TOLERANCE)
+
+    def event(self, mark: Transition) -> Event | None:
+        """Return where a transition or the minimum lies, or None where there is none."""
+        if mark is Transition.MINIMUM and not self.moves:
+            return None
+        places, *parts = self._searched
+        event, sizes = self.first(mark, places, *parts), np.abs(vanishing(mark, *parts))
+        if event is None and mark is Transition.MINIMUM and len(sizes):
+            noise = self.source.accepted(None) * float(sizes.min())
+            event = least_by_slope(self.slope, places, sizes, LOCATION_LOG_TOLERANCE, shallowest=noise)
+        return event
+
+    @cached_property
+    def _found(self) -> dict[tuple[Transition, float], Landmark | None]:
+        return {}
+
+    def landmark(self, mark: Transition, rtol: float | None = None) -> Landmark | None:
+        """Return a transition or the minimum, None where there is none."""
+        accepted = self.source.accepted(rtol)
+        if (mark, accepted) not in self._found:
+            event = self.event(mark)
+            self._found[mark, accepted] = None if event is None else self.located(mark, event, accepted)
+        return self._found[mark, accepted]
+
+    @one_blas_thread
+    def located(self, mark: Transition, event: Event, accepted: float) -> Landmark:
+        """Return the landmark at an event: read off, or where errors exceed what is accepted on states solved there."""
+        source, place = self.source, event.place
+        rtol, holds = min(source.rtol, accepted), source.holds(place, accepted)
+        at: Any = None
+        if not holds and (source.has_state_slopes or not event.is_least):
+            with suppress(SolveError):  # the curve is known there too, only less well
+                place, at = self._polished(mark, event, rtol)
+        if at is None:
+            found = source.read(np.array([place]), rtol if holds else None)
+            at = found.solutions[0] if found.solutions else self.values(math.exp(place))
+        error = LOCATION_LOG_TOLERANCE + self._doubt(mark, event, at) / abs(event.slope)
+        friction = at.friction(*self.coefficients)
+        total = friction.total if abs(friction.total) > friction.error else 0.0
+        solution = None if isinstance(at, CurveValues) else at
+        return Landmark(mark, math.exp(place), total, solution, error, source.coordinate.over, source.coordinate.unit)
+
+    def _polished(self, mark: Transition, event: Event, rtol: float) -> tuple[float, Any]:
+        """Return the place of an event by solved states, and the last of these."""
+        s = event.place
+        for _ in range(MAX_POLISH_STATES):
+            solution = self.source.solved(s, rtol)
+            if event.is_least:
+                value = self.source.state_slope(s, rtol, self.coefficients)
+            else:
+                friction = solution.friction(*self.coefficients)
+                value = float(vanishing(mark, solution.fluid_load_share, friction.asperities, friction.fluid))
+            step = -value / event.slope
+            if not abs(step) < event.high - event.low:
+                break
+            s += step
+            if abs(step) <= LOCATION_LOG_TOLERANCE or abs(value) <= self._doubt(mark, event, solution):
+                break
+        return s, solution
+
+    def _doubt(self, mark: Transition, event: Event, at: Any) -> float:
+        """Return the error of what vanishes at an event, from those of a state there."""
+        friction = at.friction(*self.coefficients)
+        if event.is_least:
+            # Errors change along an interval as its polynomials do.
+            length = max(self.source.length_at(event.place), LOG_STEP)
+            near = self.source.read(event.place + LOG_STEP * np.array([-1.0, 1.0]))
+            before, after = near.friction_terms(*self.coefficients)[:, 3].tolist()
+            return float(2 * friction.error / length + abs(after - before) / (2 * LOG_STEP))
+        of_contact = abs(self.source.sliding * self.boundary_friction) * at.errors["contact_load_share"]
+        errors = np.array([at.errors["fluid_load_share"], of_contact, friction.error - of_contact])
+        parts = np.array([[at.fluid_load_share], [friction.asperities], [friction.fluid]])
+        slopes = vanishing(mark, *(parts + COMPLEX_STEP * 1j * np.eye(3))).imag / COMPLEX_STEP
+        return float(np.abs(slopes) @ errors)
+
+    @one_blas_thread
+    def continued(
+        self,
+        end: float,
+        until: Callable[[FrictionPath], bool] | None = None,
+        on_interval: Callable[[float, float], object] | None = None,
+    ) -> FrictionPath:
+        """Return the path from its nearer end to a place, or as far as ``until`` holds of it, without a cold start."""
+        source = self.source
+        assert isinstance(source, PathSource)
+
+        def on(path: Any) -> FrictionPath:
+            return replace(self, source=source.along(path))
+
+        is_enough = None if until is None else lambda path: until(on(path))
+        return on(source.path.continued(end, source.rtol, on_interval, is_enough))

@@ -1,0 +1,291 @@
+"""Curves of cylinders: observables off Taylor series, and states that are solved where they are asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition, sliding_part
+from stribeck.contacts.groups import contact_law
+from stribeck.curves.coordinate import Coordinate
+from stribeck.curves.source import Coefficients, Parts, Source
+from stribeck.equations.observables import ROW, Observables, drag_parts
+from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ALL_NAMES
+from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.path.hermite_path import HermitePath
+from stribeck.solver.path.line_path import POSITION, LineProblem
+from stribeck.solver.path.path import SolvedPath
+from stribeck.solver.refinement import RefinedState
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import check_rtol, finish, minimum_estimate, solution_of, state_notes
+from stribeck.solver.solve_error import SolveError, describe
+
+__all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource", "solved_at"]
+
+COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
+COMPLEX_STEP = 1e-20  # Imaginary step of a derivative, which cancels nothing
+MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
+MESH_LOG_DISTANCE = 0.5  # Distance of ln(value) up to which the mesh of one landmark's state is tried at another
+INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
+
+
+class PathSource(Source):
+    """Numbers off a path of solved states."""
+
+    path: Any  # A path of Taylor series, or of solved states with their slopes
+
+    @property
+    def outcome(self) -> Outcome:
+        """CONVERGED, or why the path ends early."""
+        found: Outcome = self.path.outcome
+        return found
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Where the first and the last state lie."""
+        low, high = self.path.coordinates[[0, -1]].tolist()
+        return low, high
+
+    @property
+    def places(self) -> Array:
+        """Places of all intervals."""
+        found: Array = self.path.places(INTERVAL_FRACTIONS)
+        return found
+
+    @property
+    def states(self) -> int:
+        """How many states were solved."""
+        return len(self.path.expansions)
+
+    def length_at(self, s: float) -> float:
+        """Return the length of the interval of a place."""
+        places = self.path.coordinates
+        k = int(np.clip(np.searchsorted(places, s, side="right") - 1, 0, max(len(places) - 2, 0)))
+        return float(places[k + 1] - places[k]) if len(places) > 1 else 0.0
+
+    def along(self, path: SolvedPath | HermitePath) -> Self:
+        """Return the numbers off another path."""
+        return replace(self, path=path)  # type: ignore[type-var]
+
+
+def _beside(path: SolvedPath, s: float) -> tuple[LineProblem, Any, Any]:
+    interval = path.intervals[int(path.interval_of(np.array([s]))[0])]
+    assert isinstance(interval.problem, LineProblem)
+    return interval.problem, interval.left, interval.right
+
+
+@one_blas_thread
+def solved_at(path: SolvedPath, s: float, rtol: float | None = None, near: RefinedState | None = None) -> RefinedState:
+    """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path.
+
+    The mesh of ``near``, a state solved close by, is tried first.
+    """
+    problem, left, right = _beside(path, s)
+    return problem.point_at(left, right, s, rtol, near)
+
+
+class CurvePoint(Solution):
+    """A point of a curve: its numbers come from the curve, its fields and notes from a state that is solved on first use."""
+
+    _place: tuple[SolvedPath, float]
+    _coordinate: Coordinate
+
+    def __init__(self, coordinate: Coordinate, path: SolvedPath, s: float, row: Array, errors: Array, rtol: float) -> None:
+        groups = coordinate.groups_at(s)
+        values = dict(zip(COLUMNS, row.tolist(), strict=True))
+        known: dict[str, Any] = {
+            "groups": groups,
+            "outcome": Outcome.CONVERGED,
+            "rtol": rtol,
+            "observables": Observables(**values),
+            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model))
+            / drag_parts(row[:POSITION]),
+            "minimum_position_error": float(errors[POSITION]),
+        }
+        vars(self).update(known | {"_place": (path, s), "_coordinate": coordinate})
+
+    @cached_property
+    def contact(self) -> Contact | None:  # checking its inputs takes longer than all else here
+        """The contact at this point."""
+        return self._coordinate.contact_at(self._place[1])
+
+    @cached_property
+    def _solved(self) -> Solution:
+        path, s = self._place
+        found = solution_of(solved_at(path, s, self.rtol), self.contact, self.rtol)
+        assert found is not None
+        return found
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What to know before using the numbers, one sentence each."""
+        path, s = self._place
+        problem, left, right = _beside(path, s)
+        floor = max(left.point.refined.estimate.floor, right.point.refined.estimate.floor)
+        return state_notes(
+            self.groups, self.contact, self.observables, lambda: problem.guess_at(left, right, s), floor, self.rtol
+        )
+
+    @property
+    def law(self) -> str:  # type: ignore[override]
+        """Name of the contact law."""
+        return contact_law(with_positive_gap(self.groups)[0]).name
+
+    rounding_floor = property(lambda self: self._solved.rounding_floor)
+    mesh = property(lambda self: self._solved.mesh)
+    nodal_gap = property(lambda self: self._solved.nodal_gap)
+    gap_shift = property(lambda self: self._solved.gap_shift)
+    nodal_pressures = property(lambda self: self._solved.nodal_pressures)
+    newton_steps = property(lambda self: self._solved.newton_steps)
+    origin = property(lambda self: self._solved.origin)
+
+
+@dataclass(frozen=True, eq=False)
+class LineReadings:
+    """Rows of a path of cylinders, and their errors."""
+
+    source: LineSource
+    s: Array
+    found: Array  # Shape (n, columns)
+    errors: Array
+    rtol: float
+
+    names = ALL_NAMES
+
+    @cached_property
+    def values(self) -> dict[str, Array]:
+        """Columns by name."""
+        return dict(zip(COLUMNS, self.found.T, strict=True))
+
+    @cached_property
+    def _stated(self) -> Array:
+        return np.maximum(self.errors[:, :POSITION], self.source.least_error)
+
+    @cached_property
+    def relative_errors(self) -> Array:
+        """Estimated relative errors of the observables, absolute ones of load shares."""
+        return np.asarray(self._stated / drag_parts(self.found[:, :POSITION]))
+
+    @property
+    def position_error(self) -> Array:
+        """Estimated absolute error of the position of the minimum gap."""
+        return self.errors[:, POSITION]
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest error of all rows."""
+        return float(np.nanmax(self._stated, initial=0.0)) if len(self.s) else np.nan
+
+    @cached_property
+    def solutions(self) -> tuple[Solution, ...]:
+        """The state of each row: its fields are solved on first use."""
+        coordinate, path = self.source.coordinate, self.source.path
+        rows = zip(self.s.tolist(), self.found, self.errors, strict=True)
+        return tuple(CurvePoint(coordinate, path, s, row, errors, self.rtol) for s, row, errors in rows)
+
+    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
+        share, viscous = ROW["contact_load_share"], ROW[f"viscous_{definition}"]
+        rubbing = self.source.sliding * boundary_friction
+        contact, fluid = rubbing * self.found[:, share], beta * self.found[:, viscous]
+        error = abs(rubbing) * self.relative_errors[:, share] + np.abs(fluid) * self.relative_errors[:, viscous]
+        return np.stack([contact, fluid, contact + fluid, error], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class LineSource(PathSource):
+    """Numbers of a cylinder along a path of Taylor series."""
+
+    coordinate: Coordinate
+    rtol: float
+    path: SolvedPath = field(compare=False)
+
+    has_state_slopes = True
+
+    @cached_property
+    def sliding(self) -> float:
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
+        return sliding_part(2 * self.coordinate.groups_at(0.0).model.film.slide)
+
+    @cached_property
+    def least_error(self) -> float:
+        """Smallest error that is stated."""
+        return minimum_estimate(self.rtol, self.coordinate.groups_at(0.0).model)
+
+    @cached_property
+    def _states(self) -> dict[tuple[float, float], RefinedState]:
+        return {}
+
+    def _within(self, found: Array, errors: Array, rtol: float) -> Flags:
+        """Return which rows have no estimated error above the tolerance."""
+        exists = self.path.problem.controlled & np.isfinite(found).any(axis=0)
+        return np.asarray((errors[:, exists] <= rtol).all(axis=1))
+
+    def read(self, s: Array, rtol: float | None = None) -> LineReadings:
+        """Return rows at places; with a tolerance, a state is solved where no error is known within it."""
+        found, errors = self.path.at(s)
+        for i in [] if rtol is None else np.nonzero(~self._within(found, errors, rtol))[0].tolist():
+            point = solved_at(self.path, float(s[i]), rtol)
+            if point.values is not None and point.estimate is not None and point.outcome.ok:
+                found[i] = *point.values.array(), point.values.minimum_position
+                errors[i, : len(point.estimate.relative)] = point.estimate.relative
+                errors[i, POSITION] = point.estimate.minimum_position
+        return LineReadings(self, s, found, errors, self.rtol if rtol is None else rtol)
+
+    def parts(self, s: Array, coefficients: Coefficients) -> Parts:
+        """Return the load share of the fluid and both parts of the friction, at complex places too."""
+        boundary_friction, beta, definition = coefficients
+        names = ("fluid_load_share", "contact_load_share", f"viscous_{definition}")
+        fluid, contact, viscous = self.path.smooth(s)[:, [ROW[name] for name in names]].T
+        return fluid, self.sliding * boundary_friction * contact, beta * viscous
+
+    def slopes(self, s: Array, coefficients: Coefficients) -> Array:
+        """Return the derivatives of the friction by the coordinate."""
+        _, contact, viscous = self.parts(s + COMPLEX_STEP * 1j, coefficients)  # type: ignore[arg-type]
+        return np.asarray((contact + viscous).imag / COMPLEX_STEP)
+
+    def accepted(self, rtol: float | None) -> float:
+        """Return the error of the observables up to which a landmark is read off."""
+        return check_rtol(min(self.rtol, MAX_STATE_RTOL) if rtol is None else rtol)
+
+    def holds(self, s: float, accepted: float) -> bool:
+        """Return whether no error at a place exceeds what is accepted."""
+        return bool(self._within(*self.path.at(np.array([s])), accepted)[0])
+
+    def solution_at(self, s: float) -> Solution:
+        """Return the solution at a place, or raise the error of its outcome."""
+        return finish(self.state_at(s), self.coordinate.groups_at(s), self.coordinate.contact_at(s), self.rtol)
+
+    def state_at(self, s: float) -> RefinedState:
+        """Return the state at a place, as the solver has it."""
+        known = next((each.point.refined for each in self.path.expansions if each.coordinate == s), None)
+        if known is None and (s, self.rtol) not in self._states:
+            self._states[s, self.rtol] = solved_at(self.path, s)
+        return self._states[s, self.rtol] if known is None else known
+
+    def solved(self, s: float, rtol: float) -> Solution:
+        """Return the solution at a place; the mesh of the nearest one solved before is tried first."""
+        near = min(self._states, key=lambda each: abs(each[0] - s), default=(np.inf, rtol))
+        close = self._states[near] if abs(near[0] - s) <= MESH_LOG_DISTANCE else None
+        point = self._states[s, rtol] = solved_at(self.path, s, rtol, close)
+        if point.state is None or point.values is None:
+            raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
+        found = solution_of(point, self.coordinate.contact_at(s), rtol)
+        assert found is not None
+        return found
+
+    def state_slope(self, s: float, rtol: float, coefficients: Coefficients) -> float:
+        """Return the derivative of the friction by the coordinate at a state that was solved."""
+        boundary_friction, beta, definition = coefficients
+        state = self._states[s, rtol].state
+        assert state is not None
+        slopes = friction_slopes(state, self.sliding * boundary_friction, beta, definition)
+        return float(slopes @ self.coordinate.direction)

@@ -1,1 +1,0 @@
-"""The charts of the explorer and their pictures."""

@@ -1,0 +1,274 @@
+// The page: what Python sends is shown, and what the user does is sent to Python as ["what", ...].
+// Native elements, so that keyboard, phone and screen reader know them.
+
+// A quantity: its name, a field, its unit and a slider.
+const Knob = {
+  props: { now: Object, busy: Function },
+  emits: ["act"],
+  template: `
+    <div class="knob" :class="{wrong: sentence}" :data-row="now.name">
+      <label class="name" :for="'field-' + now.name">{{ now.label }}<i v-html="now.symbol"></i></label>
+      <input class="field" type="text" :id="'field-' + now.name" :name="now.name" v-model="text" autocomplete="off" spellcheck="false"
+        :aria-invalid="String(Boolean(sentence))" :aria-describedby="'sentence-' + now.name"
+        @keydown.enter="commit" @keydown.esc="restore" @blur="commit" @keydown.ctrl="text === now.text || $event.stopPropagation()">
+      <select v-if="now.units.length" class="unit" :aria-label="'Unit of ' + now.label" :value="now.unit"
+        @change="$emit('act', ['unit', now.name, $event.target.value])">
+        <option v-for="each in now.units" :key="each" :value="each">{{ each.replace('*', '·') }}</option>
+      </select>
+      <input class="slider" type="range" :min="now.ends[0]" :max="now.ends[1]" step="0.01" v-model.number="place" :aria-label="now.label"
+        :aria-valuetext="text + ' ' + now.unit" @input="$emit('act', ['slide', now.name, place])"
+        @pointerdown="held = true" @pointerup="held = false" @pointercancel="held = false">
+      <div class="sentence" role="alert" :id="'sentence-' + now.name">{{ sentence }}</div>
+    </div>`,
+  data() {
+    return { text: "", sentence: "", place: 0, held: false };
+  },
+  created() {
+    this.take();
+  },
+  // A slider that is being moved stays in the hand that moves it.
+  watch: { now: "take" },
+  methods: {
+    take() {
+      [this.text, this.sentence] = [this.now.typed ?? this.now.text, this.now.sentence ?? ""];
+      if (!this.held && !this.busy()) this.place = this.now.place;
+    },
+    commit() {
+      if (this.text !== this.now.text || this.sentence) this.$emit("act", ["type", this.now.name, this.text]);
+    },
+    restore() {
+      if (this.sentence) this.$emit("act", ["restore", this.now.name]);
+      [this.text, this.sentence] = [this.now.text, ""];
+    },
+  },
+};
+
+// A list to choose from, and fields for what the choice needs.
+const List = {
+  props: { now: Object },
+  emits: ["act"],
+  template: `
+    <div class="choice-row" v-show="!now.hidden" :data-choice="now.name">
+      <label class="name" :for="'choice-' + now.name">{{ now.label }}</label>
+      <select class="list" ref="list" :id="'choice-' + now.name" :value="now.value" @change="$emit('act', ['pick', now.name, $event.target.value])">
+        <option v-for="each in now.options" :key="each[0]" :value="each[0]">{{ each[1] }}</option>
+      </select>
+      <template v-for="[key, label, , empty] in now.details" :key="key">
+        <label class="detail" :for="'detail-' + now.name + '-' + key">{{ label }}</label>
+        <input class="field" type="text" :id="'detail-' + now.name + '-' + key" :name="key" v-model="texts[key]"
+          :placeholder="empty" autocomplete="off" spellcheck="false" :aria-invalid="String(Boolean(sentence) && now.wrong === key)"
+          :aria-describedby="'choice-sentence-' + now.name" @keydown.enter="commit(key)" @keydown.esc="restore" @blur="commit(key)"
+          @keydown.ctrl="texts[key] === given[key] || $event.stopPropagation()">
+      </template>
+      <div class="sentence" role="alert" :id="'choice-sentence-' + now.name">{{ sentence }}</div>
+    </div>`,
+  data() {
+    return { texts: {}, given: {}, sentence: "" };
+  },
+  created() {
+    this.take();
+  },
+  watch: { now: "take" },
+  methods: {
+    take() {
+      this.given = Object.fromEntries(this.now.details.map(([key, , text]) => [key, text]));
+      this.texts = { ...this.given, ...(this.now.wrong ? { [this.now.wrong]: this.now.typed } : {}) };
+      this.sentence = this.now.sentence ?? "";
+      if (this.$refs.list) this.$refs.list.value = this.now.value; // a choice that was refused goes back
+    },
+    commit(key) {
+      if (this.texts[key] !== this.given[key] || (this.sentence && this.now.wrong === key)) {
+        this.$emit("act", ["detail", this.now.name, key, this.texts[key]]);
+      }
+    },
+    restore() {
+      if (this.sentence) this.$emit("act", ["restore", this.now.name]);
+      [this.texts, this.sentence] = [{ ...this.given }, ""];
+    },
+  },
+};
+
+const CHARTS = {
+  friction: "Friction over speed",
+  gap: "Gap along the contact",
+  pressure: "Contact and fluid pressure along the contact",
+  plane: "Film of the ball on the plane of the contact",
+  diagram: "Regimes over speed and roughness",
+};
+
+const say = (message, timeout = 6000) => Quasar.Notify.create({ message, timeout, closeBtn: "Close" });
+
+export default {
+  components: { Knob, List },
+  props: { client: String, kinds: Object, examples: Array, endings: String, toggles: Object },
+  emits: ["act"],
+  template: `
+    <div class="explorer" :class="{working}" :data-geometry="geometry">
+      <header class="bar">
+        <h1><b>stribeck</b> explorer<span>{{ title }}</span></h1>
+        <input class="hidden-upload" ref="upload" type="file" multiple :accept="endings" aria-hidden="true" tabindex="-1" @change="upload">
+        <q-btn flat dense no-caps icon="upload_file" label="Load" title="Load a case, a measured curve, a surface or an example"><q-menu><q-list>
+          <q-item clickable v-close-popup @click="$refs.upload.click()"><q-item-section>File: a case (TOML), a measured curve (CSV) or a height map ...</q-item-section></q-item>
+          <q-item v-for="each in examples" :key="each" clickable v-close-popup @click="act('example', each)"><q-item-section>{{ each }}</q-item-section></q-item>
+        </q-list></q-menu></q-btn>
+        <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case"><q-menu><q-list>
+          <q-item v-for="(kind, label) in kinds" :key="kind" clickable v-close-popup @click="download(kind)"><q-item-section>{{ label }}</q-item-section></q-item>
+        </q-list></q-menu></q-btn>
+        <q-btn flat dense no-caps icon="undo" aria-label="Undo" title="Undo (Ctrl-Z)" :disable="!undo" @click="act('undo')"/>
+        <q-btn flat dense no-caps icon="redo" aria-label="Redo" title="Redo (Ctrl-Shift-Z)" :disable="!redo" @click="act('redo')"/>
+        <q-btn flat dense no-caps icon="push_pin" label="Pin" title="Keep this curve to compare (p)" @click="act('pin')"/>
+        <q-btn flat dense no-caps icon="link" label="Link" title="Copy the address of this state (l)" @click="copy"/>
+        <q-btn flat dense no-caps icon="contrast" aria-label="Toggle dark mode" title="Toggle dark mode (t)" @click="toggleDark"/>
+      </header>
+      <div class="applies" role="status" v-html="verdict"></div>
+      <section class="card controls" aria-label="Inputs">
+        <h2>Contact</h2>
+        <list v-for="each in lists.slice(0, 1)" :key="each.name" :now="each" @act="forward"></list>
+        <knob v-for="each in rows" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
+        <h2>Dimensionless groups</h2>
+        <knob v-for="each in groups" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
+        <p class="caption">Changing one group changes speed, load and roughness; the other two groups stay fixed.</p>
+      </section>
+      <div class="middle">
+        <section class="card friction" aria-label="Stribeck curve">
+          <div class="head">
+            <h2>Stribeck curve</h2><div class="caption source">{{ source }}</div>
+            <div class="choice">
+              <q-btn-toggle v-for="(options, name) in toggles" :key="name" no-caps unelevated dense :aria-label="name"
+                :options="Object.entries(options).map(([value, label]) => ({ value, label }))"
+                :model-value="chosen[name]" @update:model-value="value => act('choose', name, value)"/>
+            </div>
+          </div>
+          <div class="below">
+            <div class="chips"><q-chip v-for="(each, i) in chips" :key="each.name" removable :icon="each.icon" :style="'--curve: var(--' + each.colour + ')'"
+              @remove="act('remove', i)">{{ each.name }}</q-chip></div>
+            <q-btn v-if="fit" flat dense no-caps icon="insights" label="Fit" title="Fit dry friction and roughness to the measured curve" @click="act('fit')"/>
+          </div>
+          <div class="chart-friction" ref="friction"></div>
+          <div class="curve-notes" tabindex="0" role="region" aria-label="Notes on the curve" v-html="notes"></div>
+          <div class="comparison" v-html="comparison"></div>
+        </section>
+        <section class="card fields" aria-label="Gap and pressure">
+          <h2>Gap and pressure along the contact</h2>
+          <div class="pair"><div class="chart-gap" ref="gap"></div><div class="chart-pressure" ref="pressure"></div></div>
+          <div class="of-ball" v-show="geometry === 'point'"><h2>Film on the plane of the contact</h2><div class="chart-plane" ref="plane"></div></div>
+        </section>
+        <section class="card model" aria-label="Model"><h2>Model</h2>
+          <div class="rows"><list v-for="each in lists.slice(1)" :key="each.name" :now="each" @act="forward"></list></div>
+        </section>
+      </div>
+      <div class="side">
+        <section class="card numbers" aria-label="Numbers">
+          <div class="status" :class="{said: !failed}" role="status">{{ message }}</div>
+          <div class="retry" v-if="failed">
+            <q-btn flat dense no-caps icon="refresh" label="Try again" title="Compute this once more" @click="act('retry')"/>
+            <q-btn flat dense no-caps icon="undo" label="Back" title="Go back to what is shown" @click="act('back')"/>
+          </div>
+          <div v-html="numbers"></div>
+        </section>
+        <section class="card more" aria-label="Margins">
+          <h2>Margins to the next regimes <span class="caption waits">{{ waits }}</span></h2>
+          <div class="margins" :class="{old: waits}" v-html="margins"></div>
+        </section>
+        <section class="card diagram" aria-label="Phase diagram">
+          <h2>Regimes <span class="caption">{{ map }}</span></h2><div class="chart-diagram" ref="diagram"></div>
+        </section>
+      </div>
+      <q-dialog :model-value="complaint.length > 0" @update:model-value="complaint = []"><q-card class="complaint">
+        <div v-for="each in complaint">{{ each }}</div><q-btn flat no-caps label="Close" autofocus v-close-popup/>
+      </q-card></q-dialog>
+    </div>`,
+  data() {
+    const texts = ["title", "verdict", "source", "notes", "comparison", "message", "numbers", "margins", "waits", "map", "address"];
+    const lists = ["lists", "rows", "groups", "chips", "complaint"], flags = ["working", "undo", "redo", "fit", "failed"];
+    const empty = [...texts.map((each) => [each, ""]), ...lists.map((each) => [each, []]), ...flags.map((each) => [each, false])];
+    return { ...Object.fromEntries(empty), geometry: "line", chosen: {} };
+  },
+  watch: {
+    address(query) {
+      history.replaceState(null, "", query);
+    },
+  },
+  mounted() {
+    document.documentElement.lang = "en";
+    this.charts = Object.fromEntries(Object.entries(CHARTS).map(([name, label]) => [name, new StribeckChart(this.$refs[name], label)]));
+    document.addEventListener("keydown", this.press);
+  },
+  unmounted() {
+    document.removeEventListener("keydown", this.press);
+  },
+  methods: {
+    act(...what) {
+      this.$emit("act", what);
+    },
+    // One move of a slider is on its way to Python at a time; while it is, only the last place is kept.
+    forward(what) {
+      if (what[0] !== "slide") this.act(...what);
+      else if (this.waiting) this.next = what;
+      else {
+        this.waiting = setTimeout(this.free, 1000);
+        this.act(...what);
+      }
+    },
+    isBusy() {
+      return Boolean(this.next);
+    },
+    free() {
+      clearTimeout(this.waiting);
+      const next = this.next;
+      this.waiting = this.next = null;
+      if (next) this.forward(next);
+    },
+    // Shows what changed; returning tells Python that it is drawn.
+    async show({ charts = {}, ...parts }) {
+      Object.assign(this, parts);
+      for (const [name, options] of Object.entries(charts)) this.charts[name].show(options);
+      await this.$nextTick();
+      this.free();
+      document.dispatchEvent(new CustomEvent("shown", { detail: parts }));
+      return true;
+    },
+    // Ctrl-Z also while a slider or a field that holds no new text has the focus; a field that is edited undoes its own letters.
+    press(event) {
+      const key = event.key.toLowerCase(), isControl = event.ctrlKey || event.metaKey;
+      if (event.altKey || (!isControl && event.target.closest("input, select, textarea"))) return;
+      if (isControl) {
+        const way = key === "y" || (key === "z" && event.shiftKey) ? "redo" : key === "z" ? "undo" : "";
+        if (!way) return;
+        event.preventDefault();
+        if (this[way]) this.act(way);
+      } else if (key === "p") this.act("pin");
+      else if (key === "t") this.toggleDark();
+      else if (key === "l") this.copy();
+    },
+    toggleDark() {
+      Quasar.Dark.toggle();
+    },
+    copy() {
+      const write = navigator.clipboard ? navigator.clipboard.writeText(location.href) : Promise.reject();
+      write.then(() => say("Address copied", 1600), () => say("Could not copy; the link is in the address bar", 1600));
+    },
+    async upload({ target }) {
+      const files = [...target.files];
+      target.value = "";
+      for (const file of files) {
+        const path = `/upload/${this.client}?name=${encodeURIComponent(file.name.slice(-200))}`;
+        const answer = await fetch(path, { method: "POST", body: file }).catch(() => null);
+        if (!answer?.ok) say(answer?.status === 413 ? await answer.text() : `${file.name} could not be sent; reload the page.`);
+      }
+    },
+    async download(kind) {
+      const answer = await fetch(`/download/${this.client}/${kind}`).catch(() => null);
+      if (!answer?.ok) {
+        if (answer?.status !== 409) say("The file could not be made; reload the page.");
+        return;
+      }
+      const anchor = document.createElement("a");
+      anchor.href = URL.createObjectURL(await answer.blob());
+      anchor.download = decodeURIComponent(answer.headers.get("x-file-name"));
+      anchor.click();
+      // At once would be too early: the browser may not have begun to read it.
+      setTimeout(() => URL.revokeObjectURL(anchor.href), 60000);
+    },
+  },
+};

@@ -1,0 +1,247 @@
+r"""Derivatives of functions of nodal fields, exact, as the function is evaluated.
+
+A :class:`Trace` is a value with its derivatives: by each field a sum of terms ``diag(left) A diag(right)``, by each number
+a column.  Pointwise functions bring their partial derivatives, see :func:`pointwise`; a constant linear map is an
+:class:`Operator`, and the product of two is made once.  So that a function of fields that is written once gives its
+value for plain arrays, also for many states in rows, and its Jacobian for traces.  The module knows no physics.
+
+Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 3 (forward mode).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, Protocol, TypeAlias
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from stribeck._types import Array, Numbers
+from stribeck.numerics.jets import Jet
+
+__all__ = ["Matrix", "Operator", "Trace", "Value", "act", "matrix_of", "pointwise", "value_of"]
+
+ZERO = np.zeros(())
+
+
+class Operator(Protocol):
+    """A constant linear map of nodal values."""
+
+    @property
+    def matrix(self) -> Array:
+        """The matrix, shape (rows, nodes)."""
+
+    def __call__(self, values: Array) -> Array:
+        """Return what it makes of nodal values, shape (..., nodes) -> (..., rows)."""
+
+    def after(self, operator: Array) -> Array:
+        """Return ``operator @ self``."""
+
+
+class Matrix:
+    """An operator that is known as a matrix, and keeps its products with others as long as these live."""
+
+    def __init__(self, matrix: Array) -> None:
+        self.matrix = matrix
+        self._products: WeakKeyDictionary[Operator, Matrix] = WeakKeyDictionary()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Leave the products out of a pickle."""
+        return Matrix, (self.matrix,)
+
+    def __call__(self, values: Array) -> Array:
+        """Return what it makes of nodal values."""
+        if np.iscomplexobj(values):  # numpy would make the matrix complex each time
+            return np.asarray(self(values.real) + 1j * self(values.imag))
+        return np.asarray(values @ self.matrix.T)
+
+    def after(self, operator: Array) -> Array:
+        """Return ``operator @ self``."""
+        return np.asarray(operator @ self.matrix)
+
+    def of(self, inner: Operator) -> Matrix:
+        """Return the operator after another."""
+        found = self._products.get(inner)
+        if found is None:
+            found = self._products[inner] = Matrix(inner.after(self.matrix))
+        return found
+
+
+class Term(NamedTuple):
+    """One term ``diag(left) A diag(right)`` of a derivative; None stands for the identity."""
+
+    left: Numbers | None
+    operator: Operator | None
+    right: Numbers | None
+
+
+class Trace:
+    """A value and its derivatives."""
+
+    __array_ufunc__ = None  # numpy leaves its operators to this class
+
+    def __init__(
+        self, value: Array, terms: Mapping[str, Sequence[Term]] | None = None, columns: Mapping[str, Array] | None = None
+    ) -> None:
+        self.value = value
+        self.terms = terms or {}  # By field
+        self.columns = columns or {}  # By number
+
+    @classmethod
+    def field(cls, name: str, value: Array, unit: Numbers | None = None) -> Trace:
+        """Return a field of unknowns, measured in units."""
+        return cls(value, {name: (Term(None, None, unit),)})
+
+    @classmethod
+    def number(cls, name: str, value: Array, unit: Numbers = 1.0) -> Trace:
+        """Return a number among the unknowns, or any other, measured in a unit."""
+        return cls(value, None, {name: np.broadcast_to(np.asarray(unit, dtype=float), np.shape(value))})
+
+    def scaled(self, factor: Numbers, value: Array) -> Trace:
+        """Return another value, whose derivatives are these times a factor at each node."""
+        terms = {
+            name: [Term(_product(factor, left), operator, right) for left, operator, right in each]
+            for name, each in self.terms.items()
+        }
+        return Trace(value, terms, {name: np.asarray(factor * column) for name, column in self.columns.items()})
+
+    def factor(self, name: str) -> Any:
+        """Return the factor of a field under the operator that its terms share, without those that have none."""
+        found: Any = 0.0
+        for left, operator, right in self.terms.get(name, ()):
+            if operator is not None:
+                factor = _product(left, right)
+                found = found + (1.0 if factor is None else factor)
+        return found
+
+    def row(self, name: str) -> Array:
+        """Return the derivative of a functional by a field, whose factors on the left are numbers, or by a number."""
+        found: Any = self.columns.get(name, 0.0)
+        for left, operator, right in self.terms.get(name, ()):
+            assert operator is not None
+            factor = _product(left, right)
+            found = found + (operator.matrix if factor is None else operator.matrix * factor)
+        return np.asarray(found)
+
+    def along(self, changes: Mapping[str, Array]) -> Array:
+        """Return the change with that of fields and numbers, each with values of shape (..., nodes)."""
+        found: Any = 0.0
+        for name, change in changes.items():
+            for left, operator, right in self.terms.get(name, ()):
+                term = _product(right, change)
+                found = found + _product(left, term if operator is None else operator(term))
+            if name in self.columns:
+                found = found + self.columns[name] * change
+        return np.asarray(found)
+
+    def __add__(self, other: Value) -> Trace:
+        """Return the sum."""
+        if not isinstance(other, Trace):
+            return Trace(self.value + other, self.terms, self.columns)
+        terms, columns = dict(self.terms), dict(self.columns)
+        for name, each in other.terms.items():
+            terms[name] = [*terms[name], *each] if name in terms else each
+        for name, column in other.columns.items():
+            columns[name] = columns[name] + column if name in columns else column
+        return Trace(self.value + other.value, terms, columns)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Trace:
+        """Return the negative."""
+        return self.scaled(-1.0, -self.value)
+
+    def __sub__(self, other: Value) -> Trace:
+        """Return the difference."""
+        return self + (-other)
+
+    def __rsub__(self, other: Value) -> Trace:
+        """Return the difference."""
+        return -self + other
+
+    def __mul__(self, other: Value) -> Trace:
+        """Return the product."""
+        if isinstance(other, Trace):
+            return self.scaled(other.value, self.value * other.value) + other.scaled(self.value, ZERO)
+        return self.scaled(other, self.value * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Value) -> Trace:
+        """Return the quotient."""
+        if isinstance(other, Trace):
+            return self * other.__rtruediv__(1.0)
+        return self.scaled(1 / np.asarray(other), self.value / other)
+
+    def __rtruediv__(self, other: Array | float) -> Trace:
+        """Return the quotient."""
+        value = other / self.value
+        return self.scaled(-value / self.value, value)
+
+
+Value: TypeAlias = Trace | Array | float
+
+
+def value_of(given: Any) -> Any:
+    """Return the value of a trace; what is none of them, as it is."""
+    return given.value if isinstance(given, Trace) else given
+
+
+def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
+    """Return a function of values at the same node, which returns its value and its derivative by each of them.
+
+    A derivative None stands for one.  Of plain values the function gives its plain value.
+    """
+    value, *slopes = function(*(value_of(each) for each in given))
+    found = value
+    for each, slope in zip(given, slopes, strict=True):
+        if isinstance(each, Trace):
+            found = each.scaled(1.0 if slope is None else slope, ZERO) + found
+    return found
+
+
+def act(operator: Operator, given: Any) -> Any:
+    """Return what an operator makes of nodal values or of their trace; its rows, where they are one, keep their axis."""
+    if isinstance(given, Jet):
+        return given.mapped(operator)
+    if not isinstance(given, Trace):
+        return operator(given)
+    terms = {name: [_after(operator, each) for each in own] for name, own in given.terms.items()}
+    columns = {name: operator(np.broadcast_to(column, np.shape(given.value))) for name, column in given.columns.items()}
+    return Trace(operator(given.value), terms, columns)
+
+
+def _after(operator: Operator, term: Term) -> Term:
+    """Return the term of an operator after another one."""
+    left, inner, right = term
+    if inner is None:
+        return Term(None, operator, _product(left, right))
+    if left is None or np.ndim(left) == 0 or np.shape(left)[-1] == 1:
+        outer = operator if isinstance(operator, Matrix) else Matrix(operator.matrix)
+        return Term(None, outer.of(inner), _product(left, right))
+    return Term(None, Matrix(inner.after(operator.matrix * left)), right)
+
+
+def _product(first: Numbers | None, second: Numbers | None) -> Any:
+    """Return the product of two factors; None stands for one."""
+    return second if first is None else first if second is None else first * second
+
+
+def matrix_of(trace: Trace, name: str, out: Array) -> None:
+    """Write the derivative by a field, whose factors on the left are numbers, into a matrix."""
+    diagonal: Any = 0.0
+    factors: dict[Operator, Any] = {}
+    for left, operator, right in trace.terms.get(name, ()):
+        factor = _product(left, right)
+        factor = 1.0 if factor is None else factor
+        if operator is None:
+            diagonal = diagonal + factor
+        else:
+            factors[operator] = factors[operator] + factor if operator in factors else factor
+    total: Any = 0.0
+    for k, (operator, factor) in enumerate(factors.items()):
+        term = operator.matrix * factor
+        total = np.add(total, term, out=total) if k else term
+    out[...] = total
+    if np.any(diagonal):
+        np.einsum("ii->i", out)[...] += diagonal

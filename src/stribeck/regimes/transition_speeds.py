@@ -1,0 +1,129 @@
+"""A phase diagram read off the atlas: all points at once, transitions located on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck._types import Array
+from stribeck.atlas.tables import table_for
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.numerics.events import rising_zeros
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.keywords import answers_typos
+
+DENSITY = 20
+"""Points per decade of speed on which the transitions of a row are seen."""
+
+COARSE = 5
+"""The same where many rows are located at once, each passage then narrowed."""
+
+NARROWINGS = 6
+"""Rounds of that at most."""
+
+NARROW_ENOUGH = 0.2
+"""Part of the table's error below which the ends of a passage are no longer moved together."""
+
+
+@dataclass(frozen=True, eq=False)
+class TransitionSpeeds:
+    """Speed groups at which the regimes of many contacts pass into each other.
+
+    Attributes
+    ----------
+    boundary : ndarray, shape (n,)
+        Where the fluid begins to carry more than 5 % of the load; zero or infinite where it does or does not at all speeds.
+    hydrodynamic : ndarray, shape (n,)
+        Where asperities cause no more than 10 % of the friction; zero or infinite likewise.
+    minimum : ndarray, shape (n,)
+        Where friction is at its minimum, nan where its minimum is not between the speeds asked for.
+    error : ndarray, shape (3, n)
+        Errors of the logarithms of the three, from the stated error of the shares and of the friction's slope [-].
+    """
+
+    boundary: Array
+    hydrodynamic: Array
+    minimum: Array
+    error: Array
+
+
+@answers_typos
+@one_blas_thread
+def transition_speeds(
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    speeds: tuple[float, float] | None = None,
+    narrowings: int = NARROWINGS,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float = math.inf,
+) -> TransitionSpeeds:
+    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas."""
+    row = table_for(groups)
+    roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
+    speeds = row.speeds(groups) if speeds is None else speeds
+    count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
+    grid = np.log(np.geomspace(*speeds, count))
+
+    bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
+    motion = {"slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
+    rubbing = boundary_friction * float(RULES[groups.geometry].sliding_factor(groups, motion))
+
+    def signs(s: Array, h: Array) -> Array:
+        """Return what passes from below to above zero at each of the three, shape (3, ...)."""
+        fluid, contact, viscous, slope = atlas.shares_and_friction(
+            Groups(np.exp(s), groups.load, h, **groups.physics), boundary_friction, beta, definition, **motion
+        )
+        solid, total = np.abs(rubbing * contact), rubbing * contact + viscous
+        return np.stack(
+            [
+                np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
+                np.log(np.maximum(bound * np.abs(viscous), 1e-300) / np.maximum(solid, 1e-300)),
+                np.sign(total) * slope / (np.abs(slope) + np.maximum(np.abs(total), 1e-300)),  # of its size, between -1 and 1
+            ]
+        )
+
+    found, error = _passages(signs, grid, roughness, narrowings, row.error)
+    with np.errstate(over="ignore"):
+        speed = np.exp(found)
+    return TransitionSpeeds(speed[0], speed[1], np.where(np.isfinite(found[2]), speed[2], np.nan), error)
+
+
+def _passages(
+    signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int, stated: float
+) -> tuple[Array, Array]:
+    """Return where each function passes from below to above zero in each row, and errors, shape (3, rows).
+
+    Logarithms of the speed; -inf or inf where it is above or below at all speeds.  The printed viscous friction lets friction
+    rise before it falls, so that its minimum is the last passage; the others are the first, from below at the lowest speed.
+    """
+    values = signs(*np.broadcast_arrays(grid, roughness[:, None]))
+    rising = (values[..., :-1] < 0) & (values[..., 1:] >= 0)
+    place = np.argmax(rising, axis=-1)
+    place[2] = rising.shape[-1] - 1 - np.argmax(rising[2, :, ::-1], axis=-1)
+    some = np.asarray(rising.any(axis=-1))
+    some[:2] &= values[:2, :, 0] < 0
+    found = np.where(values[..., 0] >= 0, -np.inf, np.inf)
+    error = np.zeros(found.shape)
+    which, rows = np.nonzero(some)
+    if not len(rows):
+        return found, error
+    first = place[which, rows]
+    found[which, rows], slopes, apart = rising_zeros(
+        lambda s: signs(s, np.broadcast_to(roughness[rows], s.shape))[which, :, np.arange(len(rows))].T,
+        np.stack([grid[first], grid[first + 1]]),
+        np.stack([values[which, rows, first], values[which, rows, first + 1]]),
+        narrowings,
+        NARROW_ENOUGH * stated,
+    )
+    error[which, rows] = stated / np.maximum(slopes, 1e-300) + apart
+    return found, error

@@ -1,0 +1,24 @@
+"""What the functions of stribeck return: states, curves, batches, sweeps, fits, checks and their parts."""
+
+from stribeck.quantities.lazy import lazy_names as _lazy_names
+
+_HOMES = {
+    "batches.result": ("BatchSolution",),
+    "checks.check": ("Check", "Checks"),
+    "cli.reports.regimes": ("Explanation",),
+    "contacts.friction": ("Friction",),
+    "contacts.line": ("HertzScales",),
+    "curves.landmarks": ("Landmark",),
+    "curves.result": ("StribeckCurve",),
+    "experiments.compare": ("Comparison",),
+    "experiments.next_runs": ("Plan",),
+    "fits.measurements": ("Measurements",),
+    "fits.result": ("Fit", "FitOutcome", "FittedInput"),
+    "solver.point.solution": ("Field", "PointSolution"),
+    "solver.solution": ("Profile", "Solution"),
+    "sweeps.dataset": ("Sweep",),
+    "sweeps.design": ("SweepDesign",),
+    "sweeps.sweep": ("SweepProgress",),
+    "uncertainty.result": ("Spread", "Uncertainty"),
+}
+__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, root="stribeck")

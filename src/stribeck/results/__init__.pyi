@@ -1,0 +1,45 @@
+"""The public names with their types; at run time each is imported on first use."""
+
+from stribeck.batches.result import BatchSolution
+from stribeck.checks.check import Check, Checks
+from stribeck.cli.reports.regimes import Explanation
+from stribeck.contacts.friction import Friction
+from stribeck.contacts.line import HertzScales
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.experiments.compare import Comparison
+from stribeck.experiments.next_runs import Plan
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.solver.point.solution import Field, PointSolution
+from stribeck.solver.solution import Profile, Solution
+from stribeck.sweeps.dataset import Sweep
+from stribeck.sweeps.design import SweepDesign
+from stribeck.sweeps.sweep import SweepProgress
+from stribeck.uncertainty.result import Spread, Uncertainty
+
+__all__ = [
+    "BatchSolution",
+    "Check",
+    "Checks",
+    "Comparison",
+    "Explanation",
+    "Field",
+    "Fit",
+    "FitOutcome",
+    "FittedInput",
+    "Friction",
+    "HertzScales",
+    "Landmark",
+    "Measurements",
+    "Plan",
+    "PointSolution",
+    "Profile",
+    "Solution",
+    "Spread",
+    "StribeckCurve",
+    "Sweep",
+    "SweepDesign",
+    "SweepProgress",
+    "Uncertainty",
+]

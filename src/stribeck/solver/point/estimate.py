@@ -1,0 +1,142 @@
+"""Errors of a state of a ball, by the difference of two meshes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck.contacts.model import Model
+from stribeck.equations.cavities.system import CavitatedSystem
+from stribeck.equations.point.minimum import reach_of
+from stribeck.equations.point.observables import MINIMA, identity_error, observables
+from stribeck.equations.state import closed_gap
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.point.level import Level
+from stribeck.solver.settings import (
+    KINKED_FLOOR,
+    KINKED_SAFETY,
+    NEAR_MINIMUM,
+    SHARED_FLOOR,
+    SHARED_SAFETY,
+    SMOOTH_FLOOR,
+    SMOOTH_SAFETY,
+)
+
+__all__ = ["LOOSE_OBSERVABLES", "WITHOUT_TOLERANCE", "Pair", "pair_of"]
+
+WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
+# Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
+# the rupture line crosses, are less accurate than the film.
+LOOSE_OBSERVABLES = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
+DRAGS = ("J_couette", "J_poiseuille", "J_balanced", "J_published")  # Integrals of the film, which reach beyond the rim
+SHEAR_INTEGRALS = ("J_couette", "J_balanced", "J_published")  # Integrals that contain the shear
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A state on two meshes, the observables of the finer one and their errors."""
+
+    coarse: Level
+    fine: Level
+    values: dict[str, float]
+    errors: dict[str, float]
+    scales: dict[str, float]
+    outcome: Outcome
+    steps: int
+    krylov_steps: int
+
+    def relabelled(self, model: Model) -> Pair:
+        """Return the pair relabelled with a model whose states start from it."""
+        return replace(self, coarse=self.coarse.relabelled(model), fine=self.fine.relabelled(model))
+
+    def without_operators(self) -> Pair:
+        """Return the pair without the operators and factors that fill the memory."""
+        return replace(self, coarse=self.coarse.without_operators(), fine=self.fine.without_operators())
+
+    @property
+    def total(self) -> float:
+        """Largest error over its scale among the observables that a tolerance limits."""
+        apart = without_tolerance(self.fine)
+        return max(error / self.scales[name] for name, error in self.errors.items() if name not in apart)
+
+    @property
+    def minimum(self) -> float:
+        """Relative error of the minimum film."""
+        return self.errors["minimum_gap"] / self.scales["minimum_gap"]
+
+
+def without_tolerance(level: Level) -> tuple[str, ...]:
+    """Return the observables of a state that no tolerance limits."""
+    breaks = isinstance(level.equations, CavitatedSystem)
+    return (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES) if breaks else WITHOUT_TOLERANCE
+
+
+def safety_of(level: Level) -> tuple[float, float]:
+    """Return the stated error over the difference of two meshes, and the least such difference over the largest of all."""
+    film, equations = level.resolution.model.film, level.equations
+    breaks = isinstance(equations, CavitatedSystem)
+    closed_at = closed_gap(film)
+    if equations.order < 2.0 or (closed_at is not None and level.unknowns.gap.min() < NEAR_MINIMUM * closed_at):
+        return SHARED_SAFETY, SHARED_FLOOR
+    return (KINKED_SAFETY, KINKED_FLOOR) if breaks or film.uses_speed else (SMOOTH_SAFETY, SMOOTH_FLOOR)
+
+
+def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
+    """Return the scales of errors: one for shares and angles, at least ``drag`` for friction, else about the value."""
+    friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed, drag) if speed > 0 else 1.0
+    found = {}
+    for name, value in values.items():
+        if name.endswith("share") or name in ("minimum_radius", "minimum_angle"):
+            found[name] = 1.0
+        elif name.startswith("J_"):
+            found[name] = friction
+        else:
+            found[name] = max(abs(value), values["central_gap"] if name == "offset" else 1e-300)
+    return found
+
+
+def pair_of(coarse: Level, fine: Level) -> Pair:
+    """Return the pair of two levels of one state."""
+    equations, y = fine.equations, fine.unknowns
+    values, rough = observables(equations, y), observables(coarse.equations, coarse.unknowns)
+    scales = scales_of(values, equations.speed, equations.drag_beyond)
+    safety, floor = safety_of(fine)
+    differences = {name: abs(value - rough[name]) / scales[name] for name, value in values.items()}
+    # Two meshes may agree by chance in one number, hardly in all.
+    apart = without_tolerance(fine)
+    widest = max(differences[name] for name in values if name not in apart)
+    errors = {
+        name: (safety * max(differences[name], floor * widest) + fine.iterated.left) * scale for name, scale in scales.items()
+    }
+    # What lies beyond the rim, or begins at a line of rupture that is known to a spacing of the nodes, no mesh tells.
+    outside, streaks = equations.friction_error_outside(y), equations.speed / 6.0 * equations.shear_error(y)
+    for name in DRAGS:
+        errors[name] += outside
+    for name in SHEAR_INTEGRALS:
+        errors[name] += streaks
+    # What the identity of three integrals misses, by rounding where friction is slight, is theirs in equal parts.
+    missing = abs(identity_error(values, equations.speed, equations.far)) / 3.0
+    for name in ("J_balanced", "J_published", "J_pcx"):
+        errors[name] = max(errors[name], missing)
+    errors |= minimum_errors(coarse, fine, values, errors)
+    ok = coarse.outcome.ok and fine.outcome.ok
+    outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
+    steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))
+    return Pair(coarse, fine, values, errors, scales, outcome, steps, krylov)
+
+
+def minimum_errors(coarse: Level, fine: Level, values: dict[str, float], errors: dict[str, float]) -> dict[str, float]:
+    """Return the errors of the minimum of the gap and its place, by the difference of the two gaps around it."""
+    # Interpolated minima of two meshes may agree by chance, gaps all around hardly; the place is known as far as the gap is.
+    gap = fine.unknowns.gap
+    ours, theirs = (level.unknowns.gap - 0.5 * level.mesh.radii**2 for level in (fine, coarse))
+    apart = np.abs(coarse.mesh.transfer(fine.mesh, theirs[None])[0] - ours)
+    near = float(apart[gap < NEAR_MINIMUM * gap.min()].max())
+    found = {name: max(errors[name], near) for name in ("minimum_gap", "minimum_gap_on_axis")}
+    place = values["minimum_radius"], values["minimum_angle"]
+    radius, angle = reach_of(fine.mesh, gap, *place, found["minimum_gap"])
+    radius = max(errors["minimum_radius"], radius)
+    seen = radius / max(place[0], radius / math.pi, 1e-300)  # from the centre
+    return found | {"minimum_radius": radius, "minimum_angle": min(math.pi, max(errors["minimum_angle"], angle, seen))}

@@ -1,0 +1,30 @@
+"""Numbers of the solver that are no property of the equations: the kind of each, and what breaks if it is wrong.
+
+A number is a tolerance, a multiple of the machine precision, a safety factor that a test fixes, or a limit on work.
+"""
+
+# Safety factors of what is stated of balls, by tests/test_ball_errors.py: with less, true errors exceed stated ones.
+# Each pair is the stated error over the difference of two meshes, and the least such difference over the largest of all.
+SMOOTH_SAFETY, SMOOTH_FLOOR = 0.35, 0.1  # Flow that is smooth: errors fall exponentially, the finer mesh has hardly any
+KINKED_SAFETY, KINKED_FLOOR = 1.0, 1.0  # Flow that thins or ends: errors fall as a power
+# Flow that roughness closes, and gas carried by differences of first order: both meshes err by nearly the same.
+SHARED_SAFETY, SHARED_FLOOR = 2.0, 1.0
+NEAR_MINIMUM = 1.3  # Gap over its minimum up to which the difference of two gaps counts as error of the minimum
+
+# Limits on work: with more, memory and time; with less, states that miss their tolerance or fail, and say so.
+MAX_REFINEMENTS = 8  # Pairs of meshes tried for a state of a ball
+MAX_DEGREE = 18  # Degree of panels
+MAX_STEPS_NEW_MESH = 80  # Newton steps on a mesh other than the neighbour's, or from cold
+MAX_STEPS_FROM_NEIGHBOUR = 15  # Newton steps on the mesh of a neighbour, before a cold start is cheaper
+DROP_FACTORS_ABOVE_BYTES = 200_000_000  # Memory of a mesh above which factors of coarser ones are dropped
+
+# First meshes and starts of balls, limits on work too: with others a state takes another refinement or more steps.
+FIRST_DEGREES, FIRST_MODES = (7, 8), (8, 10)  # Least degree and number of modes, of a full film and one that ends
+DEGREE_LOG_GAIN, FIRST_ERROR = 1.49, 5.0  # ln of the error reduction by one degree, and the error without any
+SMOOTH_BELOW_PRESSURE = 1e-3  # Largest contact pressure of a film whose angles are those of a smooth contact [p_Hz]
+SMALL_TAIL = 0.1  # Last coefficients of the gap in one direction over the other's below which that is not refined
+RIGID_START_SPEED = 2.0  # Speed above which a film that ends starts from that of a rigid ball
+
+# Tolerances of the promise.
+MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film over rtol
+ROUNDING_RTOL_FRACTION = 0.03  # Rounding of friction over rtol from which a missed tolerance is put down to it

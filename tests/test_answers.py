@@ -1,0 +1,85 @@
+"""What `solve`, `regimes` and `curve` print first fits a screen: verdict, sentence, main numbers; `-v` has the rest."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES, HEAVY, PDMS, SWEEP, call, case_text
+
+import stribeck as sb
+from stribeck.quantities.units import to_si
+
+LINES, COLUMNS = 25, 80
+
+CASES = sorted({*EXAMPLES.glob("*.toml"), HEAVY} - {SWEEP})
+
+FAST = ("pdms_cylinder", "wiper_blade")  # The regimes and curves of the others take minutes together
+
+
+def height(text):
+    """Return how many lines of a terminal a text takes."""
+    return sum(max(1, math.ceil(len(line) / COLUMNS)) for line in text.splitlines())
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_the_answer_of_a_state_fits_a_screen(capsys, path):
+    answer = call(capsys, "solve", path)
+    first, *_, last = answer.out.splitlines()
+    assert (answer.code, answer.err) == (0, "")
+    assert height(answer.out) <= LINES, answer.out
+    assert re.match("The model applies|Outside the range of the model", first)
+    assert re.search(r"^(Boundary|Mixed|Hydrodynamic) lubrication at .*: friction .* The minimum film is ", answer.out, re.M)
+    assert last.startswith("-v shows ")
+    contact = sb.load_case(path).contact
+    state = sb.solve(contact, rtol=sb.load_case(path).rtol)
+    files = state.to_dict()
+    for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
+        film, stated = files[name], files[f"{name}_error"]
+        [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
+        assert to_si(shown, "length", label) == pytest.approx(film, rel=1e-2)
+        assert to_si(error, "length", label) == pytest.approx(stated, rel=0.06)  # two digits
+        assert stated < 0.2 * film
+
+
+COMMANDS = [
+    pytest.param(command, path, id=f"{command}-{path.stem}", marks=[pytest.mark.slow] * (path.stem not in FAST))
+    for command in ("regimes", "curve")
+    for path in CASES
+]
+
+
+@pytest.mark.parametrize(("command", "path"), COMMANDS)
+def test_the_answer_of_a_command_fits_a_screen(capsys, command, path):
+    answer = call(capsys, command, path)
+    assert (answer.code, answer.err) == (0, "")
+    assert height(answer.out) <= LINES, answer.out
+    assert answer.out.splitlines()[-1].startswith("-v shows ")
+
+
+def test_the_way_to_other_regimes_is_a_table(capsys):
+    out = call(capsys, "regimes", PDMS).out
+    assert re.search(r"^ input +value +friction at \+10 % +to boundary +to hydrodynamic$", out, re.M)
+    assert re.search(r"^ speed +1 mm/s +\S+ % +/ 2\.72 \(368 µm/s\) +x 30\.5 \(30\.5 mm/s\)$", out, re.M)
+
+
+def test_a_note_that_repeats_a_doubt_is_not_said_twice(capsys, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({"speed": '"20 mm/s"', "alpha": "2.8"}))
+    doubted = [line for line in call(capsys, "solve", path).out.splitlines() if "the central gap is" in line.lower()]
+    assert len(doubted) == 1 and doubted[0].startswith("Doubtful: ")
+
+
+# --- progress without a terminal ---
+
+
+def test_a_fit_and_a_comparison_say_how_far_they_are(capsys, monkeypatch):
+    monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
+    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+    for command, last in (("fit", "intervals"), ("compare", r"greenwood-tripp: \w+")):
+        answer = call(capsys, command, data, case)
+        lines = [line for line in answer.err.splitlines() if line.startswith("stribeck: ")]
+        form = r"stribeck: (?:.*: )?[a-z]+, state (\d+) of (\d+), (?:time left unknown|\d+:\d\d:\d\d left)"
+        done, totals = np.array([[int(each) for each in re.fullmatch(form, line).groups()] for line in lines]).T
+        assert answer.code == 0 and (np.diff(done) >= 0).all() and done[-1] > 0 and (done <= totals).all()
+        assert re.match(f"stribeck: {last},", lines[-1])
