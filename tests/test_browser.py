@@ -91,9 +91,14 @@ def open_page(chromium, address):
     assert hosts == {"127.0.0.1"}
 
 
+def address_of(page):
+    """Return the address as the page has it: `page.url` hears of a change by `history.replaceState` only later."""
+    return page.evaluate("location.href")
+
+
 def contact_of(page):
     """Return the contact that the address of a page holds."""
-    items = parse_qsl(urlparse(page.url).query, keep_blank_values=True)
+    items = parse_qsl(urlparse(address_of(page)).query, keep_blank_values=True)
     opened = url.decode(items, server.example())
     assert opened.problems == {}
     return opened.inputs
@@ -213,7 +218,7 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
     now = at_rest(page, lambda: pick(page, "preset", "glycerol-water"))
     assert now.contact.viscosity == sb.fluids.PRESETS["glycerol-water"]().viscosity
     check_numbers(page, now)
-    other = open_page(urlparse(page.url).query)
+    other = open_page(urlparse(address_of(page)).query)
     assert contact_of(other) == now
 
 
@@ -343,7 +348,7 @@ def test_a_shared_address_opens_as_it_was_left(open_page):
     at_rest(page, lambda: page.keyboard.press("p"))
     now = at_rest(page, lambda: (slider(page, "load").focus(), page.keyboard.press("ArrowRight")))
     assert now.definition == "balanced"
-    other = open_page(urlparse(page.url).query)
+    other = open_page(urlparse(address_of(page)).query)
     assert other.evaluate(NUMBERS).keys() == page.evaluate(NUMBERS).keys()
     assert contact_of(other) == now
     check_numbers(other, now)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_browser import LONG, chromium  # noqa: F401
+from test_browser import LONG, address_of, chromium  # noqa: F401
 
 import stribeck as sb
 from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
@@ -93,7 +93,7 @@ def contact_of(page):
     """Return the contact that the address of a page holds, read as a reader would."""
     from urllib.parse import parse_qs
 
-    query = {key: float(text) for key, [text] in parse_qs(page.url.partition("?")[2]).items() if key != "mode"}
+    query = {key: float(text) for key, [text] in parse_qs(address_of(page).partition("?")[2]).items() if key != "mode"}
     return sb.LineContact(**query)
 
 
@@ -132,7 +132,7 @@ def test_the_browser_reads_the_numbers_that_python_reads(open_live):
 @pytest.mark.browser
 def test_sliders_in_si_move_the_curve_and_the_link_opens_it_again(open_live):
     page = open_live()
-    assert "?" not in page.url
+    assert "?" not in address_of(page)
     contact = sb.load_case(DOCS.parent / "examples" / "pdms_cylinder.toml").contact
     assert shown(page) == pytest.approx(sb.atlas.friction(contact.groups, contact.boundary_friction, contact.beta), rel=1e-6)
     assert shown(page, "minimum") == pytest.approx(sb.stribeck_curve(contact).minimum.value, rel=1e-3)
@@ -145,7 +145,7 @@ def test_sliders_in_si_move_the_curve_and_the_link_opens_it_again(open_live):
     friction = sb.atlas.friction(now.groups, now.boundary_friction, now.beta)
     assert shown(page) == pytest.approx(friction, rel=1e-6)
     assert f"friction {friction:.4g}" in page.get_by_role("status").inner_text()
-    again = open_live(page.url[page.url.index("#") :])
+    again = open_live("#" + address_of(page).partition("#")[2])
     assert contact_of(again) == now and shown(again) == shown(page)
 
 
