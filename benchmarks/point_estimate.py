@@ -35,13 +35,7 @@ from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import SMOOTH, observables
 from stribeck.equations.state import closed_gap
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point import refinement
-from stribeck.solver.point.estimate import DRAGS, LOOSE_OBSERVABLES, SHEAR_INTEGRALS, Pair
-from stribeck.solver.point.level import Level
-from stribeck.solver.point.solve import solve_cold
-from stribeck.solver.point.state import PointState
-from stribeck.solver.settings import (
+from stribeck.numerics.settings import (
     KINKED_FLOOR,
     KINKED_SAFETY,
     SHARED_FLOOR,
@@ -49,6 +43,12 @@ from stribeck.solver.settings import (
     SMOOTH_FLOOR,
     SMOOTH_SAFETY,
 )
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.point import refinement
+from stribeck.solver.point.estimate import DRAGS, LOOSE_OBSERVABLES, SHEAR_INTEGRALS, Pair
+from stribeck.solver.point.level import Level
+from stribeck.solver.point.solve import solve_cold
+from stribeck.solver.point.state import PointState
 
 ANGLES = (45, 65, 95, 130)
 """Angles of the judge of a film that breaks."""

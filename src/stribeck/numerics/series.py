@@ -24,6 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
+from stribeck.numerics.settings import EPSILON
 
 __all__ = [
     "Samples",
@@ -35,7 +36,6 @@ __all__ = [
     "radius",
 ]
 
-EPSILON = float(np.finfo(float).eps)
 
 MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 

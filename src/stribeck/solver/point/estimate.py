@@ -12,9 +12,7 @@ from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import MINIMA, identity_error, observables
 from stribeck.equations.state import closed_gap
-from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level
-from stribeck.solver.settings import (
+from stribeck.numerics.settings import (
     KINKED_FLOOR,
     KINKED_SAFETY,
     NEAR_MINIMUM,
@@ -23,6 +21,8 @@ from stribeck.solver.settings import (
     SMOOTH_FLOOR,
     SMOOTH_SAFETY,
 )
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.point.level import Level
 
 __all__ = ["LOOSE_OBSERVABLES", "WITHOUT_TOLERANCE", "Pair", "pair_of"]
 

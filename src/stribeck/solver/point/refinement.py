@@ -35,11 +35,7 @@ from stribeck.equations.point.mesh_choice import (
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.estimate import Pair, pair_of
-from stribeck.solver.point.level import PROBLEMS, Level, band_for, extrapolate_levels, solve_level, transfer
-from stribeck.solver.refinement import newton_tolerance
-from stribeck.solver.settings import (
+from stribeck.numerics.settings import (
     DEGREE_LOG_GAIN,
     DROP_FACTORS_ABOVE_BYTES,
     FIRST_DEGREES,
@@ -55,6 +51,10 @@ from stribeck.solver.settings import (
     SMALL_TAIL,
     SMOOTH_BELOW_PRESSURE,
 )
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.point.estimate import Pair, pair_of
+from stribeck.solver.point.level import PROBLEMS, Level, band_for, extrapolate_levels, solve_level, transfer
+from stribeck.solver.refinement import newton_tolerance
 
 __all__ = ["follow", "holds", "is_cavitated", "refine"]
 

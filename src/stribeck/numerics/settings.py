@@ -1,7 +1,12 @@
-"""Numbers of the solver that are no property of the equations: the kind of each, and what breaks if it is wrong.
+"""All numbers of the numerical core that are no property of the equations: what each is, and what breaks if it is wrong.
 
-A number is a tolerance, a multiple of the machine precision, a safety factor that a test fixes, or a limit on work.
+A number is a tolerance, a multiple of the machine precision, a safety factor that a test fixes, or a limit on work. It has
+one name for the core, whoever reads it: two places that need the same kind of number share it.
 """
+
+EPSILON = 2.0**-52  # Machine precision; what rounds away is a small multiple of it
+SAFETY = 2.0  # Stated over estimated error where the estimate is of leading order
+NEGLIGIBLE = 0.1  # Share of a tolerance, an error or a step that does not count beside the whole
 
 # Safety factors of what is stated of balls, by tests/test_ball_errors.py: with less, true errors exceed stated ones.
 # Each pair is the stated error over the difference of two meshes, and the least such difference over the largest of all.
