@@ -22,24 +22,27 @@ def height(text):
     return sum(max(1, math.ceil(len(line) / COLUMNS)) for line in text.splitlines())
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
-def test_the_answer_of_a_state_fits_a_screen(capsys, path):
-    answer = call(capsys, "solve", path)
-    first, *_, last = answer.out.splitlines()
-    assert (answer.code, answer.err) == (0, "")
-    assert height(answer.out) <= LINES, answer.out
-    assert re.match("The model applies|Outside the range of the model", first)
-    assert re.search(r"^(Boundary|Mixed|Hydrodynamic) lubrication at .*: friction .* The minimum film is ", answer.out, re.M)
-    assert last.startswith("-v shows ")
-    contact = sb.load_case(path).contact
-    state = sb.solve(contact, rtol=sb.load_case(path).rtol)
-    files = state.to_dict()
-    for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
-        film, stated = files[name], files[f"{name}_error"]
-        [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
-        assert to_si(shown, "length", label) == pytest.approx(film, rel=1e-2)
-        assert to_si(error, "length", label) == pytest.approx(stated, rel=0.06)  # two digits
-        assert stated < 0.2 * film
+def test_the_answer_of_a_state_fits_a_screen(subtests, capsys):
+    for path in CASES:
+        with subtests.test(path=path):
+            answer = call(capsys, "solve", path)
+            first, *_, last = answer.out.splitlines()
+            assert (answer.code, answer.err) == (0, "")
+            assert height(answer.out) <= LINES, answer.out
+            assert re.match("The model applies|Outside the range of the model", first)
+            assert re.search(
+                r"^(Boundary|Mixed|Hydrodynamic) lubrication at .*: friction .* The minimum film is ", answer.out, re.M
+            )
+            assert last.startswith("-v shows ")
+            contact = sb.load_case(path).contact
+            state = sb.solve(contact, rtol=sb.load_case(path).rtol)
+            files = state.to_dict()
+            for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
+                film, stated = files[name], files[f"{name}_error"]
+                [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
+                assert to_si(shown, "length", label) == pytest.approx(film, rel=1e-2)
+                assert to_si(error, "length", label) == pytest.approx(stated, rel=0.06)  # two digits
+                assert stated < 0.2 * film
 
 
 COMMANDS = [

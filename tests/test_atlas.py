@@ -105,30 +105,32 @@ def test_the_certificate_holds_on_five_thousand_states(mixed):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("load", [0.3, 0.999, 1.0])
-@pytest.mark.parametrize("kappa", [1e-5, 0.03, 30.0])
-def test_rest_is_that_of_the_solver(load, kappa):
-    groups = sb.Groups(0.0, load, kappa * load)
-    state = sb.solve(groups, rtol=1e-8)
-    assert sb.atlas.friction(groups, boundary_friction=0.7) == 0.7
-    assert sb.atlas.contact_load_share(groups) == 1
-    assert sb.atlas.fluid_load_share(groups) == 0
-    for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
-        right = getattr(state, function.__name__)
-        assert abs(function(groups) - right) < 1e-5 * max(right, 1e-3 * kappa)
-    assert abs(sb.atlas.offset(groups) - state.offset) < 1e-5 * max(1, abs(state.offset))
+def test_rest_is_that_of_the_solver(subtests):
+    for kappa in [1e-5, 0.03, 30.0]:
+        for load in [0.3, 0.999, 1.0]:
+            with subtests.test(kappa=kappa, load=load):
+                groups = sb.Groups(0.0, load, kappa * load)
+                state = sb.solve(groups, rtol=1e-8)
+                assert sb.atlas.friction(groups, boundary_friction=0.7) == 0.7
+                assert sb.atlas.contact_load_share(groups) == 1
+                assert sb.atlas.fluid_load_share(groups) == 0
+                for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
+                    right = getattr(state, function.__name__)
+                    assert abs(function(groups) - right) < 1e-5 * max(right, 1e-3 * kappa)
+                assert abs(sb.atlas.offset(groups) - state.offset) < 1e-5 * max(1, abs(state.offset))
 
 
-@pytest.mark.parametrize("speed", [1e-12, 1e-5, 3.0, 1e6])
-def test_smooth_contacts_are_those_of_the_solver(speed):
-    groups = sb.Groups(speed, 0.4, 0.0)
-    state = sb.solve(groups, rtol=1e-7, on_failure="return")
-    for name, function in zip(NAMES, FUNCTIONS, strict=False):
-        assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
-    for definition in DEFINITIONS:
-        assert sb.atlas.friction(groups, 1.0, 0.2, definition) == pytest.approx(
-            state.friction(1.0, 0.2, definition).total, rel=2e-6
-        )
+def test_smooth_contacts_are_those_of_the_solver(subtests):
+    for speed in [1e-12, 1e-5, 3.0, 1e6]:
+        with subtests.test(speed=speed):
+            groups = sb.Groups(speed, 0.4, 0.0)
+            state = sb.solve(groups, rtol=1e-7, on_failure="return")
+            for name, function in zip(NAMES, FUNCTIONS, strict=False):
+                assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
+            for definition in DEFINITIONS:
+                assert sb.atlas.friction(groups, 1.0, 0.2, definition) == pytest.approx(
+                    state.friction(1.0, 0.2, definition).total, rel=2e-6
+                )
 
 
 def test_the_dry_contact_is_that_of_hertz():
@@ -147,29 +149,33 @@ def of_law(row, speed, load, kappa):
     return sb.Groups(speed, load, kappa * load**like.scaling.roughness_exponent, **like.physics)
 
 
-@pytest.mark.parametrize("row", [row for row in TABLES[1:] if row.geometry == "line"], ids=lambda row: row.name)
-def test_another_table_is_within_its_stated_error_of_states_it_was_not_made_from(row):
-    found = certify(8, seed=77, mixed=True, row=row)
-    assert found.speed.size == 8
-    assert found.friction.max() < row.error
-    assert np.median(found.friction) < 1e-4
-    assert found.film.max() < 3 * row.error
+def test_another_table_is_within_its_stated_error_of_states_it_was_not_made_from(subtests):
+    for row in [row for row in TABLES[1:] if row.geometry == "line"]:
+        with subtests.test(row=row):
+            found = certify(8, seed=77, mixed=True, row=row)
+            assert found.speed.size == 8
+            assert found.friction.max() < row.error
+            assert np.median(found.friction) < 1e-4
+            assert found.film.max() < 3 * row.error
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("row", TABLES[1:], ids=lambda row: row.name)
-def test_derivatives_of_another_table_agree_with_differences(row):
-    rng = np.random.default_rng(31)
-    inner = [(math.log(low) + 0.1, math.log(high) - 0.1) for low, high in row.box.values()]
-    speed, load, kappa = (np.exp(rng.uniform(*ends, 300)) for ends in inner)
-    like = of_law(row, 1.0, 1.0, 1.0)
-    at, like = np.log([speed, load, kappa * load**like.scaling.roughness_exponent]), like.physics
-    exact = sb.atlas.friction_derivatives(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
-    friction = sb.atlas.friction(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
-    for axis, step in enumerate(np.eye(3) * 1e-5):
-        ahead, behind = (sb.atlas.friction(sb.Groups(*np.exp(at + s * step[:, None]), **like), 0.9, 0.3) for s in (1, -1))
-        error = np.abs((ahead - behind) / 2e-5 - exact[axis]) / (friction + np.abs(exact[axis]))
-        assert np.quantile(error, 0.98) < 1e-6
+def test_derivatives_of_another_table_agree_with_differences(subtests):
+    for row in TABLES[1:]:
+        with subtests.test(row=row):
+            rng = np.random.default_rng(31)
+            inner = [(math.log(low) + 0.1, math.log(high) - 0.1) for low, high in row.box.values()]
+            speed, load, kappa = (np.exp(rng.uniform(*ends, 300)) for ends in inner)
+            like = of_law(row, 1.0, 1.0, 1.0)
+            at, like = np.log([speed, load, kappa * load**like.scaling.roughness_exponent]), like.physics
+            exact = sb.atlas.friction_derivatives(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
+            friction = sb.atlas.friction(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
+            for axis, step in enumerate(np.eye(3) * 1e-5):
+                ahead, behind = (
+                    sb.atlas.friction(sb.Groups(*np.exp(at + s * step[:, None]), **like), 0.9, 0.3) for s in (1, -1)
+                )
+                error = np.abs((ahead - behind) / 2e-5 - exact[axis]) / (friction + np.abs(exact[axis]))
+                assert np.quantile(error, 0.98) < 1e-6
 
 
 @pytest.mark.quick
@@ -217,18 +223,21 @@ def test_slow_films_that_end_have_a_share_of_first_order_in_the_speed():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("definition", DEFINITIONS)
-@pytest.mark.parametrize("states", [random_groups(400, 57721)[3], transition_groups(400, 16180)], ids=["box", "transition"])
-def test_derivatives_agree_with_differences(states, definition):
-    at = np.log([states.speed, states.load, states.roughness])
-    settings = {"boundary_friction": 0.9, "beta": 0.3, "definition": definition}
-    exact = sb.atlas.friction_derivatives(states, **settings)
-    friction = sb.atlas.friction(states, **settings)
-    for row, step in enumerate(np.eye(3) * 1e-5):
-        ahead, behind = (sb.atlas.friction(sb.Groups(*np.exp(at + sign * step[:, None])), **settings) for sign in (1, -1))
-        error = np.abs((ahead - behind) / 2e-5 - exact[row]) / (friction + np.abs(exact[row]))
-        # Blocks meet within their errors: the few states next to an edge see their jump.
-        assert np.quantile(error, 0.98) < 1e-6
+def test_derivatives_agree_with_differences(subtests):
+    for states in [random_groups(400, 57721)[3], transition_groups(400, 16180)]:
+        for definition in DEFINITIONS:
+            with subtests.test(states=states, definition=definition):
+                at = np.log([states.speed, states.load, states.roughness])
+                settings = {"boundary_friction": 0.9, "beta": 0.3, "definition": definition}
+                exact = sb.atlas.friction_derivatives(states, **settings)
+                friction = sb.atlas.friction(states, **settings)
+                for row, step in enumerate(np.eye(3) * 1e-5):
+                    ahead, behind = (
+                        sb.atlas.friction(sb.Groups(*np.exp(at + sign * step[:, None])), **settings) for sign in (1, -1)
+                    )
+                    error = np.abs((ahead - behind) / 2e-5 - exact[row]) / (friction + np.abs(exact[row]))
+                    # Blocks meet within their errors: the few states next to an edge see their jump.
+                    assert np.quantile(error, 0.98) < 1e-6
 
 
 def test_at_rest_and_for_smooth_contacts_derivatives_are_exact():
@@ -258,25 +267,23 @@ def test_arrays_broadcast_and_order_does_not_matter():
     assert sb.atlas.friction(sb.Groups(np.empty(0), 0.1, 1e-3)).shape == (0,)
 
 
-@pytest.mark.parametrize(
-    ("speed", "load", "kappa", "words"),
-    [
-        (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas covers 1e-12 to 1e+06 and 0"),
-        (2e6, 0.1, 1e-3, "speed has the value 2e.06"),
-        (1e-3, 2.0, 1e-3, "load has the value 2; the atlas covers 1e-06 to 1. Use solve"),
-        (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
-        (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas covers 1e-06 to 100 and 0"),
-        (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
-    ],
-)
-@pytest.mark.parametrize("function", [*FUNCTIONS, sb.atlas.friction_derivatives], ids=lambda function: function.__name__)
-def test_outside_the_box_it_refuses(function, speed, load, kappa, words):
-    inside = sb.Groups(1e-3, 0.1, 1e-4)
-    function(inside)
-    with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
-        function(sb.Groups(speed, load, kappa * load))
-    with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
-        function(sb.Groups(np.array([1e-3, speed]), np.array([0.1, load]), np.array([1e-4, kappa * load])))
+def test_outside_the_box_it_refuses(subtests):
+    for function in [*FUNCTIONS, sb.atlas.friction_derivatives]:
+        for speed, load, kappa, words in [
+            (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas covers 1e-12 to 1e+06 and 0"),
+            (2e6, 0.1, 1e-3, "speed has the value 2e.06"),
+            (1e-3, 2.0, 1e-3, "load has the value 2; the atlas covers 1e-06 to 1. Use solve"),
+            (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
+            (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas covers 1e-06 to 100 and 0"),
+            (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
+        ]:
+            with subtests.test(function=function, speed=speed, load=load, kappa=kappa, words=words):
+                inside = sb.Groups(1e-3, 0.1, 1e-4)
+                function(inside)
+                with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
+                    function(sb.Groups(speed, load, kappa * load))
+                with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
+                    function(sb.Groups(np.array([1e-3, speed]), np.array([0.1, load]), np.array([1e-4, kappa * load])))
 
 
 def test_the_flux_gap_that_it_does_not_hold_is_refused():
@@ -292,10 +299,11 @@ def test_the_ends_of_the_box_belong_to_it():
                 assert np.isfinite([function(groups) for function in FUNCTIONS]).all()
 
 
-@pytest.mark.parametrize("wrong", [{"definition": "total"}, {"beta": 0.0}, {"boundary_friction": -1.0}])
-def test_wrong_arguments_are_refused(wrong):
-    with pytest.raises(sb.InputError):
-        sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
+def test_wrong_arguments_are_refused(subtests):
+    for wrong in [{"definition": "total"}, {"beta": 0.0}, {"boundary_friction": -1.0}]:
+        with subtests.test(wrong=wrong):
+            with pytest.raises(sb.InputError):
+                sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
 
 
 def test_something_else_than_groups_is_refused():
@@ -306,14 +314,15 @@ def test_something_else_than_groups_is_refused():
 # --- the table ---
 
 
-@pytest.mark.parametrize("row", TABLES, ids=lambda row: row.name)
-def test_a_table_is_small_and_says_where_it_comes_from(row):
-    path = atlas_table.files("stribeck.atlas").joinpath(row.file)
-    assert path.stat().st_size < 5e6
-    about = sb.atlas.info(row.name)
-    assert about["states"] > 1_000
-    assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
-    assert len(about["solver_hash"]) == 64
+def test_a_table_is_small_and_says_where_it_comes_from(subtests):
+    for row in TABLES:
+        with subtests.test(row=row):
+            path = atlas_table.files("stribeck.atlas").joinpath(row.file)
+            assert path.stat().st_size < 5e6
+            about = sb.atlas.info(row.name)
+            assert about["states"] > 1_000
+            assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
+            assert len(about["solver_hash"]) == 64
 
 
 def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
@@ -346,18 +355,19 @@ def test_coefficients_give_back_the_values_at_the_nodes():
     assert np.allclose(atlas_grid.chebyshev(atlas_grid.nodes(9), 9).T @ (atlas_grid.to_coefficients(9) @ values), values)
 
 
-@pytest.mark.parametrize("region", atlas_grid.REGIONS)
-def test_the_coordinate_of_load_is_undone_and_its_slopes_are_right(region):
-    kappa = np.geomspace(*region.roughness, 5)
-    y = np.linspace(-0.95, 0.95, 5)
-    log_load = region.log_load(y, kappa)
-    assert np.allclose(region.load_coordinate(log_load, kappa), y)
-    by_load, by_kappa = region.load_slopes(log_load, kappa)
-    step = 1e-6 * log_load
-    ahead, behind = region.load_coordinate(log_load + step, kappa), region.load_coordinate(log_load - step, kappa)
-    assert np.allclose(by_load, (ahead - behind) / (2 * step), rtol=1e-6)
-    ahead, behind = (region.load_coordinate(log_load, kappa * np.exp(sign * 1e-6)) for sign in (1, -1))
-    assert np.allclose(by_kappa, (ahead - behind) / 2e-6, atol=1e-7)
+def test_the_coordinate_of_load_is_undone_and_its_slopes_are_right(subtests):
+    for region in atlas_grid.REGIONS:
+        with subtests.test(region=region):
+            kappa = np.geomspace(*region.roughness, 5)
+            y = np.linspace(-0.95, 0.95, 5)
+            log_load = region.log_load(y, kappa)
+            assert np.allclose(region.load_coordinate(log_load, kappa), y)
+            by_load, by_kappa = region.load_slopes(log_load, kappa)
+            step = 1e-6 * log_load
+            ahead, behind = region.load_coordinate(log_load + step, kappa), region.load_coordinate(log_load - step, kappa)
+            assert np.allclose(by_load, (ahead - behind) / (2 * step), rtol=1e-6)
+            ahead, behind = (region.load_coordinate(log_load, kappa * np.exp(sign * 1e-6)) for sign in (1, -1))
+            assert np.allclose(by_kappa, (ahead - behind) / 2e-6, atol=1e-7)
 
 
 def test_a_table_is_packed_and_unpacked_within_its_unit():

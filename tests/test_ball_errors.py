@@ -1,7 +1,6 @@
 """Stated errors of balls against much finer states, as a reader takes them: relative to the observable itself."""
 
 import numpy as np
-import pytest
 
 import stribeck as sb
 
@@ -15,30 +14,25 @@ def states(number):
         yield sb.Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
 
 
-@pytest.mark.parametrize(
-    "groups", list(states(12)), ids=lambda groups: f"{groups.speed:.1e}-{groups.load:.1e}-{groups.roughness:.1e}"
-)
-def test_full_films_are_as_near_as_they_state(groups):
-    coarse, fine = sb.solve(groups, rtol=1e-3), sb.solve(groups, rtol=1e-5)
-    for name in OWN:
-        here, there = getattr(coarse, name), getattr(fine, name)
-        assert abs(here - there) <= coarse.errors[name] * abs(here) + fine.errors[name] * abs(there), name
+def test_full_films_are_as_near_as_they_state(subtests):
+    for groups in list(states(12)):
+        with subtests.test(groups=groups):
+            coarse, fine = sb.solve(groups, rtol=1e-3), sb.solve(groups, rtol=1e-5)
+            for name in OWN:
+                here, there = getattr(coarse, name), getattr(fine, name)
+                assert abs(here - there) <= coarse.errors[name] * abs(here) + fine.errors[name] * abs(there), name
 
 
-@pytest.mark.parametrize(
-    ("speed", "load", "roughness", "time", "exponent"),
-    [
+def test_the_moment_of_the_contact_pressure_is_as_near_as_it_states_where_a_fluid_thins(subtests):
+    for speed, load, roughness, time, exponent in [
         (3.42099e-4, 1.37079e-3, 4.73279e-5, 0.2528, 0.3232),
         (4.9686e-4, 1.3832e-3, 1.29492e-5, 0.3907, 0.4259),
-    ],
-)
-def test_the_moment_of_the_contact_pressure_is_as_near_as_it_states_where_a_fluid_thins(
-    speed, load, roughness, time, exponent
-):
-    groups, fluid = sb.Groups(speed, load, roughness, geometry="point"), sb.fluids.Carreau(time, exponent)
-    coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-3, 1e-5))
-    scale = max(abs(coarse.J_balanced), abs(coarse.J_published))
-    assert abs(coarse.J_pcx - fine.J_pcx) <= (coarse.errors["J_pcx"] + fine.errors["J_pcx"]) * scale
+    ]:
+        with subtests.test(speed=speed, load=load, roughness=roughness, time=time, exponent=exponent):
+            groups, fluid = sb.Groups(speed, load, roughness, geometry="point"), sb.fluids.Carreau(time, exponent)
+            coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-3, 1e-5))
+            scale = max(abs(coarse.J_balanced), abs(coarse.J_published))
+            assert abs(coarse.J_pcx - fine.J_pcx) <= (coarse.errors["J_pcx"] + fine.errors["J_pcx"]) * scale
 
 
 def fast(speed, load):
@@ -57,14 +51,15 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_errors_cover_each_kind_of_flow(kind):
-    groups, parts, rtol, finer = KINDS[kind]
-    coarse, fine = (sb.solve(groups, rtol=each, **parts) for each in (rtol, finer))
-    names = ("central_gap", "minimum_gap", "offset", "J_balanced")
-    wrong = {name: abs(getattr(coarse, name) / getattr(fine, name) - 1) / coarse.errors[name] for name in names}
-    assert max(wrong.values()) <= 1, wrong
-    assert max(wrong.values()) > 0.5, wrong
+def test_errors_cover_each_kind_of_flow(subtests):
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            groups, parts, rtol, finer = KINDS[kind]
+            coarse, fine = (sb.solve(groups, rtol=each, **parts) for each in (rtol, finer))
+            names = ("central_gap", "minimum_gap", "offset", "J_balanced")
+            wrong = {name: abs(getattr(coarse, name) / getattr(fine, name) - 1) / coarse.errors[name] for name in names}
+            assert max(wrong.values()) <= 1, wrong
+            assert max(wrong.values()) > 0.5, wrong
 
 
 def test_errors_cover_a_film_that_re_forms():

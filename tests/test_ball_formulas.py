@@ -362,20 +362,21 @@ def test_share_and_friction_at_any_speed_are_within_their_stated_errors():
     assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= friction.viscous_friction.worst
 
 
-@pytest.mark.parametrize("definition", ["balanced", "published"])
-def test_friction_by_both_definitions_is_within_its_stated_error_over_the_whole_box(definition):
-    speed, load, kappa, share, J, pcx = columns("both")
-    groups = ball(speed, load, kappa)
-    J = J if definition == "balanced" else J - pcx
-    worst = []
-    for beta in (1.0, 0.3, 0.1):
-        found = friction.friction.function(groups, 1.0, beta, definition)
-        worst.append(np.abs(found / (share + viscous(groups, J, beta)) - 1).max())
-    assert 0.12 < max(worst) <= friction.friction.worst
-    inside = friction.viscous_friction.valid(groups)
-    found = friction.viscous_friction.function(groups, 0.1, definition)
-    error = np.abs(found / viscous(groups, J, 0.1) - 1)[inside]
-    assert error.max() <= (friction.viscous_friction.worst if definition == "balanced" else 0.08)
+def test_friction_by_both_definitions_is_within_its_stated_error_over_the_whole_box(subtests):
+    for definition in ["balanced", "published"]:
+        with subtests.test(definition=definition):
+            speed, load, kappa, share, J, pcx = columns("both")
+            groups = ball(speed, load, kappa)
+            J = J if definition == "balanced" else J - pcx
+            worst = []
+            for beta in (1.0, 0.3, 0.1):
+                found = friction.friction.function(groups, 1.0, beta, definition)
+                worst.append(np.abs(found / (share + viscous(groups, J, beta)) - 1).max())
+            assert 0.12 < max(worst) <= friction.friction.worst
+            inside = friction.viscous_friction.valid(groups)
+            found = friction.viscous_friction.function(groups, 0.1, definition)
+            error = np.abs(found / viscous(groups, J, 0.1) - 1)[inside]
+            assert error.max() <= (friction.viscous_friction.worst if definition == "balanced" else 0.08)
 
 
 def test_the_moment_of_slow_contact_pressure_is_that_of_its_quadrature_and_vanishes_with_the_contact():
@@ -431,13 +432,14 @@ def test_at_rest_and_without_roughness_the_uniform_law_of_friction_is_exact():
 QUICKLY = [each for each in FORMULAS if each.geometry == "point" and each.plane == "rest"]
 
 
-@pytest.mark.parametrize("formula", QUICKLY, ids=lambda formula: formula.name)
-def test_the_error_of_a_formula_at_rest_vanishes_with_the_stated_order_and_is_within_the_stated_one(formula):
-    errors = np.abs([relative_error(formula, formula.approach(step)) for step in formula.steps])
-    assert abs(order(formula.steps, errors) - formula.error_order) < 0.1
-    for step, error in zip(formula.steps, errors, strict=True):
-        if formula.valid(formula.approach(step)):
-            assert error <= 1.02 * formula.worst
+def test_the_error_of_a_formula_at_rest_vanishes_with_the_stated_order_and_is_within_the_stated_one(subtests):
+    for formula in QUICKLY:
+        with subtests.test(formula=formula):
+            errors = np.abs([relative_error(formula, formula.approach(step)) for step in formula.steps])
+            assert abs(order(formula.steps, errors) - formula.error_order) < 0.1
+            for step, error in zip(formula.steps, errors, strict=True):
+                if formula.valid(formula.approach(step)):
+                    assert error <= 1.02 * formula.worst
 
 
 @pytest.mark.slow

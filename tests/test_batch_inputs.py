@@ -72,9 +72,8 @@ def test_names_of_dimensions_join_arrays():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("inputs", "said"),
-    [
+def test_what_does_not_fit_is_a_sentence(subtests):
+    for inputs, said in [
         ({"speeed": [1]}, "speeed = 1 is not an input of LineContact; did you mean speed"),
         ({"speed": [1, 2], "load": [1, 2, 3]}, r"do not broadcast: speed \(2,\), load \(3,\)\."),
         ({"speed": [1, 2], "dims": ("a", "b")}, "must be 1 names"),
@@ -82,11 +81,10 @@ def test_names_of_dimensions_join_arrays():
         ({"speed": [[1, 2]], "dims": ("a", "a")}, "must be different names"),
         ({"speed": ["1 mm/s", "2 MPa"]}, "is a pressure"),
         ({"speed": [[1], [2, 3]]}, "rows have different lengths"),
-    ],
-)
-def test_what_does_not_fit_is_a_sentence(inputs, said):
-    with pytest.raises(sb.InputError, match=said):
-        sb.solve_batch(CONTACT, **inputs)
+    ]:
+        with subtests.test(inputs=inputs, said=said):
+            with pytest.raises(sb.InputError, match=said):
+                sb.solve_batch(CONTACT, **inputs)
 
 
 @pytest.mark.quick

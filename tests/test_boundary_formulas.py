@@ -54,31 +54,36 @@ def states_in_range(formula, random=4):
 # --- every formula ---
 
 
-@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
-def test_the_error_of_a_formula_falls_with_the_order_stated(formula):
-    errors = [relative_error(formula, formula.approach(small)) for small in formula.steps]
-    assert len(errors) == 3
-    assert np.polyfit(np.log(formula.steps), np.log(np.abs(errors)), 1)[0] == pytest.approx(formula.error_order, abs=0.1)
+def test_the_error_of_a_formula_falls_with_the_order_stated(subtests):
+    for formula in FORMULAS:
+        with subtests.test(formula=formula):
+            errors = [relative_error(formula, formula.approach(small)) for small in formula.steps]
+            assert len(errors) == 3
+            assert np.polyfit(np.log(formula.steps), np.log(np.abs(errors)), 1)[0] == pytest.approx(
+                formula.error_order, abs=0.1
+            )
 
 
-@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
-def test_the_worst_error_of_a_formula_in_its_range_is_the_one_stated(formula):
-    states = list(states_in_range(formula))
-    assert all(formula.valid(state) for state in states)
-    worst = max(abs(relative_error(formula, state)) for state in states)
-    assert 0.6 * formula.worst < worst < formula.worst
+def test_the_worst_error_of_a_formula_in_its_range_is_the_one_stated(subtests):
+    for formula in FORMULAS:
+        with subtests.test(formula=formula):
+            states = list(states_in_range(formula))
+            assert all(formula.valid(state) for state in states)
+            worst = max(abs(relative_error(formula, state)) for state in states)
+            assert 0.6 * formula.worst < worst < formula.worst
 
 
-@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
-def test_a_formula_is_described_and_has_its_source(formula):
-    document = get_doc_object(formula.function)
-    described = {name.strip() for entry in document["Parameters"] for name in entry.name.split(",")}
-    code = formula.function.__code__
-    assert described == set(code.co_varnames[: code.co_argcount])
-    assert document["Returns"]
-    assert ".. math::" in formula.__doc__
-    assert "Source:" in formula.__doc__
-    assert formula.source
+def test_a_formula_is_described_and_has_its_source(subtests):
+    for formula in FORMULAS:
+        with subtests.test(formula=formula):
+            document = get_doc_object(formula.function)
+            described = {name.strip() for entry in document["Parameters"] for name in entry.name.split(",")}
+            code = formula.function.__code__
+            assert described == set(code.co_varnames[: code.co_argcount])
+            assert document["Returns"]
+            assert ".. math::" in formula.__doc__
+            assert "Source:" in formula.__doc__
+            assert formula.source
 
 
 def test_the_formulas_have_names_of_their_own():
@@ -86,27 +91,29 @@ def test_the_formulas_have_names_of_their_own():
     assert all(hasattr(boundary, name) for name in boundary.__all__)
 
 
-@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
-def test_arrays_of_states_and_positions_give_what_each_of_them_gives(formula):
-    speed, load, kappa = np.array([[1e-13], [3e-12]]), np.array([0.02, 0.2, 0.4]), 1e-5
-    groups = sb.Groups(speed, load, kappa * load)
-    field = (np.array([-0.3, 0.0, 0.7]),) if formula.interval else ()
-    found = np.broadcast_to(formula.function(groups, *field), (2, 3))
-    for i, j in np.ndindex(2, 3):
-        one = sb.Groups(float(speed[i, 0]), float(load[j]), float(kappa * load[j]))
-        at = (float(field[0][j]),) if field else ()
-        assert np.ndim(formula.function(one, *at)) == 0
-        assert found[i, j] == pytest.approx(formula.function(one, *at), rel=1e-13, abs=1e-18)
+def test_arrays_of_states_and_positions_give_what_each_of_them_gives(subtests):
+    for formula in FORMULAS:
+        with subtests.test(formula=formula):
+            speed, load, kappa = np.array([[1e-13], [3e-12]]), np.array([0.02, 0.2, 0.4]), 1e-5
+            groups = sb.Groups(speed, load, kappa * load)
+            field = (np.array([-0.3, 0.0, 0.7]),) if formula.interval else ()
+            found = np.broadcast_to(formula.function(groups, *field), (2, 3))
+            for i, j in np.ndindex(2, 3):
+                one = sb.Groups(float(speed[i, 0]), float(load[j]), float(kappa * load[j]))
+                at = (float(field[0][j]),) if field else ()
+                assert np.ndim(formula.function(one, *at)) == 0
+                assert found[i, j] == pytest.approx(formula.function(one, *at), rel=1e-13, abs=1e-18)
 
 
 # --- dry contact ---
 
 
-@pytest.mark.parametrize(("formula", "order"), [(hertz.pressure, 0.2), (hertz.gap, 0.6), (hertz.offset, 0.6)])
-def test_smooth_contacts_tend_to_hertz_with_the_powers_of_their_film_and_its_edge(formula, order):
-    speeds = (1e-6, 1e-8, 1e-10)
-    errors = [relative_error(formula, sb.Groups(speed, 0.1, 0.0)) for speed in speeds]
-    assert orders(speeds, errors) == pytest.approx(order, abs=0.01)
+def test_smooth_contacts_tend_to_hertz_with_the_powers_of_their_film_and_its_edge(subtests):
+    for formula, order in [(hertz.pressure, 0.2), (hertz.gap, 0.6), (hertz.offset, 0.6)]:
+        with subtests.test(formula=formula, order=order):
+            speeds = (1e-6, 1e-8, 1e-10)
+            errors = [relative_error(formula, sb.Groups(speed, 0.1, 0.0)) for speed in speeds]
+            assert orders(speeds, errors) == pytest.approx(order, abs=0.01)
 
 
 def test_within_the_contact_the_rough_pressure_tends_to_hertz_as_kappa():
@@ -122,28 +129,30 @@ def test_within_the_contact_the_rough_pressure_tends_to_hertz_as_kappa():
 # --- at rest ---
 
 
-@pytest.mark.parametrize("kappa", [1e-4, 1e-2, 1.0, 100.0])
-def test_the_second_moment_of_the_pressure_at_rest_is_exact(kappa):
-    # From the change of the energy under a stretch of x at fixed load.
-    state = sb.solve(sb.Groups(0.0, 0.01, 0.01 * kappa), rtol=1e-9)
-    moment = state.mesh.weights @ (state.mesh.nodes**2 * state.nodal_pressures()[0])
-    assert moment == pytest.approx(math.pi / 8 * (1 + 4 * kappa), rel=1e-10)
+def test_the_second_moment_of_the_pressure_at_rest_is_exact(subtests):
+    for kappa in [1e-4, 1e-2, 1.0, 100.0]:
+        with subtests.test(kappa=kappa):
+            # From the change of the energy under a stretch of x at fixed load.
+            state = sb.solve(sb.Groups(0.0, 0.01, 0.01 * kappa), rtol=1e-9)
+            moment = state.mesh.weights @ (state.mesh.nodes**2 * state.nodal_pressures()[0])
+            assert moment == pytest.approx(math.pi / 8 * (1 + 4 * kappa), rel=1e-10)
 
 
-@pytest.mark.parametrize(("formula", "order"), [(rest.gap, 2.0), (rest.central_gap, 3.0), (rest.offset, 4.0)])
-def test_the_second_terms_at_rest_are_right(formula, order):
-    kappas = (4e-3, 2e-3, 1e-3)
-    x = POSITIONS[20:-20]
-    field = (x,) if formula.interval else ()
-    errors = []
-    for kappa in kappas:
-        state = sb.solve(sb.Groups(0.0, 0.1, 0.1 * kappa), rtol=1e-10)
-        right = state.profile(x).gap if field else getattr(state, formula.predicts)
-        found = [formula.function(state.groups, *field, terms=terms) for terms in (1, 2)]
-        first, second = (np.abs(value - right).max() for value in found)
-        assert second < 0.1 * first
-        errors.append(second / np.abs(right).max())
-    assert orders(kappas, errors) == pytest.approx(order, abs=0.1)
+def test_the_second_terms_at_rest_are_right(subtests):
+    for formula, order in [(rest.gap, 2.0), (rest.central_gap, 3.0), (rest.offset, 4.0)]:
+        with subtests.test(formula=formula, order=order):
+            kappas = (4e-3, 2e-3, 1e-3)
+            x = POSITIONS[20:-20]
+            field = (x,) if formula.interval else ()
+            errors = []
+            for kappa in kappas:
+                state = sb.solve(sb.Groups(0.0, 0.1, 0.1 * kappa), rtol=1e-10)
+                right = state.profile(x).gap if field else getattr(state, formula.predicts)
+                found = [formula.function(state.groups, *field, terms=terms) for terms in (1, 2)]
+                first, second = (np.abs(value - right).max() for value in found)
+                assert second < 0.1 * first
+                errors.append(second / np.abs(right).max())
+            assert orders(kappas, errors) == pytest.approx(order, abs=0.1)
 
 
 def test_the_second_term_of_small_indentation_is_right():
@@ -201,9 +210,10 @@ def nested_phi(load):
 
 
 @pytest.mark.filterwarnings("ignore::scipy.integrate.IntegrationWarning")
-@pytest.mark.parametrize("load", [1e-300, 1e-8, 0.1, 0.7, 0.99])
-def test_phi_has_ten_digits(load):
-    assert perturbation.phi(load) == pytest.approx(nested_phi(load), rel=2e-11)
+def test_phi_has_ten_digits(subtests):
+    for load in [1e-300, 1e-8, 0.1, 0.7, 0.99]:
+        with subtests.test(load=load):
+            assert perturbation.phi(load) == pytest.approx(nested_phi(load), rel=2e-11)
 
 
 def test_phi_does_not_depend_on_its_nodes(monkeypatch):
@@ -369,15 +379,16 @@ def test_the_printed_fluid_share_is_far_off():
     assert boundary.contact_load_share(groups) == 1 - true
 
 
-@pytest.mark.parametrize("definition", ["published", "balanced"])
-def test_the_viscous_friction_is_that_of_each_definition(definition):
-    kappas, errors = (1e-3, 1e-4, 1e-5), []
-    for kappa in kappas:
-        groups = slow(1e-3, kappa, 1e-6)
-        right = sb.solve(groups, rtol=1e-8).friction(beta=1.0, definition=definition).fluid
-        errors.append(boundary.viscous_friction.function(groups, 1.0, definition) / right - 1)
-    assert np.polyfit(np.log(kappas), np.log(np.abs(errors)), 1)[0] == pytest.approx(2 / 3, abs=0.06)
-    assert abs(errors[-1]) < 0.011
+def test_the_viscous_friction_is_that_of_each_definition(subtests):
+    for definition in ["published", "balanced"]:
+        with subtests.test(definition=definition):
+            kappas, errors = (1e-3, 1e-4, 1e-5), []
+            for kappa in kappas:
+                groups = slow(1e-3, kappa, 1e-6)
+                right = sb.solve(groups, rtol=1e-8).friction(beta=1.0, definition=definition).fluid
+                errors.append(boundary.viscous_friction.function(groups, 1.0, definition) / right - 1)
+            assert np.polyfit(np.log(kappas), np.log(np.abs(errors)), 1)[0] == pytest.approx(2 / 3, abs=0.06)
+            assert abs(errors[-1]) < 0.011
 
 
 def test_the_printed_viscous_friction_is_larger_by_a_number_over_kappa():
@@ -415,12 +426,13 @@ def test_loads_from_one_on_are_nan_and_said_so():
             assert np.isnan(law(groups, 0.3)).tolist() == [False, True, True]
 
 
-@pytest.mark.parametrize("groups", [sb.Groups(1e-8, 0.1, 0.0), sb.Groups(0.0, 0.1, 0.0), sb.Groups(1.0, 0.1, 100.0)], ids=str)
-def test_outside_its_range_a_formula_answers_and_says_so(groups):
-    for law in FORMULAS:
-        if not law.valid(groups):
-            with pytest.warns(OutOfRangeWarning, match=law.name):
-                law(groups, *((0.3,) if law.interval else ()))
+def test_outside_its_range_a_formula_answers_and_says_so(subtests):
+    for groups in [sb.Groups(1e-8, 0.1, 0.0), sb.Groups(0.0, 0.1, 0.0), sb.Groups(1.0, 0.1, 100.0)]:
+        with subtests.test(groups=groups):
+            for law in FORMULAS:
+                if not law.valid(groups):
+                    with pytest.warns(OutOfRangeWarning, match=law.name):
+                        law(groups, *((0.3,) if law.interval else ()))
 
 
 def test_from_the_edge_outwards_the_contact_has_no_gap():
@@ -430,10 +442,11 @@ def test_from_the_edge_outwards_the_contact_has_no_gap():
             assert np.isnan(law(groups, np.array([-1.5, -1.0, 0.0, 1.0]))).tolist() == [True, True, False, True]
 
 
-@pytest.mark.parametrize("load", [0.0, -0.1, math.nan, math.inf, "0.1", None, [0.1, -1.0]])
-def test_phi_refuses_what_is_no_load(load):
-    with pytest.raises(InputError, match="load"):
-        perturbation.phi(load)
+def test_phi_refuses_what_is_no_load(subtests):
+    for load in [0.0, -0.1, math.nan, math.inf, "0.1", None, [0.1, -1.0]]:
+        with subtests.test(load=load):
+            with pytest.raises(InputError, match="load"):
+                perturbation.phi(load)
 
 
 def test_unknown_forms_are_refused_by_name():

@@ -63,17 +63,15 @@ def test_an_exponential_law_takes_its_coefficients_from_the_surface_and_knows_it
     assert 0 < sb.solve(found).central_area_fraction < 1
 
 
-@pytest.mark.parametrize(
-    ("law", "kind"),
-    [("greenwood-williamson", GreenwoodWilliamson), ("greenwood-tripp", GreenwoodTripp)],
-)
-def test_asperities_give_the_coefficients_or_the_contact_does(case, law, kind):
-    found = sb.load_case(case(law, asperities=ASPERITIES)).contact
-    expected = kind.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
-    assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
-    assert found.law == kind()
-    bare = sb.load_case(case(law, {"alpha": "1.0"})).contact
-    assert (bare.alpha, bare.beta, bare.law) == (1.0, 0.06, kind())
+def test_asperities_give_the_coefficients_or_the_contact_does(subtests, case):
+    for law, kind in [("greenwood-williamson", GreenwoodWilliamson), ("greenwood-tripp", GreenwoodTripp)]:
+        with subtests.test(law=law, kind=kind):
+            found = sb.load_case(case(law, asperities=ASPERITIES)).contact
+            expected = kind.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
+            assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
+            assert found.law == kind()
+            bare = sb.load_case(case(law, {"alpha": "1.0"})).contact
+            assert (bare.alpha, bare.beta, bare.law) == (1.0, 0.06, kind())
 
 
 def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_one_in_disguise(case):
@@ -94,9 +92,8 @@ def test_a_table_is_read_beside_its_case_with_or_without_units(case):
         assert law.pressure == pytest.approx(plain.pressure, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("law", "changes", "tables", "sentence"),
-    [
+def test_what_is_wrong_with_a_law_is_told_in_one_sentence(subtests, case, capsys):
+    for law, changes, tables, sentence in [
         ("persson", OF_SURFACE, {}, "the table [surface] is missing, which law = 'persson' needs; give h_rms"),
         ("persson", {"beta": "0.06"}, {"surface": SURFACE}, "[contact] beta = 0.06 follows from the table [surface]; remove"),
         ("persson", {}, {"surface": SURFACE | {"hurst": "1.5"}}, "[surface] hurst = 1.5"),
@@ -129,13 +126,12 @@ def test_a_table_is_read_beside_its_case_with_or_without_units(case):
         ("table", {}, {"table": {"file": "3"}}, "[table] file = 3 must be text in quotes"),
         ("table", {}, {"table": {}}, "[table] file is missing; add the name of a CSV file"),
         ("linear", {}, {}, "[contact] law = 'linear' must be one of 'exponential', 'persson'"),
-    ],
-)
-def test_what_is_wrong_with_a_law_is_told_in_one_sentence(case, capsys, law, changes, tables, sentence):
-    answer = call(capsys, "solve", case(law, changes, **tables))
-    assert answer.code == 2 and answer.out == ""
-    assert len(answer.err.strip().splitlines()) == 1
-    assert sentence in answer.err
+    ]:
+        with subtests.test(law=law, changes=changes, tables=tables, sentence=sentence):
+            answer = call(capsys, "solve", case(law, changes, **tables))
+            assert answer.code == 2 and answer.out == ""
+            assert len(answer.err.strip().splitlines()) == 1
+            assert sentence in answer.err
 
 
 def test_every_output_names_the_law_and_its_parameters(case, capsys, tmp_path):
@@ -278,9 +274,8 @@ def test_a_surface_may_give_the_shape_of_its_law_alone(case):
     assert (found.law.log_pressure(s) == whole.law.log_pressure(s)).all()
 
 
-@pytest.mark.parametrize(
-    ("law", "tables", "sentence"),
-    [
+def test_wrong_lists_are_refused_in_a_sentence(subtests, case):
+    for law, tables, sentence in [
         ("table", {"table": {"file": '"law.csv"', "pressure": "[1]"}}, "[table] file = 'law.csv' and pressure are both given"),
         ("table", {"table": {"separation": "[0, 1, 2, 4]"}}, "[table] pressure is missing; add as many numbers"),
         ("table", {"table": {"separation": "[0, 1]", "pressure": "[1]"}}, "separation has 2 numbers and pressure 1"),
@@ -293,23 +288,23 @@ def test_a_surface_may_give_the_shape_of_its_law_alone(case):
         ("persson", {"surface": SURFACE | {"density": "[1.0]"}}, "follows from the spectrum; remove one of them"),
         ("persson", {"surface": SURFACE | {"shape_only": '"yes"'}}, "[surface] shape_only = 'yes' must be true or false"),
         ("persson", {"surface": SURFACE | {"shape_only": "true"}}, "[contact] alpha is missing"),
-    ],
-)
-def test_wrong_lists_are_refused_in_a_sentence(case, law, tables, sentence):
-    with pytest.raises(sb.InputError) as problem:
-        sb.load_case(case(law, **tables))
-    assert sentence in str(problem.value)
+    ]:
+        with subtests.test(law=law, tables=tables, sentence=sentence):
+            with pytest.raises(sb.InputError) as problem:
+                sb.load_case(case(law, **tables))
+            assert sentence in str(problem.value)
 
 
 # --- one word ---
 
 
-@pytest.mark.parametrize("law", ["greenwood-williamson", "greenwood-tripp"])
-@pytest.mark.parametrize("command", ["check", "solve", "curve", "regimes"])
-def test_a_law_refuses_the_alpha_of_another_and_says_what_its_own_numbers_are(capsys, case, command, law):
-    answer = call(capsys, command, case(law))
-    assert answer.code == 2 and answer.out == ""
-    assert "alpha = 2 is of another contact law" in answer.err and "[asperities]" in answer.err
+def test_a_law_refuses_the_alpha_of_another_and_says_what_its_own_numbers_are(subtests, capsys, case):
+    for command in ["check", "solve", "curve", "regimes"]:
+        for law in ["greenwood-williamson", "greenwood-tripp"]:
+            with subtests.test(command=command, law=law):
+                answer = call(capsys, command, case(law))
+                assert answer.code == 2 and answer.out == ""
+                assert "alpha = 2 is of another contact law" in answer.err and "[asperities]" in answer.err
 
 
 def test_a_contact_takes_the_name_of_a_law_as_solve_does():

@@ -50,36 +50,32 @@ def test_the_tables_become_parts_of_the_contact():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("table", "fluid"),
-    [
+def test_every_model_of_a_fluid_is_read(subtests):
+    for table, fluid in [
         ({"model": "eyring", "stress": "5 MPa"}, sb.fluids.Fluid(sb.fluids.Eyring(5e6))),
         ({"model": "cross", "relaxation_time": 0.1, "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.Cross(0.1, 0.7))),
         ({"model": "power-law", "relaxation_time": "1 s", "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.PowerLaw(1.0, 0.7))),
         ({"pressure_viscosity": "15 1/GPa"}, sb.fluids.Fluid(viscosity=sb.fluids.Barus(1.5e-8))),
         ({}, sb.fluids.Fluid()),
-    ],
-)
-def test_every_model_of_a_fluid_is_read(table, fluid):
-    assert case_of(fluid=table).contact.fluid == fluid
+    ]:
+        with subtests.test(table=table, fluid=fluid):
+            assert case_of(fluid=table).contact.fluid == fluid
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("table", "solid"),
-    [
+def test_every_solid_is_read(subtests):
+    for table, solid in [
         ({"retardation_time": "10 ms", "modulus_ratio": 3}, sb.solids.StandardLinearSolid(0.01, 3.0)),
         ({"relaxation_times": ["1 ms", 0.01], "moduli": [1.0, 0.5]}, sb.solids.Prony((1e-3, 0.01), (1.0, 0.5))),
         (
             {"retardation_time": "10 ms", "modulus_ratio": 3, "layer_thickness": "2 mm", "poisson_ratio": 0.4},
             sb.solids.StandardLinearSolid(0.01, 3.0, sb.solids.Layer(2e-3, 0.4)),
         ),
-    ],
-)
-def test_every_solid_is_read(table, solid):
-    contact = case_of(solid=table).contact
-    assert contact.solid == solid
-    assert contact.groups.model.solid.uses_speed
+    ]:
+        with subtests.test(table=table, solid=solid):
+            contact = case_of(solid=table).contact
+            assert contact.solid == solid
+            assert contact.groups.model.solid.uses_speed
 
 
 @pytest.mark.quick
@@ -113,9 +109,8 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("tables", "said"),
-    [
+def test_what_is_wrong_in_a_table_is_said_with_its_name(subtests):
+    for tables, said in [
         ({"fluid": {"model": "carreau"}}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
         ({"fluid": {"model": "eyring", "stress": "5 MPa", "exponent": 1}}, r"\[fluid\] exponent = 1 is given, but model"),
         ({"fluid": {"modle": "carreau"}}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
@@ -174,22 +169,22 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ),
         ({"solid": {"retardation_time": "1 s", "moduli": [1]}}, r"\[solid\] .* two descriptions"),
         ({"solid": {"relaxation_times": "1 s", "moduli": [1]}}, r"\[solid\] relaxation_times = '1 s' must be a list"),
-    ],
-)
-def test_what_is_wrong_in_a_table_is_said_with_its_name(tables, said):
-    with pytest.raises(sb.InputError, match=said):
-        case_of(**tables)
+    ]:
+        with subtests.test(tables=tables, said=said):
+            with pytest.raises(sb.InputError, match=said):
+                case_of(**tables)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("geometry", ["line", "point"])
-def test_slide_to_roll_may_stand_in_contact_or_motion_but_not_in_both(geometry):
-    base = {**CONTACT, "geometry": geometry} | ({"load": "50 mN"} if geometry == "point" else {})
-    given = case_of({**base, "slide_to_roll": 0.5})
-    assert given.contact.slide_to_roll == 0.5
-    assert given.contact == case_of(base, motion={"slide_to_roll": 0.5}).contact
-    with pytest.raises(sb.InputError, match=r"0.5 in \[contact\] and 1 in \[motion\] are both given; remove one"):
-        case_of({**base, "slide_to_roll": 0.5}, motion={"slide_to_roll": 1})
+def test_slide_to_roll_may_stand_in_contact_or_motion_but_not_in_both(subtests):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            base = {**CONTACT, "geometry": geometry} | ({"load": "50 mN"} if geometry == "point" else {})
+            given = case_of({**base, "slide_to_roll": 0.5})
+            assert given.contact.slide_to_roll == 0.5
+            assert given.contact == case_of(base, motion={"slide_to_roll": 0.5}).contact
+            with pytest.raises(sb.InputError, match=r"0.5 in \[contact\] and 1 in \[motion\] are both given; remove one"):
+                case_of({**base, "slide_to_roll": 0.5}, motion={"slide_to_roll": 1})
 
 
 @pytest.mark.quick

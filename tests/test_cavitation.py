@@ -23,20 +23,21 @@ def suction(solution):
     return -float(found) * solution.contact.hertz.pressure
 
 
-@pytest.mark.parametrize(("atmospheres", "notes"), [(0.95, 0), (1.05, 1), (30.0, 1)])
-def test_suction_above_an_atmosphere_is_noted_with_its_value(atmospheres, notes):
+def test_suction_above_an_atmosphere_is_noted_with_its_value(subtests):
     """All pressures are multiplied by one factor, so that the groups stay and the suction in Pa alone changes."""
-    contact = sb.load_case(PDMS).contact.replace(speed="0.1 m/s")
-    factor = atmospheres * ATMOSPHERE / suction(sb.solve(contact))
-    names = ("modulus", "load", "viscosity")
-    scaled = contact.replace(**{name: factor * getattr(contact, name) for name in names})
-    assert scaled.groups.speed == pytest.approx(contact.groups.speed)
-    for solution in (sb.solve(scaled), Neighbours(1e-6).solution(scaled.groups, scaled)):
-        found = noted(solution)
-        assert len(found) == notes
-        assert all(f"falls {atmospheres * ATMOSPHERE / 1e6:.3g} MPa below the ambient" in note for note in found)
-    assert noted(sb.solve(scaled.replace(speed=0.0))) == []
-    assert noted(sb.solve(scaled.groups)) == []
+    for atmospheres, notes in [(0.95, 0), (1.05, 1), (30.0, 1)]:
+        with subtests.test(atmospheres=atmospheres, notes=notes):
+            contact = sb.load_case(PDMS).contact.replace(speed="0.1 m/s")
+            factor = atmospheres * ATMOSPHERE / suction(sb.solve(contact))
+            names = ("modulus", "load", "viscosity")
+            scaled = contact.replace(**{name: factor * getattr(contact, name) for name in names})
+            assert scaled.groups.speed == pytest.approx(contact.groups.speed)
+            for solution in (sb.solve(scaled), Neighbours(1e-6).solution(scaled.groups, scaled)):
+                found = noted(solution)
+                assert len(found) == notes
+                assert all(f"falls {atmospheres * ATMOSPHERE / 1e6:.3g} MPa below the ambient" in note for note in found)
+            assert noted(sb.solve(scaled.replace(speed=0.0))) == []
+            assert noted(sb.solve(scaled.groups)) == []
 
 
 def test_a_curve_tells_once_from_where_on():

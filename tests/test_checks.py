@@ -60,29 +60,27 @@ def test_a_soft_contact_is_fine_and_steel_is_outside():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("name", "fact", "values"),
-    [
+def test_a_verdict_turns_at_its_limits(subtests):
+    for name, fact, values in [
         ("Hertz pressure", "pressure_viscosity", (0.09, 0.11, 1.1)),
         ("layer a/thickness", "layer_thickness", (1 / 0.29, 1 / 0.31, 1 / 1.1)),
         ("loss tangent", "loss_tangent", (0.09, 0.11, 0.31)),
         ("viscous heating", "thermal_thinning", (0.09, 0.11, 1.1)),
         ("rms slope of the roughness", "rms_slope", (0.29, 0.31, 1.1)),
-    ],
-)
-def test_a_verdict_turns_at_its_limits(name, fact, values):
-    scale = {
-        "pressure_viscosity": 1 / TRUE.hertz.pressure,
-        "layer_thickness": TRUE.hertz.half_width,
-        "loss_tangent": 1.0,
-        "rms_slope": 1.0,
-        "thermal_thinning": 8 * 0.15 / (TRUE.viscosity * TRUE.speed**2),
-    }[fact]
-    for value, verdict in zip(values, ORDER, strict=True):
-        found = checks_of(Subject(TRUE, {fact: value * scale}), "contact")[name]
-        assert found.verdict == verdict, value
-        ratio = found.limit / found.value if found.at_least else found.value / found.limit
-        assert (ratio <= 1 + 1e-12) == (verdict == "fine")
+    ]:
+        with subtests.test(name=name, fact=fact, values=values):
+            scale = {
+                "pressure_viscosity": 1 / TRUE.hertz.pressure,
+                "layer_thickness": TRUE.hertz.half_width,
+                "loss_tangent": 1.0,
+                "rms_slope": 1.0,
+                "thermal_thinning": 8 * 0.15 / (TRUE.viscosity * TRUE.speed**2),
+            }[fact]
+            for value, verdict in zip(values, ORDER, strict=True):
+                found = checks_of(Subject(TRUE, {fact: value * scale}), "contact")[name]
+                assert found.verdict == verdict, value
+                ratio = found.limit / found.value if found.at_least else found.value / found.limit
+                assert (ratio <= 1 + 1e-12) == (verdict == "fine")
 
 
 @pytest.mark.quick
@@ -443,10 +441,11 @@ OUT_OF_RANGE_BALLS = {
 ALL_OUT_OF_RANGE = OUT_OF_RANGE | OUT_OF_RANGE_BALLS
 
 
-@pytest.mark.parametrize("contact", ALL_OUT_OF_RANGE.values(), ids=ALL_OUT_OF_RANGE)
-def test_what_a_note_of_a_state_doubts_a_check_doubts(contact):
-    state = sb.solve(contact, rtol=1e-3)
-    assert undoubted(state.notes, checks_of_solution(state)) == []
+def test_what_a_note_of_a_state_doubts_a_check_doubts(subtests):
+    for contact in ALL_OUT_OF_RANGE.values():
+        with subtests.test(contact=contact):
+            state = sb.solve(contact, rtol=1e-3)
+            assert undoubted(state.notes, checks_of_solution(state)) == []
 
 
 def test_what_a_note_of_a_curve_doubts_its_checks_doubt():

@@ -79,19 +79,17 @@ def test_parts_of_the_model_are_options_too(capsys, tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
+def test_impossible_parts_of_the_model_are_refused(subtests, capsys):
+    for options, said in [
         (("--slide-to-roll", "fast"), "slide_to_roll"),
         (("--cavitation", "swift"), "cavitation = 'swift' must be 'none', 'exit'"),
         (("--cavity-pressure", "-1"), "needs cavitation = 'reform'"),
         (("--flow-factors", "patir"), "flow_factors = 'patir'"),
-    ],
-)
-def test_impossible_parts_of_the_model_are_refused(capsys, options, said):
-    answer = call(capsys, "solve", *GROUPS, *options)
-    assert (answer.code, answer.out) == (2, "")
-    assert said in answer.err
+    ]:
+        with subtests.test(options=options, said=said):
+            answer = call(capsys, "solve", *GROUPS, *options)
+            assert (answer.code, answer.out) == (2, "")
+            assert said in answer.err
 
 
 @pytest.mark.quick
@@ -125,9 +123,10 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
     assert (found["units"]["central_film_thickness"], found["units"]["load"]) == ("m", "N/m")
 
 
-@pytest.mark.parametrize(("groups", "missing"), [(("0.1", "0.1", "0"), "lambda_ratio"), (("0", "5", "1e-3"), "flux_gap")])
-def test_json_knows_no_nan_and_no_infinity(capsys, groups, missing):
-    assert strict_json(call(capsys, "solve", "--groups", *groups, "--json").out)[missing] is None
+def test_json_knows_no_nan_and_no_infinity(subtests, capsys):
+    for groups, missing in [(("0.1", "0.1", "0"), "lambda_ratio"), (("0", "5", "1e-3"), "flux_gap")]:
+        with subtests.test(groups=groups, missing=missing):
+            assert strict_json(call(capsys, "solve", "--groups", *groups, "--json").out)[missing] is None
 
 
 @pytest.mark.quick
@@ -220,9 +219,10 @@ def test_solve_draws_a_profile(capsys, tmp_path):
     assert b"<svg" in (tmp_path / "profile.svg").read_bytes()
 
 
-@pytest.mark.parametrize("path", sorted({*EXAMPLES.glob("*.toml")} - {SWEEP}), ids=lambda path: path.stem)
-def test_every_example_case_is_solved(capsys, path):
-    assert call(capsys, "solve", path).code == 0
+def test_every_example_case_is_solved(subtests, capsys):
+    for path in sorted({*EXAMPLES.glob("*.toml")} - {SWEEP}):
+        with subtests.test(path=path):
+            assert call(capsys, "solve", path).code == 0
 
 
 # --- curve ---
@@ -303,21 +303,31 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     assert found["files"] == [str(tmp_path / "curve.csv")]
 
 
-@pytest.mark.parametrize(
-    ("over", "fixed", "ends", "constant"),
-    [
+def test_a_curve_of_groups_takes_the_two_that_stay_fixed(subtests, capsys):
+    for over, fixed, ends, constant in [
         ("speed", ("0.1", "1e-3"), ("1e-3", "1"), {"load_group": 0.1, "roughness_group": 1e-3}),
         ("load", ("1e-3", "1e-3"), ("0.01", "0.1"), {"speed_group": 1e-3, "roughness_group": 1e-3}),
         ("roughness", ("1e-3", "0.1"), ("1e-4", "1e-3"), {"speed_group": 1e-3, "load_group": 0.1}),
-    ],
-)
-def test_a_curve_of_groups_takes_the_two_that_stay_fixed(capsys, over, fixed, ends, constant):
-    tokens = ("--groups", *fixed, "--over", over, "--range", *ends, "--points", "2", "--boundary-friction", "0.5", "--json")
-    found = strict_json(call(capsys, "curve", *tokens).out)
-    assert found["points"]["value"] == pytest.approx([float(end) for end in ends])
-    assert found["boundary_friction"] == 0.5
-    for name, value in constant.items():
-        assert found["points"][name] == pytest.approx([value, value])
+    ]:
+        with subtests.test(over=over, fixed=fixed, ends=ends, constant=constant):
+            tokens = (
+                "--groups",
+                *fixed,
+                "--over",
+                over,
+                "--range",
+                *ends,
+                "--points",
+                "2",
+                "--boundary-friction",
+                "0.5",
+                "--json",
+            )
+            found = strict_json(call(capsys, "curve", *tokens).out)
+            assert found["points"]["value"] == pytest.approx([float(end) for end in ends])
+            assert found["boundary_friction"] == 0.5
+            for name, value in constant.items():
+                assert found["points"][name] == pytest.approx([value, value])
 
 
 def test_a_range_of_loads_of_a_ball_is_one_of_forces(capsys):
@@ -538,11 +548,12 @@ def test_a_terminal_without_greek_and_micro_is_served(tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("command", [(), ("solve",), ("curve",), ("regimes",), ("sweep",)])
-def test_every_help_has_an_example(capsys, command):
-    answer = call(capsys, *command, "--help")
-    assert answer.code == 0
-    assert f"Example: {' '.join(['stribeck', *command])}" in answer.out
+def test_every_help_has_an_example(subtests, capsys):
+    for command in [(), ("solve",), ("curve",), ("regimes",), ("sweep",)]:
+        with subtests.test(command=command):
+            answer = call(capsys, *command, "--help")
+            assert answer.code == 0
+            assert f"Example: {' '.join(['stribeck', *command])}" in answer.out
 
 
 def test_the_examples_of_the_help_run(capsys, tmp_path, monkeypatch):
@@ -768,16 +779,17 @@ def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
         raise sb.SolveError(Outcome.PATH_LOST, None, "lost")
 
 
-@pytest.mark.parametrize("handler", [signal.default_int_handler, signal.SIG_IGN])
-def test_the_handler_of_ctrl_c_is_put_back_and_a_shell_that_ignores_it_respected(handler):
-    before = signal.signal(signal.SIGINT, handler)
-    try:
-        with progress_module.interruptible() as progress:
-            during = signal.getsignal(signal.SIGINT)
-            assert during == (signal.SIG_IGN if handler is signal.SIG_IGN else progress.interrupt)
-        assert signal.getsignal(signal.SIGINT) is handler
-    finally:
-        signal.signal(signal.SIGINT, before)
+def test_the_handler_of_ctrl_c_is_put_back_and_a_shell_that_ignores_it_respected(subtests):
+    for handler in [signal.default_int_handler, signal.SIG_IGN]:
+        with subtests.test(handler=handler):
+            before = signal.signal(signal.SIGINT, handler)
+            try:
+                with progress_module.interruptible() as progress:
+                    during = signal.getsignal(signal.SIGINT)
+                    assert during == (signal.SIG_IGN if handler is signal.SIG_IGN else progress.interrupt)
+                assert signal.getsignal(signal.SIGINT) is handler
+            finally:
+                signal.signal(signal.SIGINT, before)
 
 
 def test_progress_is_shown_on_a_terminal_only(tmp_path):

@@ -86,14 +86,15 @@ def marched(correct, start, stop, *, first, longest, shortest, order=3, **option
     return march(correct, start, stop, Steps(first, longest, shortest, order), **options)
 
 
-@pytest.mark.parametrize(("start", "stop"), [(0.0, 3.0), (3.0, -1.0), (-2.0, 0.1)])
-def test_a_march_hits_its_ends_exactly(start, stop):
-    path = marched(Corrector(), start, stop, **LENGTHS)
-    assert path.outcome.ok
-    assert (path.coordinates[0], path.coordinates[-1]) == (start, stop)
-    steps = np.diff(path.coordinates) * np.sign(stop - start)
-    assert (steps > 0.0).all()
-    assert steps.max() <= 0.5 * (1 + 1e-12)
+def test_a_march_hits_its_ends_exactly(subtests):
+    for start, stop in [(0.0, 3.0), (3.0, -1.0), (-2.0, 0.1)]:
+        with subtests.test(start=start, stop=stop):
+            path = marched(Corrector(), start, stop, **LENGTHS)
+            assert path.outcome.ok
+            assert (path.coordinates[0], path.coordinates[-1]) == (start, stop)
+            steps = np.diff(path.coordinates) * np.sign(stop - start)
+            assert (steps > 0.0).all()
+            assert steps.max() <= 0.5 * (1 + 1e-12)
 
 
 def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
@@ -186,15 +187,13 @@ def test_extrapolation_is_exact_for_polynomials_of_its_order():
     assert extrapolation_weights([4.0], 5.0).tolist() == [1.0]
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
+def test_march_refuses_impossible_arguments_by_name(subtests):
+    for name, arguments in [
         ("shortest", {"shortest": 0.0}),
         ("longest", {"longest": 0.05}),
         ("stop", {"stop": math.inf}),
         ("history", {"history": [(0.5, Plain(0.5))]}),
-    ],
-)
-def test_march_refuses_impossible_arguments_by_name(name, arguments):
-    with pytest.raises(ValueError, match=name):
-        marched(Corrector(), **({"start": 0.0, "stop": 2.0} | LENGTHS | arguments))
+    ]:
+        with subtests.test(name=name, arguments=arguments):
+            with pytest.raises(ValueError, match=name):
+                marched(Corrector(), **({"start": 0.0, "stop": 2.0} | LENGTHS | arguments))

@@ -64,25 +64,23 @@ def test_a_pair_is_a_range_with_points_evenly_in_the_logarithm():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("over", "ends"),
-    [
+def test_every_point_is_the_state_that_a_single_solve_finds(subtests):
+    for over, ends in [
         ("speed", ("0.3 mm/s", "0.1 m/s")),
         ("load", ("8 N/m", "150 N/m")),
         ("roughness", ("0.2 um", "5 um")),
-    ],
-)
-def test_every_point_is_the_state_that_a_single_solve_finds(over, ends):
-    curve = sb.stribeck_curve(CONTACT, **{over: ends}, points=4)
-    assert curve.over == over
-    for i, value in enumerate(curve.values):
-        alone = sb.solve(CONTACT.replace(**{over: float(value)}), rtol=1e-8)
-        single = alone.friction()
-        assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction.error[i] + single.error))
-        for name in ("central_gap", "minimum_gap", "flux_gap", "contact_load_share"):
-            both = curve.rtol + alone.rtol
-            assert curve.observable(name)[i] == pytest.approx(getattr(alone, name), rel=2 * both, abs=2 * both)
-        assert curve.hersey_number[i] == pytest.approx(alone.hersey_number, rel=1e-12)
+    ]:
+        with subtests.test(over=over, ends=ends):
+            curve = sb.stribeck_curve(CONTACT, **{over: ends}, points=4)
+            assert curve.over == over
+            for i, value in enumerate(curve.values):
+                alone = sb.solve(CONTACT.replace(**{over: float(value)}), rtol=1e-8)
+                single = alone.friction()
+                assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction.error[i] + single.error))
+                for name in ("central_gap", "minimum_gap", "flux_gap", "contact_load_share"):
+                    both = curve.rtol + alone.rtol
+                    assert curve.observable(name)[i] == pytest.approx(getattr(alone, name), rel=2 * both, abs=2 * both)
+                assert curve.hersey_number[i] == pytest.approx(alone.hersey_number, rel=1e-12)
 
 
 @pytest.mark.quick
@@ -144,13 +142,14 @@ def test_progress_counts_every_point_once():
 # --- the automatic range ---
 
 
-@pytest.mark.parametrize("definition", ["published", "balanced"])
-def test_the_automatic_range_reaches_from_the_plateau_to_the_hydrodynamic_branch(definition):
-    curve = sb.stribeck_curve(CONTACT, points=13, definition=definition)
-    assert curve.friction[0] == pytest.approx(0.7, rel=1e-3)
-    assert curve.friction.asperities[-1] < 1e-3 * curve.friction[-1]
-    assert curve.friction[-1] > 3 * curve.minimum.friction
-    assert [regime for regime, _, _ in curve.regime_ranges] == ["boundary", "mixed", "hydrodynamic"]
+def test_the_automatic_range_reaches_from_the_plateau_to_the_hydrodynamic_branch(subtests):
+    for definition in ["published", "balanced"]:
+        with subtests.test(definition=definition):
+            curve = sb.stribeck_curve(CONTACT, points=13, definition=definition)
+            assert curve.friction[0] == pytest.approx(0.7, rel=1e-3)
+            assert curve.friction.asperities[-1] < 1e-3 * curve.friction[-1]
+            assert curve.friction[-1] > 3 * curve.minimum.friction
+            assert [regime for regime, _, _ in curve.regime_ranges] == ["boundary", "mixed", "hydrodynamic"]
 
 
 def test_beyond_the_range_of_the_law_the_plateau_is_lower_and_found_too():
@@ -170,21 +169,22 @@ def test_a_smooth_contact_has_no_plateau_and_covers_ten_decades():
 # --- minimum and transitions ---
 
 
-@pytest.mark.parametrize("definition", ["published", "balanced"])
-def test_the_minimum_lies_where_the_slope_of_cold_solves_vanishes(curve, published, definition):
-    found = {"published": published, "balanced": curve}[definition].minimum
-    step = 0.02
+def test_the_minimum_lies_where_the_slope_of_cold_solves_vanishes(subtests, curve, published):
+    for definition in ["published", "balanced"]:
+        with subtests.test(definition=definition):
+            found = {"published": published, "balanced": curve}[definition].minimum
+            step = 0.02
 
-    def slope(s):
-        f = [math.log(friction(math.exp(s + k * step), definition, 1e-10)) for k in (-2, -1, 1, 2)]
-        return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
+            def slope(s):
+                f = [math.log(friction(math.exp(s + k * step), definition, 1e-10)) for k in (-2, -1, 1, 2)]
+                return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
 
-    s = math.log(found.value)
-    # The straight line through two slopes at a small distance: its zero is that of the slope to second order in it.
-    low, high = slope(s - 1e-4), slope(s + 1e-4)
-    assert low < 0 < high
-    root = s - 1e-4 + 2e-4 * low / (low - high)
-    assert root == pytest.approx(s, abs=1e-6)
+            s = math.log(found.value)
+            # The straight line through two slopes at a small distance: its zero is that of the slope to second order in it.
+            low, high = slope(s - 1e-4), slope(s + 1e-4)
+            assert low < 0 < high
+            root = s - 1e-4 + 2e-4 * low / (low - high)
+            assert root == pytest.approx(s, abs=1e-6)
 
 
 def test_the_minimum_is_no_higher_than_golden_section_finds_it_on_cold_solves(curve):
@@ -262,11 +262,14 @@ def test_regimes_follow_one_another_and_meet_at_the_transitions(curve):
         assert [name for name, low, high in ranges if low <= value <= high] == [regime]
 
 
-@pytest.mark.parametrize("points", [2, 3, 5])
-def test_regimes_of_few_points_meet_at_the_same_places(curve, points):
+def test_regimes_of_few_points_meet_at_the_same_places(subtests, curve):
     """Where the load is shared in halves no regime ends; and between two points a whole regime may lie."""
-    for (name, low, high), (other, from_, to) in zip(curve.sampled(points).regime_ranges, curve.regime_ranges, strict=True):
-        assert (name, low, high) == (other, pytest.approx(from_, rel=1e-5), pytest.approx(to, rel=1e-5))
+    for points in [2, 3, 5]:
+        with subtests.test(points=points):
+            for (name, low, high), (other, from_, to) in zip(
+                curve.sampled(points).regime_ranges, curve.regime_ranges, strict=True
+            ):
+                assert (name, low, high) == (other, pytest.approx(from_, rel=1e-5), pytest.approx(to, rel=1e-5))
 
 
 def test_where_asperities_hardly_rub_no_mixed_regime_is_put_between_two_points():
@@ -306,9 +309,8 @@ def test_each_kind_of_note_is_told_once(curve):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
+def test_arguments_that_cannot_be_are_refused(subtests):
+    for arguments, words in [
         ({"points": 0}, "points = 0; it must be a whole number from 2 to 100000"),
         ({"points": 1}, "points = 1; it must be a whole number"),
         ({"points": 2.5}, r"points = 2\.5; it must be a whole number"),
@@ -326,11 +328,10 @@ def test_each_kind_of_note_is_told_once(curve):
         ({"rtol": 1e-20}, "rtol = 1e-20; it must be a number from 1e-11"),
         ({"definition": "mine"}, "definition = 'mine' must be 'balanced' or 'published'"),
         ({"boundary_friction": -1}, "boundary_friction = -1 must be zero or positive"),
-    ],
-)
-def test_arguments_that_cannot_be_are_refused(arguments, words):
-    with pytest.raises(sb.InputError, match=words):
-        sb.stribeck_curve(CONTACT, **arguments)
+    ]:
+        with subtests.test(arguments=arguments, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                sb.stribeck_curve(CONTACT, **arguments)
 
 
 def test_groups_that_are_missing_are_named():

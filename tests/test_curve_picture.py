@@ -71,15 +71,16 @@ def test_picture_and_text_of_the_command_say_what_check_says(extra, drawn, capsy
     assert (sentence in caption(drawn[0])) == (not extra)
 
 
-@pytest.mark.parametrize("speeds", [("1 mm/s", "1 m/s"), ("0.1 mm/s", "3 mm/s")])
-def test_a_curve_off_the_atlas_is_hatched_where_the_solved_one_is(speeds):
-    contact = sb.load_case(PDMS).contact
-    solved = sb.stribeck_curve(contact, speed=speeds, points=12, rtol=1e-4)
-    read = sb.stribeck_curve(contact, speed=speeds, points=12, method="atlas")
-    strips = [hatched(each.plot().axes[0]) for each in (solved, read)]
-    assert len(strips[0]) == len(strips[1])
-    np.testing.assert_array_equal(solved.law_in_doubt, read.law_in_doubt)
-    assert bool(strips[0]) == solved.law_in_doubt.any()
+def test_a_curve_off_the_atlas_is_hatched_where_the_solved_one_is(subtests):
+    for speeds in [("1 mm/s", "1 m/s"), ("0.1 mm/s", "3 mm/s")]:
+        with subtests.test(speeds=speeds):
+            contact = sb.load_case(PDMS).contact
+            solved = sb.stribeck_curve(contact, speed=speeds, points=12, rtol=1e-4)
+            read = sb.stribeck_curve(contact, speed=speeds, points=12, method="atlas")
+            strips = [hatched(each.plot().axes[0]) for each in (solved, read)]
+            assert len(strips[0]) == len(strips[1])
+            np.testing.assert_array_equal(solved.law_in_doubt, read.law_in_doubt)
+            assert bool(strips[0]) == solved.law_in_doubt.any()
 
 
 def test_groups_are_judged_by_the_coefficients_that_are_given():

@@ -136,9 +136,8 @@ def test_ra_is_the_height_of_a_surface_with_a_spectrum_too(tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("value", "dimension", "expected"),
-    [
+def test_an_error_is_read_in_each_way_that_it_is_written(subtests):
+    for value, dimension, expected in [
         ("1.0 +- 0.2 um", "length", (1e-6, 0.2)),
         ("1.0 ± 0.2 um", "length", (1e-6, 0.2)),
         ("1.0 um +- 20 %", "length", (1e-6, 0.2)),
@@ -148,12 +147,11 @@ def test_ra_is_the_height_of_a_surface_with_a_spectrum_too(tmp_path):
         ({"value": 0.3, "error": 0.06}, "number", (0.3, 0.2)),
         ("1.0 um", "length", ("1.0 um", None)),
         ("1e-6 m", "length", ("1e-6 m", None)),
-    ],
-)
-def test_an_error_is_read_in_each_way_that_it_is_written(value, dimension, expected):
-    found, error = split_error("roughness", value, dimension)
-    assert found == (pytest.approx(expected[0]) if error is not None else expected[0])
-    assert error == (None if expected[1] is None else pytest.approx(expected[1]))
+    ]:
+        with subtests.test(value=value, dimension=dimension, expected=expected):
+            found, error = split_error("roughness", value, dimension)
+            assert found == (pytest.approx(expected[0]) if error is not None else expected[0])
+            assert error == (None if expected[1] is None else pytest.approx(expected[1]))
 
 
 def test_errors_of_groups_by_the_atlas_and_by_seven_states_agree():
@@ -281,17 +279,21 @@ LAYER = {"solid": sb.solids.Layer("0.3 mm", 0.5)}
 THINNING = {"fluid": sb.fluids.Carreau("1 ms", 0.5)}
 
 
-@pytest.mark.parametrize(
-    ("parts", "name", "error"),
-    [(LAYER, "layer_thickness", 0.3), (THINNING, "relaxation_time", 0.5), (THINNING, "exponent", 0.1)],
-)
-def test_errors_of_numbers_of_fluid_and_solid_propagate(parts, name, error):
-    contact = TRUE.replace(speed="10 mm/s", **parts)
-    found = sb.propagate(contact, {name: error}, transitions=False)
-    assert found.contributions == {name: pytest.approx(1)}
-    reach = math.exp(1.96 * math.sqrt(math.log1p(error**2)))
-    ends = [sb.solve(contact.replace(**{name: getattr(contact, name) * each}), rtol=1e-5) for each in (1 / reach, reach)]
-    assert found["friction"].interval_95 == pytest.approx(sorted(each.friction().total for each in ends), rel=0.03)
+def test_errors_of_numbers_of_fluid_and_solid_propagate(subtests):
+    for parts, name, error in [
+        (LAYER, "layer_thickness", 0.3),
+        (THINNING, "relaxation_time", 0.5),
+        (THINNING, "exponent", 0.1),
+    ]:
+        with subtests.test(parts=parts, name=name, error=error):
+            contact = TRUE.replace(speed="10 mm/s", **parts)
+            found = sb.propagate(contact, {name: error}, transitions=False)
+            assert found.contributions == {name: pytest.approx(1)}
+            reach = math.exp(1.96 * math.sqrt(math.log1p(error**2)))
+            ends = [
+                sb.solve(contact.replace(**{name: getattr(contact, name) * each}), rtol=1e-5) for each in (1 / reach, reach)
+            ]
+            assert found["friction"].interval_95 == pytest.approx(sorted(each.friction().total for each in ends), rel=0.03)
 
 
 def test_a_pressure_coefficient_of_a_ball_has_a_share_in_the_variance():

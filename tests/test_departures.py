@@ -24,22 +24,24 @@ def ground(ratio, direction, seed, points=(128, 128), hurst=0.8):
     return Topography(z * (1e-6 / z.std()), (STEP, STEP))
 
 
-@pytest.mark.parametrize("points", [(128, 128), (96, 160)])
-def test_chance_is_not_taken_for_texture_or_skewness(points):
-    for seed in range(6):
-        surface = analyse(ground(1.0, 0.0, seed, points))
-        assert surface.departures.aspect_ratio == 1.0 and surface.departures.direction is None
-        assert abs(surface.departures.skewness) < 3 * surface.departures.skewness_error
-        assert not any("anisotropic" in note or "Gaussian" in note for note in surface.notes)
+def test_chance_is_not_taken_for_texture_or_skewness(subtests):
+    for points in [(128, 128), (96, 160)]:
+        with subtests.test(points=points):
+            for seed in range(6):
+                surface = analyse(ground(1.0, 0.0, seed, points))
+                assert surface.departures.aspect_ratio == 1.0 and surface.departures.direction is None
+                assert abs(surface.departures.skewness) < 3 * surface.departures.skewness_error
+                assert not any("anisotropic" in note or "Gaussian" in note for note in surface.notes)
 
 
-@pytest.mark.parametrize("degrees", [0, 30, 90, 135])
-def test_a_texture_of_three_to_one_is_found_with_its_direction(degrees):
-    surface = analyse(ground(3.0, math.radians(degrees), 40 + degrees))
-    assert surface.departures.aspect_ratio == pytest.approx(3.0, rel=0.25)
-    assert abs(math.remainder(surface.departures.direction - math.radians(degrees), math.pi)) < math.radians(6)
-    [note] = [note for note in surface.notes if "anisotropic" in note]
-    assert "averages over directions" in note
+def test_a_texture_of_three_to_one_is_found_with_its_direction(subtests):
+    for degrees in [0, 30, 90, 135]:
+        with subtests.test(degrees=degrees):
+            surface = analyse(ground(3.0, math.radians(degrees), 40 + degrees))
+            assert surface.departures.aspect_ratio == pytest.approx(3.0, rel=0.25)
+            assert abs(math.remainder(surface.departures.direction - math.radians(degrees), math.pi)) < math.radians(6)
+            [note] = [note for note in surface.notes if "anisotropic" in note]
+            assert "averages over directions" in note
 
 
 def test_a_profile_does_not_show_a_texture():
@@ -47,14 +49,15 @@ def test_a_profile_does_not_show_a_texture():
     assert analyse(Topography(line, (STEP,))).departures.aspect_ratio is None
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-def test_heights_of_peaks_or_valleys_are_found_skewed(sign):
-    plain = ground(1.0, 0.0, 61)
-    skewed = sign * np.exp(0.7 * plain.heights / plain.heights.std()) * 1e-6
-    surface = analyse(Topography(skewed, plain.spacing))
-    assert surface.departures.skewness * sign > 1
-    [note] = [note for note in surface.notes if "not Gaussian" in note]
-    assert ("peaks on a plain" if sign > 0 else "plateaus with valleys") in note
+def test_heights_of_peaks_or_valleys_are_found_skewed(subtests):
+    for sign in [1, -1]:
+        with subtests.test(sign=sign):
+            plain = ground(1.0, 0.0, 61)
+            skewed = sign * np.exp(0.7 * plain.heights / plain.heights.std()) * 1e-6
+            surface = analyse(Topography(skewed, plain.spacing))
+            assert surface.departures.skewness * sign > 1
+            [note] = [note for note in surface.notes if "not Gaussian" in note]
+            assert ("peaks on a plain" if sign > 0 else "plateaus with valleys") in note
 
 
 def test_the_error_of_the_skewness_is_that_of_gaussian_surfaces():
@@ -65,21 +68,19 @@ def test_the_error_of_the_skewness_is_that_of_gaussian_surfaces():
     assert 0.6 < np.std(scores) < 1.5
 
 
-@pytest.mark.parametrize(
-    ("length", "height", "words"),
-    [
+def test_a_size_that_no_instrument_measures_is_remarked_upon(subtests):
+    for length, height, words in [
         (1e6, 1e3, "The scan is 128 m long, longer than any instrument measures; check the unit of positions."),
         (1.0, 1e4, "The rms height is 10 mm, which is not plausible; check the unit of heights."),
         (1.0, 100.0, "steeper than instruments follow"),
         (1.0, 1e-6, "The rms height is 1 pm"),
         (1.0, 1.0, None),
-    ],
-)
-def test_a_size_that_no_instrument_measures_is_remarked_upon(length, height, words):
-    plain = ground(1.0, 0.0, 70)
-    scan = Topography(plain.heights * height, (STEP * length,) * 2)
-    notes = [note for note in analyse(scan, trend="mean").notes if "unit" in note]
-    assert any(words in note for note in notes) if words else not notes
+    ]:
+        with subtests.test(length=length, height=height, words=words):
+            plain = ground(1.0, 0.0, 70)
+            scan = Topography(plain.heights * height, (STEP * length,) * 2)
+            notes = [note for note in analyse(scan, trend="mean").notes if "unit" in note]
+            assert any(words in note for note in notes) if words else not notes
 
 
 def test_the_command_says_what_departs(capsys, tmp_path):

@@ -101,15 +101,16 @@ def test_a_shown_line_that_is_not_printed_is_named_at_once():
     assert first_missing(["row 2 of", "row 1 of"], "row 1 of row 2 of").startswith("The page shows: row 1 of")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_links_lead_somewhere(page):
-    prose = FENCE.sub("", TEXT[page])
-    for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", prose):
-        name, _, anchor = target.partition("#")
-        other = (page.parent / name).resolve() if name else page
-        assert other.exists(), target
-        if anchor:
-            assert anchor in {anchor_of(title) for title in re.findall(r"^#+ (.*)$", other.read_text(), re.M)}
+def test_links_lead_somewhere(subtests):
+    for page in PAGES:
+        with subtests.test(page=page):
+            prose = FENCE.sub("", TEXT[page])
+            for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", prose):
+                name, _, anchor = target.partition("#")
+                other = (page.parent / name).resolve() if name else page
+                assert other.exists(), target
+                if anchor:
+                    assert anchor in {anchor_of(title) for title in re.findall(r"^#+ (.*)$", other.read_text(), re.M)}
 
 
 def anchor_of(title):
@@ -162,11 +163,16 @@ RESULTS += (
 )
 
 
-@pytest.mark.parametrize("kind", RESULTS, ids=lambda kind: kind.__name__)
-def test_the_table_of_symbols_names_every_field(kind):
-    parts = {"asperities", "fluid", "total", "error"}
-    fields = parts if kind is sb.results.Friction else {each.name for each in dataclasses.fields(kind) if each.name[0] != "_"}
-    assert fields - set(names_in_tables()) == set()
+def test_the_table_of_symbols_names_every_field(subtests):
+    for kind in RESULTS:
+        with subtests.test(kind=kind):
+            parts = {"asperities", "fluid", "total", "error"}
+            fields = (
+                parts
+                if kind is sb.results.Friction
+                else {each.name for each in dataclasses.fields(kind) if each.name[0] != "_"}
+            )
+            assert fields - set(names_in_tables()) == set()
 
 
 def test_the_table_of_symbols_names_every_variable_of_a_data_file():
@@ -219,13 +225,14 @@ def test_the_tree_for_developers_is_the_folders_with_their_first_lines():
     assert shown == found
 
 
-@pytest.mark.parametrize("page", ["docs/for_developers.md", "CONTRIBUTING.md"])
-def test_a_page_for_developers_names_files_that_exist(page):
-    named = set(re.findall(r"\b(?:\w+/)+\w+\.py\b", TEXT[ROOT / page]))
-    assert len(named) > 5
-    assert {
-        name for name in named if not any((folder / name).exists() for folder in (ROOT, ROOT / "src" / "stribeck"))
-    } == set()
+def test_a_page_for_developers_names_files_that_exist(subtests):
+    for page in ["docs/for_developers.md", "CONTRIBUTING.md"]:
+        with subtests.test(page=page):
+            named = set(re.findall(r"\b(?:\w+/)+\w+\.py\b", TEXT[ROOT / page]))
+            assert len(named) > 5
+            assert {
+                name for name in named if not any((folder / name).exists() for folder in (ROOT, ROOT / "src" / "stribeck"))
+            } == set()
 
 
 def test_every_name_of_the_reference_exists():

@@ -51,15 +51,16 @@ def test_the_lorentz_pressure_bends_the_surface_as_a_logarithm():
     assert np.abs(w - exact).max() < 1e-13
 
 
-@pytest.mark.parametrize("e", [1e-2, 1e-3, 1e-4, 1e-5])
-def test_the_smoothed_hertz_pressure_flattens_the_parabola(e):
-    mesh = graded_to_both_edges(e, 20)
-    near_edge = 1 + e * np.random.default_rng(SEED).normal(size=40)
-    points = np.concatenate([np.linspace(-3, 3, 61), near_edge, -near_edge])
-    w = deflection_operator(mesh, points) @ hertz_pressure(mesh.nodes, e)
-    difference = w - hertz_deflection(points, e)
-    assert np.ptp(difference) < 1e-14
-    assert abs(difference[0] - (1 + np.log(4)) / 4) < 1e-14
+def test_the_smoothed_hertz_pressure_flattens_the_parabola(subtests):
+    for e in [1e-2, 1e-3, 1e-4, 1e-5]:
+        with subtests.test(e=e):
+            mesh = graded_to_both_edges(e, 20)
+            near_edge = 1 + e * np.random.default_rng(SEED).normal(size=40)
+            points = np.concatenate([np.linspace(-3, 3, 61), near_edge, -near_edge])
+            w = deflection_operator(mesh, points) @ hertz_pressure(mesh.nodes, e)
+            difference = w - hertz_deflection(points, e)
+            assert np.ptp(difference) < 1e-14
+            assert abs(difference[0] - (1 + np.log(4)) / 4) < 1e-14
 
 
 def test_the_hertz_pressure_leaves_no_gap_inside_and_its_closed_form_outside():
@@ -112,18 +113,19 @@ def test_mirrored_pressures_bend_mirrored_surfaces():
     assert np.abs((d @ p[mirror])[mirror] - d @ p).max() < 1e-13
 
 
-@pytest.mark.parametrize("order", [10, 14])
-def test_the_kernel_is_exact_at_any_distance_from_a_panel(order):
+def test_the_kernel_is_exact_at_any_distance_from_a_panel(subtests):
     """Near a panel by log moments, farther off by the panel's own quadrature."""
-    mesh, panel = Mesh(np.array([-64.0, 0.0, 1.0, 64.0]), order), slice(order, 2 * order)
-    points = 0.5 + 0.5 * np.concatenate([np.linspace(1.3, 8.0, 400), -np.linspace(1.3, 8.0, 400), [30.0]])
-    rows = deflection_operator(mesh, points)[:, panel]
-    t, weights = np.polynomial.legendre.leggauss(80)
-    powers = np.arange(order)[:, None]
-    exact = (np.log(np.abs(points[:, None] - 0.5 - 0.5 * t)) * (0.5 * weights)) @ (t**powers).T / -np.pi
-    errors = np.abs(rows @ ((2 * mesh.nodes[panel] - 1) ** powers).T - exact).max(axis=0)
-    assert (errors * 2.0 ** -np.arange(order)).max() < 1e-12  # as coefficients of smooth pressures fall
-    assert errors.max() < 1e-10
+    for order in [10, 14]:
+        with subtests.test(order=order):
+            mesh, panel = Mesh(np.array([-64.0, 0.0, 1.0, 64.0]), order), slice(order, 2 * order)
+            points = 0.5 + 0.5 * np.concatenate([np.linspace(1.3, 8.0, 400), -np.linspace(1.3, 8.0, 400), [30.0]])
+            rows = deflection_operator(mesh, points)[:, panel]
+            t, weights = np.polynomial.legendre.leggauss(80)
+            powers = np.arange(order)[:, None]
+            exact = (np.log(np.abs(points[:, None] - 0.5 - 0.5 * t)) * (0.5 * weights)) @ (t**powers).T / -np.pi
+            errors = np.abs(rows @ ((2 * mesh.nodes[panel] - 1) ** powers).T - exact).max(axis=0)
+            assert (errors * 2.0 ** -np.arange(order)).max() < 1e-12  # as coefficients of smooth pressures fall
+            assert errors.max() < 1e-10
 
 
 # Log moments
@@ -154,12 +156,13 @@ INSIDE = [0.0, 0.3, -0.77, 0.999, 1.0, -1.0]
 OUTSIDE = [1.0001, -1.07, 1.0999, 1.1001, -1.4, 2.999, 9.0]
 
 
-@pytest.mark.parametrize("s", INSIDE + OUTSIDE)
-def test_log_moments_agree_with_quadpack(s):
-    order = 8
-    moments = log_moments(np.array([s]), order)[0]
-    expected = [by_quad(unit, s) for unit in np.eye(order)]
-    assert np.abs(moments - expected).max() < 1e-12
+def test_log_moments_agree_with_quadpack(subtests):
+    for s in INSIDE + OUTSIDE:
+        with subtests.test(s=s):
+            order = 8
+            moments = log_moments(np.array([s]), order)[0]
+            expected = [by_quad(unit, s) for unit in np.eye(order)]
+            assert np.abs(moments - expected).max() < 1e-12
 
 
 def test_log_moments_of_the_first_two_degrees_are_their_closed_forms():
@@ -171,16 +174,17 @@ def test_log_moments_of_the_first_two_degrees_are_their_closed_forms():
     assert np.abs(moments[:, 1] - first).max() < 1e-13
 
 
-@pytest.mark.parametrize("order", [10, 14, 18])
-def test_log_moments_lose_digits_only_in_the_highest_degrees(order):
+def test_log_moments_lose_digits_only_in_the_highest_degrees(subtests):
     """Just outside the panel an upward recurrence amplifies rounding, most where coefficients are small."""
-    points = np.array([1.003, -1.05, 1.12, -1.2, 1.3, 1.45])
-    moments = log_moments(points, order)
-    exact = np.array([[by_quad(unit, s) for unit in np.eye(order)] for s in points])
-    errors = np.abs(moments - exact).max(axis=0)
-    assert errors.max() < 2e-11
-    assert errors[: order // 3].max() < 1e-13
-    assert (errors * 2.0 ** -np.arange(order)).max() < 1e-13
+    for order in [10, 14, 18]:
+        with subtests.test(order=order):
+            points = np.array([1.003, -1.05, 1.12, -1.2, 1.3, 1.45])
+            moments = log_moments(points, order)
+            exact = np.array([[by_quad(unit, s) for unit in np.eye(order)] for s in points])
+            errors = np.abs(moments - exact).max(axis=0)
+            assert errors.max() < 2e-11
+            assert errors[: order // 3].max() < 1e-13
+            assert (errors * 2.0 ** -np.arange(order)).max() < 1e-13
 
 
 # Rate

@@ -42,15 +42,16 @@ def test_a_curve_that_is_flat_to_rounding_has_no_minimum():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("rounds", [1, 6])
-def test_many_zeros_are_located_at_once_between_their_last_ends(rounds):
-    zeros = np.linspace(-0.9, 2.5, 40)
-    ends = np.array([np.full(40, -1.0), np.full(40, 3.0)])
-    values_at = lambda s: np.expm1(s - zeros)  # noqa: E731
-    found, slopes, apart = rising_zeros(values_at, ends, values_at(ends), rounds, 1e-9)
-    assert (np.abs(found - zeros) <= apart).all() and apart.max() <= 4 / 3**rounds * (1 + 1e-12)
-    assert slopes == pytest.approx(1.0, abs=2 * apart.max()) if rounds > 1 else (slopes > 0).all()
-    assert rounds == 1 or np.abs(found - zeros).max() < 1e-9
+def test_many_zeros_are_located_at_once_between_their_last_ends(subtests):
+    for rounds in [1, 6]:
+        with subtests.test(rounds=rounds):
+            zeros = np.linspace(-0.9, 2.5, 40)
+            ends = np.array([np.full(40, -1.0), np.full(40, 3.0)])
+            values_at = lambda s: np.expm1(s - zeros)  # noqa: E731
+            found, slopes, apart = rising_zeros(values_at, ends, values_at(ends), rounds, 1e-9)
+            assert (np.abs(found - zeros) <= apart).all() and apart.max() <= 4 / 3**rounds * (1 + 1e-12)
+            assert slopes == pytest.approx(1.0, abs=2 * apart.max()) if rounds > 1 else (slopes > 0).all()
+            assert rounds == 1 or np.abs(found - zeros).max() < 1e-9
 
 
 def test_a_curve_off_the_atlas_offers_what_a_solved_one_does():

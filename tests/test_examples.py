@@ -169,18 +169,16 @@ def test_the_transition_of_a_ball_lies_in_the_reported_range_at_every_roughness(
     assert (min(ratios), max(ratios)) == pytest.approx((3.08, 3.59), rel=0.03)
 
 
-@pytest.mark.parametrize(
-    ("name", "observable", "plain", "other"),
-    [
+def test_an_effect_is_as_large_as_its_example_shows(subtests, results):
+    for name, observable, plain, other in [
         ("film_that_ends", "minimum_gap", 0.01088, 0.01146),
         ("oil_that_stiffens", "minimum_gap", 0.01146, 0.01299),
         ("fluid_that_thins", "minimum_gap", 0.01146, 0.00347),
         ("flow_between_asperities", "contact_load_share", 0.31245, 0.26326),
         ("rubber_on_a_base", "minimum_gap", 0.00574, 0.00466),
         ("both_surfaces_move", "friction", 0.0400, 0.0103),
-    ],
-)
-def test_an_effect_is_as_large_as_its_example_shows(results, name, observable, plain, other):
-    _, curves = results(name)
-    read = [curve.friction if observable == "friction" else curve.observable(observable) for curve in curves.values()]
-    assert [each[12] for each in read] == pytest.approx([plain, other], rel=3e-3)
+    ]:
+        with subtests.test(name=name, observable=observable, plain=plain, other=other):
+            _, curves = results(name)
+            read = [curve.friction if observable == "friction" else curve.observable(observable) for curve in curves.values()]
+            assert [each[12] for each in read] == pytest.approx([plain, other], rel=3e-3)

@@ -77,23 +77,25 @@ def reopened(query, start=START):
 # --- inputs ---
 
 
-@pytest.mark.parametrize("name", inputs.FIELDS["line"])
-def test_a_slider_moves_its_quantity_to_a_number_that_can_be_read_and_nothing_else(name):
-    moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.25)
-    value = getattr(moved.contact, name)
-    assert value / getattr(START.contact, name) == pytest.approx(10**0.25, rel=5e-3)
-    assert inputs.with_text(START, name, inputs.number_text(moved, name)).contact == moved.contact
-    assert moved.contact.replace(**{name: getattr(START.contact, name)}) == START.contact
+def test_a_slider_moves_its_quantity_to_a_number_that_can_be_read_and_nothing_else(subtests):
+    for name in inputs.FIELDS["line"]:
+        with subtests.test(name=name):
+            moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.25)
+            value = getattr(moved.contact, name)
+            assert value / getattr(START.contact, name) == pytest.approx(10**0.25, rel=5e-3)
+            assert inputs.with_text(START, name, inputs.number_text(moved, name)).contact == moved.contact
+            assert moved.contact.replace(**{name: getattr(START.contact, name)}) == START.contact
 
 
-@pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
-def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(name):
-    moved = inputs.with_slider(START, name, inputs.position(START, name) - 0.5)
-    for other in inputs.GROUP_FIELDS:
-        wanted = inputs.value_of(START, other) * (10**-0.5 if other == name else 1.0)
-        assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
-    for kept in ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction"):
-        assert getattr(moved.contact, kept) == getattr(START.contact, kept)
+def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(subtests):
+    for name in inputs.GROUP_FIELDS:
+        with subtests.test(name=name):
+            moved = inputs.with_slider(START, name, inputs.position(START, name) - 0.5)
+            for other in inputs.GROUP_FIELDS:
+                wanted = inputs.value_of(START, other) * (10**-0.5 if other == name else 1.0)
+                assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
+            for kept in ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction"):
+                assert getattr(moved.contact, kept) == getattr(START.contact, kept)
 
 
 def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():
@@ -123,9 +125,8 @@ def test_another_unit_keeps_the_value():
     assert inputs.number_text(shown, "viscosity") == "0.05"
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "sentence"),
-    [
+def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(subtests):
+    for name, text, sentence in [
         ("load", "1,500", "load = '1,500' may be 1.500 or 1500; write one of them, without a comma."),
         ("load", "1,5,0", "has a comma; write a decimal point"),
         (
@@ -139,26 +140,23 @@ def test_another_unit_keeps_the_value():
         ("speed_group", "-1", "speed = -1.0 must be finite and zero or positive."),
         ("load_group", "lots", "load_group = 'lots' is not a number; write it as 0.001 or 1e-3."),
         ("beta", "1e-300", "leave the range of double precision"),
-    ],
-)
-def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(name, text, sentence):
-    with pytest.raises(sb.InputError) as problem:
-        inputs.with_text(START, name, text)
-    assert sentence in str(problem.value)
+    ]:
+        with subtests.test(name=name, text=text, sentence=sentence):
+            with pytest.raises(sb.InputError) as problem:
+                inputs.with_text(START, name, text)
+            assert sentence in str(problem.value)
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "value"),
-    [
+def test_a_decimal_comma_is_read_as_in_files(subtests):
+    for name, text, value in [
         ("load", "1,5", 1.5),
         ("load", "1,5 kN/m", 1500),
         ("beta", "0,060", 0.06),
         ("load_group", "2,5e-1", 0.25),
         ("alpha", ",75", 0.75),
-    ],
-)
-def test_a_decimal_comma_is_read_as_in_files(name, text, value):
-    assert inputs.value_of(inputs.with_text(START, name, text), name) == pytest.approx(value, rel=1e-12)
+    ]:
+        with subtests.test(name=name, text=text, value=value):
+            assert inputs.value_of(inputs.with_text(START, name, text), name) == pytest.approx(value, rel=1e-12)
 
 
 # --- all that a case can hold ---
@@ -307,9 +305,8 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     assert sb.solve(saved.contact).friction() == expected.friction()
 
 
-@pytest.mark.parametrize(
-    ("query", "sentence"),
-    [
+def test_what_an_address_cannot_mean_is_told(subtests):
+    for query, sentence in [
         ("tables=x", "tables = 'x' is not valid JSON."),
         ("tables=[1]", "must be an object of geometry, law, surface, table, fluid"),
         ('tables={"law":"table","table":{"file":"/etc/passwd"}}', "a link contains its rows instead"),
@@ -322,13 +319,12 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
         ("pin=x", "in pin, x = '' is not a known key"),
         ("pin=load%3D-1", "in pin, load = '-1 N/m' must be positive."),
         ("pin=tables%3D%5B", "in pin, tables = '[' is not valid JSON"),
-    ],
-)
-def test_what_an_address_cannot_mean_is_told(query, sentence):
-    opened = reopened(query)
-    assert opened.inputs == START
-    [(_, said)] = opened.problems.values()
-    assert sentence in said
+    ]:
+        with subtests.test(query=query, sentence=sentence):
+            opened = reopened(query)
+            assert opened.inputs == START
+            [(_, said)] = opened.problems.values()
+            assert sentence in said
 
 
 def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
@@ -348,13 +344,18 @@ def test_an_uploaded_case_that_names_a_file_says_what_to_do(tmp_path):
         files.read_case("C:\\data\\case.toml", b'[table]\nfile = "law.csv"\n')
 
 
-@pytest.mark.parametrize(
-    ("name", "shown"),
-    [("..", "file"), ("a/..", "file"), ("/x/y.toml", "y.toml"), ("a\0b.toml", "a_b.toml"), ("", "file"), ("a\nb", "a_b")],
-)
-def test_odd_names_of_uploads_become_plain_ones(name, shown):
-    assert files.shown_name(name) == shown
-    assert len(files.shown_name(300 * "x" + ".csv")) <= 80 and files.shown_name(300 * "x" + ".csv").endswith("xxx.csv")
+def test_odd_names_of_uploads_become_plain_ones(subtests):
+    for name, shown in [
+        ("..", "file"),
+        ("a/..", "file"),
+        ("/x/y.toml", "y.toml"),
+        ("a\0b.toml", "a_b.toml"),
+        ("", "file"),
+        ("a\nb", "a_b"),
+    ]:
+        with subtests.test(name=name, shown=shown):
+            assert files.shown_name(name) == shown
+            assert len(files.shown_name(300 * "x" + ".csv")) <= 80 and files.shown_name(300 * "x" + ".csv").endswith("xxx.csv")
 
 
 # --- the parts of the model ---
@@ -370,12 +371,13 @@ def test_a_cylinder_becomes_a_ball_of_the_same_pressure_and_back():
     assert back.contact.replace(load=START.contact.load) == START.contact
 
 
-@pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
-def test_a_group_of_a_ball_moves_alone(name):
-    moved = inputs.with_slider(BALL, name, inputs.position(BALL, name) - 0.5)
-    for other in inputs.GROUP_FIELDS:
-        wanted = inputs.value_of(BALL, other) * (10**-0.5 if other == name else 1.0)
-        assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
+def test_a_group_of_a_ball_moves_alone(subtests):
+    for name in inputs.GROUP_FIELDS:
+        with subtests.test(name=name):
+            moved = inputs.with_slider(BALL, name, inputs.position(BALL, name) - 0.5)
+            for other in inputs.GROUP_FIELDS:
+                wanted = inputs.value_of(BALL, other) * (10**-0.5 if other == name else 1.0)
+                assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
 
 
 def test_a_headline_does_not_name_the_geometry_before():
@@ -405,15 +407,16 @@ def check_link_and_saved_case(shown):
         assert getattr(again.contact, name, None) == getattr(shown.contact, name, None), name
 
 
-@pytest.mark.parametrize("name", choices.CHOICES)
-def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
-    for value in choices.CHOICES[name].options:
-        if value in ("table", ""):
-            continue
-        shown = choices.choose(START, name, value)
-        assert choices.list_of(shown, name)["value"] == ("" if name == "preset" else value)
-        check_link_and_saved_case(shown)
-        assert choices.choose(shown, name, choices.CHOICES[name].first).tables in ("", shown.tables)
+def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(subtests):
+    for name in choices.CHOICES:
+        with subtests.test(name=name):
+            for value in choices.CHOICES[name].options:
+                if value in ("table", ""):
+                    continue
+                shown = choices.choose(START, name, value)
+                assert choices.list_of(shown, name)["value"] == ("" if name == "preset" else value)
+                check_link_and_saved_case(shown)
+                assert choices.choose(shown, name, choices.CHOICES[name].first).tables in ("", shown.tables)
 
 
 def test_a_law_that_is_chosen_presses_as_the_one_before_at_a_gap_of_one_h_rms():
@@ -425,32 +428,35 @@ def test_a_law_that_is_chosen_presses_as_the_one_before_at_a_gap_of_one_h_rms():
     assert (back.alpha, back.beta) == pytest.approx((before.alpha, before.beta))
 
 
-@pytest.mark.parametrize("start", ["cylinder", "ball", "surface", "ball on a surface"])
-def test_what_many_changes_lead_to_goes_through_link_and_saved_case(start):
-    random = np.random.default_rng([16, *map(ord, start)])
-    first = BALL if "ball" in start else START
-    first = with_scan(first, read_scan("profile.csv", PROFILE)) if "surface" in start else first
-    for _ in range(2 if "surface" in start else 12):  # the law of a surface takes half a second
-        shown = replace(
-            first,
-            abscissa=random.choice(["speed", "hersey"]).item(),
-            definition=random.choice(sorted(charts.DEFINITION_LABELS)).item(),
-        )
-        for _ in range(8):
-            name = random.choice([each for each in choices.CHOICES if each != "geometry"]).item()
-            options = [each for each, _ in choices.list_of(shown, name)["options"] if each]
-            slider = random.choice(list(shown.fields)).item()
-            try:
-                if random.random() < 0.6 and not (name == "law" and "surface" in start):
-                    shown = choices.choose(shown, name, random.choice(options).item())
-                elif details := choices.list_of(shown, name)["details"]:
-                    key = details[random.integers(len(details))][0]
-                    shown = choices.with_detail(shown, name, key, f"{random.uniform(0.1, 0.9):.2g}")
-                else:
-                    shown = inputs.with_slider(shown, slider, inputs.position(shown, slider) + random.uniform(-0.5, 0.5))
-            except sb.InputError:  # not with the rest
-                continue
-        check_link_and_saved_case(shown)
+def test_what_many_changes_lead_to_goes_through_link_and_saved_case(subtests):
+    for start in ["cylinder", "ball", "surface", "ball on a surface"]:
+        with subtests.test(start=start):
+            random = np.random.default_rng([16, *map(ord, start)])
+            first = BALL if "ball" in start else START
+            first = with_scan(first, read_scan("profile.csv", PROFILE)) if "surface" in start else first
+            for _ in range(2 if "surface" in start else 12):  # the law of a surface takes half a second
+                shown = replace(
+                    first,
+                    abscissa=random.choice(["speed", "hersey"]).item(),
+                    definition=random.choice(sorted(charts.DEFINITION_LABELS)).item(),
+                )
+                for _ in range(8):
+                    name = random.choice([each for each in choices.CHOICES if each != "geometry"]).item()
+                    options = [each for each, _ in choices.list_of(shown, name)["options"] if each]
+                    slider = random.choice(list(shown.fields)).item()
+                    try:
+                        if random.random() < 0.6 and not (name == "law" and "surface" in start):
+                            shown = choices.choose(shown, name, random.choice(options).item())
+                        elif details := choices.list_of(shown, name)["details"]:
+                            key = details[random.integers(len(details))][0]
+                            shown = choices.with_detail(shown, name, key, f"{random.uniform(0.1, 0.9):.2g}")
+                        else:
+                            shown = inputs.with_slider(
+                                shown, slider, inputs.position(shown, slider) + random.uniform(-0.5, 0.5)
+                            )
+                    except sb.InputError:  # not with the rest
+                        continue
+                check_link_and_saved_case(shown)
 
 
 def test_the_examples_of_the_page_load_and_come_with_the_wheel():
@@ -485,18 +491,19 @@ def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
         choices.with_detail(shown, "solid", "relaxation_times", "1 ms")
 
 
-@pytest.mark.parametrize("name", choices.CHOICES)
-def test_an_empty_field_of_a_choice_says_the_number_that_it_stands_for(name):
-    for value, (_, _, optional) in choices.CHOICES[name].options.items():
-        if value in ("", "table") or not optional:
-            continue
-        shown = choices.choose(START, name, value)
-        if "layer_thickness" in optional:
-            shown = choices.with_detail(shown, name, "layer_thickness", "1 mm")
-        for key, _, text, if_empty in choices.list_of(shown, name)["details"]:
-            assert key not in optional or if_empty
-            if not text and if_empty[:1].isdigit():
-                assert choices.with_detail(shown, name, key, if_empty).contact == shown.contact, key
+def test_an_empty_field_of_a_choice_says_the_number_that_it_stands_for(subtests):
+    for name in choices.CHOICES:
+        with subtests.test(name=name):
+            for value, (_, _, optional) in choices.CHOICES[name].options.items():
+                if value in ("", "table") or not optional:
+                    continue
+                shown = choices.choose(START, name, value)
+                if "layer_thickness" in optional:
+                    shown = choices.with_detail(shown, name, "layer_thickness", "1 mm")
+                for key, _, text, if_empty in choices.list_of(shown, name)["details"]:
+                    assert key not in optional or if_empty
+                    if not text and if_empty[:1].isdigit():
+                        assert choices.with_detail(shown, name, key, if_empty).contact == shown.contact, key
 
 
 def test_the_axis_of_speeds_says_which_speed_it_is():
@@ -526,17 +533,15 @@ def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
     assert longer.contact.alpha == pytest.approx(surface["alpha"], rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("name", "key", "text", "sentence"),
-    [
+def test_an_impossible_detail_is_refused_with_the_sentence_of_a_case(subtests):
+    for name, key, text, sentence in [
         ("solid", "layer_thickness", "", "layer_thickness is missing, which this choice needs; add layer_thickness = 2 mm."),
         ("law", "hurst", "3", "hurst"),
-    ],
-)
-def test_an_impossible_detail_is_refused_with_the_sentence_of_a_case(name, key, text, sentence):
-    start = choices.choose(START, name, {"solid": "layer", "law": "persson"}[name])
-    with pytest.raises(sb.InputError, match=sentence):
-        choices.with_detail(start, name, key, text)
+    ]:
+        with subtests.test(name=name, key=key, text=text, sentence=sentence):
+            start = choices.choose(START, name, {"solid": "layer", "law": "persson"}[name])
+            with pytest.raises(sb.InputError, match=sentence):
+                choices.with_detail(start, name, key, text)
 
 
 def test_the_cavity_of_a_cylinder_stays_when_it_becomes_a_ball():
@@ -707,39 +712,41 @@ def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
     assert film["low"] == math.log10(least) <= min(film["data"]) + 1e-3 and film["high"] >= max(film["data"]) - 1e-3
 
 
-@pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "boundary_friction"])
-def test_the_numbers_are_those_of_solve_within_their_errors(name):
-    model = Answerer()
-    model(START)
-    moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.3)
-    rows = {row.key: row for row in table.numbers(model(moved))}
-    solution = sb.solve(moved.contact)
-    expected = {
-        "friction_published": solution.friction(definition="published").total,
-        "friction_balanced": solution.friction(definition="balanced").total,
-        "fluid_load_share": solution.fluid_load_share,
-        "contact_load_share": solution.contact_load_share,
-        "central_film_thickness": solution.central_gap * moved.contact.hertz.indentation,
-        "minimum_film_thickness": solution.minimum_gap * moved.contact.hertz.indentation,
-        "lambda_ratio": solution.lambda_ratio,
-        "hersey_number": solution.hersey_number,
-    }
-    for key, value in expected.items():
-        assert abs(rows[key].value - value) <= 2 * rows[key].error, key
-    assert rows["hersey_number"].error == 0
+def test_the_numbers_are_those_of_solve_within_their_errors(subtests):
+    for name in ["speed", "load_group", "roughness", "boundary_friction"]:
+        with subtests.test(name=name):
+            model = Answerer()
+            model(START)
+            moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.3)
+            rows = {row.key: row for row in table.numbers(model(moved))}
+            solution = sb.solve(moved.contact)
+            expected = {
+                "friction_published": solution.friction(definition="published").total,
+                "friction_balanced": solution.friction(definition="balanced").total,
+                "fluid_load_share": solution.fluid_load_share,
+                "contact_load_share": solution.contact_load_share,
+                "central_film_thickness": solution.central_gap * moved.contact.hertz.indentation,
+                "minimum_film_thickness": solution.minimum_gap * moved.contact.hertz.indentation,
+                "lambda_ratio": solution.lambda_ratio,
+                "hersey_number": solution.hersey_number,
+            }
+            for key, value in expected.items():
+                assert abs(rows[key].value - value) <= 2 * rows[key].error, key
+            assert rows["hersey_number"].error == 0
 
 
-@pytest.mark.parametrize(("cavitation", "ends"), [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])])
-def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(cavitation, ends):
-    shown = choices.choose(replace(START, contact=START.contact.replace(speed="100 mm/s")), "cavitation", cavitation)
-    shown = choices.with_detail(shown, "cavitation", "cavity_pressure", "-10 kPa") if cavitation == "reform" else shown
-    rows = {row.key: row for row in table.numbers(Answerer()(shown))}
-    assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
-    solution = sb.solve(shown.contact)
-    for end in ends:
-        row, place = rows[f"film_{end}_position"], getattr(solution, f"{end}_position")
-        assert abs(row.value - place * shown.contact.hertz.half_width) <= 2 * row.error
-        assert row.text.endswith("m") and 0 < row.error < 1e-4 * abs(row.value)
+def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(subtests):
+    for cavitation, ends in [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])]:
+        with subtests.test(cavitation=cavitation, ends=ends):
+            shown = choices.choose(replace(START, contact=START.contact.replace(speed="100 mm/s")), "cavitation", cavitation)
+            shown = choices.with_detail(shown, "cavitation", "cavity_pressure", "-10 kPa") if cavitation == "reform" else shown
+            rows = {row.key: row for row in table.numbers(Answerer()(shown))}
+            assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
+            solution = sb.solve(shown.contact)
+            for end in ends:
+                row, place = rows[f"film_{end}_position"], getattr(solution, f"{end}_position")
+                assert abs(row.value - place * shown.contact.hertz.half_width) <= 2 * row.error
+                assert row.text.endswith("m") and 0 < row.error < 1e-4 * abs(row.value)
 
 
 def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
@@ -824,19 +831,19 @@ def test_the_solved_curve_of_a_ball_is_within_a_per_cent_of_its_states_between_i
         assert shown.friction["balanced"][i] == pytest.approx(exact, rel=1e-2)
 
 
-@pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}])
-def test_rest_smooth_and_frictionless_contacts_are_shown(change):
-    shown = Answerer()(replace(START, contact=START.contact.replace(**change)))
-    rows = {row.key: row for row in table.numbers(shown)}
-    assert rows["friction_balanced"].value == pytest.approx(sb.solve(shown.inputs.contact).friction().total, rel=1e-6)
-    assert set(charts.all_charts(shown)) == {"friction", "gap", "pressure", "diagram"}
+def test_rest_smooth_and_frictionless_contacts_are_shown(subtests):
+    for change in [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}]:
+        with subtests.test(change=change):
+            shown = Answerer()(replace(START, contact=START.contact.replace(**change)))
+            rows = {row.key: row for row in table.numbers(shown)}
+            assert rows["friction_balanced"].value == pytest.approx(sb.solve(shown.inputs.contact).friction().total, rel=1e-6)
+            assert set(charts.all_charts(shown)) == {"friction", "gap", "pressure", "diagram"}
 
 
-@pytest.mark.parametrize(
-    ("value", "low", "high"), [(1.0, 1.0, 1.0), (0.0123, 0.01, 0.015), (7.2e-7, 7e-7, 1e-6), (49.9, 30, 50)]
-)
-def test_axes_end_at_round_numbers(value, low, high):
-    assert (curves.round_down(value), curves.round_up(value)) == (pytest.approx(low), pytest.approx(high))
+def test_axes_end_at_round_numbers(subtests):
+    for value, low, high in [(1.0, 1.0, 1.0), (0.0123, 0.01, 0.015), (7.2e-7, 7e-7, 1e-6), (49.9, 30, 50)]:
+        with subtests.test(value=value, low=low, high=high):
+            assert (curves.round_down(value), curves.round_up(value)) == (pytest.approx(low), pytest.approx(high))
 
 
 # --- charts ---
@@ -894,13 +901,14 @@ def luminance(colour):
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_lines_and_text_stand_out_from_their_ground(theme):
-    found = colours(theme)
-    for ground in ("card", "boundary", "mixed", "hydrodynamic"):
-        for colour, lowest in (("ink", 7.0), ("grey", 3.0), ("contact", 3.0), ("fluid", 3.0)):
-            low, high = sorted((luminance(found[colour]), luminance(found[ground])))
-            assert (high + 0.05) / (low + 0.05) > lowest, (colour, ground)
+def test_lines_and_text_stand_out_from_their_ground(subtests):
+    for theme in ["light", "dark"]:
+        with subtests.test(theme=theme):
+            found = colours(theme)
+            for ground in ("card", "boundary", "mixed", "hydrodynamic"):
+                for colour, lowest in (("ink", 7.0), ("grey", 3.0), ("contact", 3.0), ("fluid", 3.0)):
+                    low, high = sorted((luminance(found[colour]), luminance(found[ground])))
+                    assert (high + 0.05) / (low + 0.05) > lowest, (colour, ground)
 
 
 # --- files ---
@@ -983,35 +991,36 @@ CONTACT = sb.LineContact(
 )
 
 
-@pytest.mark.parametrize(
-    ("text", "speed", "friction"),
-    [
+def test_a_measured_curve_is_read(subtests):
+    for text, speed, friction in [
         ("speed [m/s],friction\n0.1,0.3\n0.01,0.5\n", [0.01, 0.1], [0.5, 0.3]),
         ("# from the lab\nspeed [mm/s];friction\n\n10;0,5\n20;0,25\n", [0.01, 0.02], [0.5, 0.25]),
         ("\ufefffriction\tSpeed (um/s)\n0.5\t1e4\n", [0.01], [0.5]),
         ("Hersey number,friction [%]\n1e-5,50\n2e-5,40\n", [0.006, 0.012], [0.5, 0.4]),
         ("Hersey number,friction,viscosity [mPa*s]\n1e-5,0.5,100\n2e-5,0.4,100\n", [0.003, 0.006], [0.5, 0.4]),
         ("eta U [mPa*m],friction\n1,0.5\n2,0.4\n", [0.02, 0.04], [0.5, 0.4]),
-    ],
-)
-def test_a_measured_curve_is_read(text, speed, friction):
-    [found] = read_measured("m.csv", text.encode(), CONTACT)
-    assert found.name == "m.csv"
-    assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
+    ]:
+        with subtests.test(text=text, speed=speed, friction=friction):
+            [found] = read_measured("m.csv", text.encode(), CONTACT)
+            assert found.name == "m.csv"
+            assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
 
 
-@pytest.mark.parametrize("contact", [START.contact, BALL.contact], ids=["cylinder", "ball"])
-def test_over_the_hersey_number_measured_points_stand_at_their_own(contact):
-    text = "curve;speed [m/s];viscosity [mPa*s];friction\na;0.01;50;0.6\nb;0.02;10;0.5\n"
-    first, second = read_measured("two.csv", text.encode(), contact)
-    later = contact.replace(viscosity=0.2)  # what the file does not say follows the page
-    for found, viscosity in ((first, 0.05), (second, 0.01)):
-        own = later.replace(speed=float(found.speed[0]), viscosity=viscosity)
-        assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(own.hersey_number, rel=1e-12)
-        assert found.places(later, "speed") == found.speed
-    [found] = read_measured("h.csv", b"Hersey number [-],friction\n1e-5,0.5\n", contact)
-    assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
-    assert contact.replace(speed=float(found.speed[0])).hersey_number == pytest.approx(1e-5, rel=1e-12)
+def test_over_the_hersey_number_measured_points_stand_at_their_own(subtests):
+    for contact in [START.contact, BALL.contact]:
+        with subtests.test(contact=contact):
+            text = "curve;speed [m/s];viscosity [mPa*s];friction\na;0.01;50;0.6\nb;0.02;10;0.5\n"
+            first, second = read_measured("two.csv", text.encode(), contact)
+            later = contact.replace(viscosity=0.2)  # what the file does not say follows the page
+            for found, viscosity in ((first, 0.05), (second, 0.01)):
+                own = later.replace(speed=float(found.speed[0]), viscosity=viscosity)
+                assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(
+                    own.hersey_number, rel=1e-12
+                )
+                assert found.places(later, "speed") == found.speed
+            [found] = read_measured("h.csv", b"Hersey number [-],friction\n1e-5,0.5\n", contact)
+            assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
+            assert contact.replace(speed=float(found.speed[0])).hersey_number == pytest.approx(1e-5, rel=1e-12)
 
 
 def test_each_curve_of_a_file_is_read_for_itself():
@@ -1021,19 +1030,17 @@ def test_each_curve_of_a_file_is_read_for_itself():
     assert first.speed.tolist() == [0.1, 0.2] and second.friction.tolist() == [0.4]
 
 
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
+def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(subtests):
+    for content, sentence in [
         (b"", "m.csv"),
         (b"speed,force\n1,2\n", "'force'"),
         (b"speed [m/s],friction\n1,0.5\n2,-1\n", "row 3, column 'friction'"),
         (b"speed [kg],friction\n1,2\n", "[kg]"),
-    ],
-)
-def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(content, sentence):
-    with pytest.raises(sb.InputError) as problem:
-        read_measured("m.csv", content, CONTACT)
-    assert str(problem.value).startswith("m.csv") and sentence in str(problem.value)
+    ]:
+        with subtests.test(content=content, sentence=sentence):
+            with pytest.raises(sb.InputError) as problem:
+                read_measured("m.csv", content, CONTACT)
+            assert str(problem.value).startswith("m.csv") and sentence in str(problem.value)
 
 
 # --- server ---
@@ -1069,17 +1076,15 @@ def test_what_a_page_would_wait_for_is_prepared_beside_it(monkeypatch):
 # --- the command ---
 
 
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
+def test_a_wrong_argument_is_refused_with_exit_code_2(subtests, capsys):
+    for arguments, sentence in [
         (["nowhere.toml"], "nowhere.toml"),
         (["--port", "eighty"], "port = 'eighty' is not a whole number"),
         (["--port", "0"], "port = 0 must be a whole number from 1 to 65535."),
-    ],
-)
-def test_a_wrong_argument_is_refused_with_exit_code_2(arguments, sentence, capsys):
-    assert main(["explore", "--no-browser", *arguments]) == 2
-    assert sentence in capsys.readouterr().err
+    ]:
+        with subtests.test(arguments=arguments, sentence=sentence):
+            assert main(["explore", "--no-browser", *arguments]) == 2
+            assert sentence in capsys.readouterr().err
 
 
 def test_without_nicegui_it_says_how_to_install_it(monkeypatch, capsys):

@@ -55,40 +55,48 @@ def test_the_users_own_page_passes_with_headers_that_protect_it():
     assert "ws://127.0.0.1:8765" in headers["content-security-policy"]
 
 
-@pytest.mark.parametrize(
-    "host", ["elsewhere.example", "127.0.0.1.elsewhere.example:8765", "0.0.0.0:8765", "192.168.0.2", "", "localhost.", "*"]
-)
-def test_another_host_is_refused_whatever_it_knows(host):
-    assert status(OWN | {"host": host}) == 400
-    assert ask(OWN | {"host": host}, kind="websocket")[0] == {"type": "websocket.close", "code": 1008}
-    assert status(OWN | {"host": host}, query=f"token={TOKEN}") == 400
+def test_another_host_is_refused_whatever_it_knows(subtests):
+    for host in [
+        "elsewhere.example",
+        "127.0.0.1.elsewhere.example:8765",
+        "0.0.0.0:8765",
+        "192.168.0.2",
+        "",
+        "localhost.",
+        "*",
+    ]:
+        with subtests.test(host=host):
+            assert status(OWN | {"host": host}) == 400
+            assert ask(OWN | {"host": host}, kind="websocket")[0] == {"type": "websocket.close", "code": 1008}
+            assert status(OWN | {"host": host}, query=f"token={TOKEN}") == 400
 
 
 def test_a_request_without_host_is_refused():
     assert status({"cookie": OWN["cookie"]}) == 400
 
 
-@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:99", "[::1]:8765", "127.0.0.1"])
-def test_names_of_this_machine_pass(host):
-    assert status(OWN | {"host": host}) == 200
+def test_names_of_this_machine_pass(subtests):
+    for host in ["localhost", "LOCALHOST:99", "[::1]:8765", "127.0.0.1"]:
+        with subtests.test(host=host):
+            assert status(OWN | {"host": host}) == 200
 
 
-@pytest.mark.parametrize("origin", ["http://elsewhere.example", "null", "http://127.0.0.1:3000", "https://127.0.0.1:8765", ""])
-@pytest.mark.parametrize("path", ["/", "/_nicegui_ws/socket.io/"])
-def test_a_page_of_another_origin_is_refused_at_sockets_too(origin, path):
-    assert status(OWN | {"origin": origin}, path) == 403
-    assert ask(OWN | {"origin": origin}, path, kind="websocket")[0]["type"] == "websocket.close"
+def test_a_page_of_another_origin_is_refused_at_sockets_too(subtests):
+    for path in ["/", "/_nicegui_ws/socket.io/"]:
+        for origin in ["http://elsewhere.example", "null", "http://127.0.0.1:3000", "https://127.0.0.1:8765", ""]:
+            with subtests.test(path=path, origin=origin):
+                assert status(OWN | {"origin": origin}, path) == 403
+                assert ask(OWN | {"origin": origin}, path, kind="websocket")[0]["type"] == "websocket.close"
 
 
-@pytest.mark.parametrize(
-    "cookie", [None, "", "stribeck-explorer-8765=wrong", f"stribeck-explorer-8766={TOKEN}", "a=\0;;=", "é"]
-)
-@pytest.mark.parametrize("path", ["/", "/_nicegui_ws/socket.io/", "/upload/x", "/download/x/toml"])
-def test_without_the_token_nothing_is_served(cookie, path):
-    headers = {"host": OWN["host"]} | ({} if cookie is None else {"cookie": cookie})
-    start, received = ask(headers, path)
-    assert start["status"] == 403 and received == []
-    assert ask(headers, path, kind="websocket")[0]["type"] == "websocket.close"
+def test_without_the_token_nothing_is_served(subtests):
+    for path in ["/", "/_nicegui_ws/socket.io/", "/upload/x", "/download/x/toml"]:
+        for cookie in [None, "", "stribeck-explorer-8765=wrong", f"stribeck-explorer-8766={TOKEN}", "a=\0;;=", "é"]:
+            with subtests.test(path=path, cookie=cookie):
+                headers = {"host": OWN["host"]} | ({} if cookie is None else {"cookie": cookie})
+                start, received = ask(headers, path)
+                assert start["status"] == 403 and received == []
+                assert ask(headers, path, kind="websocket")[0]["type"] == "websocket.close"
 
 
 def test_the_token_goes_from_the_address_into_a_cookie():
@@ -111,12 +119,14 @@ def test_a_request_beyond_the_limit_is_cut_whether_it_says_its_length_or_not():
     assert status(OWN | {"content-length": str(MAX_REQUEST_BYTES)}, body=[b"x" * MAX_REQUEST_BYTES]) == 200
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.2", "example.com", "", "127.0.0.1 "])
-def test_an_address_that_others_reach_is_refused_with_the_way_that_works(host):
-    with pytest.raises(sb.InputError, match=r"is not a local address; .*ssh -L"):
-        check_host(host)
+def test_an_address_that_others_reach_is_refused_with_the_way_that_works(subtests):
+    for host in ["0.0.0.0", "::", "192.168.0.2", "example.com", "", "127.0.0.1 "]:
+        with subtests.test(host=host):
+            with pytest.raises(sb.InputError, match=r"is not a local address; .*ssh -L"):
+                check_host(host)
 
 
-@pytest.mark.parametrize("host", ["127.0.0.1", "127.0.0.2", "::1", "localhost"])
-def test_addresses_of_this_machine_are_taken(host):
-    assert check_host(host) == host
+def test_addresses_of_this_machine_are_taken(subtests):
+    for host in ["127.0.0.1", "127.0.0.2", "::1", "localhost"]:
+        with subtests.test(host=host):
+            assert check_host(host) == host

@@ -43,51 +43,54 @@ def opened(path):
 # --- names ---
 
 
-@pytest.mark.parametrize(
-    ("texts", "names"),
-    [
+def test_figures_are_named_as_people_name_them_and_come_in_the_order_of_the_paper(subtests):
+    for texts, names in [
         (["3"], ("3",)),
         (["3a", "3(b)", "3"], ("3",)),
         (["s1", "S1c"], ("S1",)),
         (["figure_4", "Fig. 5(b)", "fig6", "FIGURE 10"], ("4", "5", "6", "10")),
         (["S1", "11", "3"], ("3", "11", "S1")),
         ([], FIGURES),
-    ],
-)
-def test_figures_are_named_as_people_name_them_and_come_in_the_order_of_the_paper(texts, names):
-    assert figure_names(texts) == names
+    ]:
+        with subtests.test(texts=texts, names=names):
+            assert figure_names(texts) == names
 
 
-@pytest.mark.parametrize("text", ["2", "12", "3g", "", "S", "s2", "figure", "3 4", "../3", "-3"])
-def test_an_unknown_figure_is_refused_with_those_that_are_known(text):
-    with pytest.raises(sb.InputError, match=re.escape(f"figure {text!r} is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1;")):
-        figure_names(["3", text])
+def test_an_unknown_figure_is_refused_with_those_that_are_known(subtests):
+    for text in ["2", "12", "3g", "", "S", "s2", "figure", "3 4", "../3", "-3"]:
+        with subtests.test(text=text):
+            with pytest.raises(
+                sb.InputError, match=re.escape(f"figure {text!r} is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1;")
+            ):
+                figure_names(["3", text])
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_each_figure_has_its_module_its_name_and_full_sentences(name):
-    figure = load_figure(name)
-    assert (figure.name, figure.stem) == (name, f"figure_{name.lower()}")
-    assert figure.claim.endswith(".") and not figure.title.endswith(".")
-    assert len(Path(sys.modules[figure.compute.__module__].__file__).read_text().splitlines()) < 200
+def test_each_figure_has_its_module_its_name_and_full_sentences(subtests):
+    for name in FIGURES:
+        with subtests.test(name=name):
+            figure = load_figure(name)
+            assert (figure.name, figure.stem) == (name, f"figure_{name.lower()}")
+            assert figure.claim.endswith(".") and not figure.title.endswith(".")
+            assert len(Path(sys.modules[figure.compute.__module__].__file__).read_text().splitlines()) < 200
 
 
 # --- every figure ---
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_the_data_of_each_figure_are_described_and_converged(name):
-    data = data_of(name)
-    assert data.attrs["figure"] == name
-    assert data.attrs["source"] == f"stribeck {sb.__version__}"
-    assert data.attrs["finding"].endswith(".") and any(letter.isdigit() for letter in data.attrs["finding"])
-    assert 0 < data.attrs["error_estimate"] <= data.attrs["rtol"] <= 1e-6
-    for variable in data.variables.values():
-        assert variable.attrs["units"] and len(variable.attrs["long_name"]) > 5
-        assert variable.size > 0
-        if variable.dtype.kind == "f":
-            assert not np.isinf(variable.values).any()
-            assert np.isfinite(variable.values).any()
+def test_the_data_of_each_figure_are_described_and_converged(subtests):
+    for name in FIGURES:
+        with subtests.test(name=name):
+            data = data_of(name)
+            assert data.attrs["figure"] == name
+            assert data.attrs["source"] == f"stribeck {sb.__version__}"
+            assert data.attrs["finding"].endswith(".") and any(letter.isdigit() for letter in data.attrs["finding"])
+            assert 0 < data.attrs["error_estimate"] <= data.attrs["rtol"] <= 1e-6
+            for variable in data.variables.values():
+                assert variable.attrs["units"] and len(variable.attrs["long_name"]) > 5
+                assert variable.size > 0
+                if variable.dtype.kind == "f":
+                    assert not np.isinf(variable.values).any()
+                    assert np.isfinite(variable.values).any()
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -100,23 +103,25 @@ def test_each_figure_comes_back_from_its_file_as_it_was(name, tmp_path):
     assert found.attrs == data_of(name).attrs
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance(name):
-    figure = picture_of(name)
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
-    letters = {title[1] for title in titles if title.startswith("(")}
-    assert set(PANELS[name]) <= letters
-    words = "".join(text.get_text() for text in figure.texts).replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
-    for part in (f"Figure {name}: ", load_figure(name).title, f"stribeck {sb.__version__}, rtol 1e-"):
-        assert part.replace(" ", "") in words
+def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance(subtests):
+    for name in FIGURES:
+        with subtests.test(name=name):
+            figure = picture_of(name)
+            titles = [axes.get_title(loc="left") for axes in figure.axes]
+            letters = {title[1] for title in titles if title.startswith("(")}
+            assert set(PANELS[name]) <= letters
+            words = "".join(text.get_text() for text in figure.texts).replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
+            for part in (f"Figure {name}: ", load_figure(name).title, f"stribeck {sb.__version__}, rtol 1e-"):
+                assert part.replace(" ", "") in words
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_nothing_of_a_figure_is_cut_off_by_its_edge(name):
-    figure = picture_of(name)
-    box, (width, height) = figure.get_tightbbox(figure.canvas.get_renderer()), figure.get_size_inches()
-    assert box.x0 > 0 and box.x1 < width
-    assert box.y0 > 0 and box.y1 < height
+def test_nothing_of_a_figure_is_cut_off_by_its_edge(subtests):
+    for name in FIGURES:
+        with subtests.test(name=name):
+            figure = picture_of(name)
+            box, (width, height) = figure.get_tightbbox(figure.canvas.get_renderer()), figure.get_size_inches()
+            assert box.x0 > 0 and box.x1 < width
+            assert box.y0 > 0 and box.y1 < height
 
 
 def test_the_same_numbers_give_the_same_bytes_also_from_the_file(tmp_path):

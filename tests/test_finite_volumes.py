@@ -18,9 +18,10 @@ def compare(groups, cells, tolerance):
     assert state.contact_load_share == pytest.approx(share, abs=tolerance)
 
 
-@pytest.mark.parametrize("groups", STATES, ids=["mixed", "film"])
-def test_a_film_that_ends_is_that_of_finite_volumes(groups):
-    compare(groups, 480, 2e-2)
+def test_a_film_that_ends_is_that_of_finite_volumes(subtests):
+    for groups in STATES:
+        with subtests.test(groups=groups):
+            compare(groups, 480, 2e-2)
 
 
 @pytest.mark.slow

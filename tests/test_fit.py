@@ -50,54 +50,60 @@ def with_settings(tmp_path, contact=TRUE, **settings):
 # --- derivatives and exact data ---
 
 
-@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
-def test_sensitivities_agree_with_differences(abscissa):
-    values = {"speed": 1.0, "speed_viscosity": TRUE.viscosity, "hersey_number": TRUE.viscosity / TRUE.load}
-    speeds = np.array([1e-3, 3e-2])
-    data = measured(
-        np.tile(speeds * values[abscissa], 2),
-        np.ones(4),
-        abscissa=abscissa,
-        curve=[0, 0, 1, 1],
-        curves=("a", "b"),
-        inputs=({}, {"load": 60.0}),
-    )
-    names = FREE if abscissa == "speed" else ("roughness", "load")
-    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
-    model = FrictionModel(TRUE, data, free)
-    parts = solved_parts(model, "published", 1e-7)
-    jacobian = model.predict(np.zeros(len(free)), parts).jacobian
-    step = 3e-3
-    for i in range(len(free)):
-        move = step * np.eye(len(free))[i]
-        slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
-        assert jacobian[:, i] == pytest.approx(slope, abs=2e-5)
-    first = [each.name for each in free].index("roughness")
-    assert np.all(jacobian[2:, first] == 0) and np.all(jacobian[:2, first + 1] == 0)
+def test_sensitivities_agree_with_differences(subtests):
+    for abscissa in ["speed", "speed_viscosity", "hersey_number"]:
+        with subtests.test(abscissa=abscissa):
+            values = {"speed": 1.0, "speed_viscosity": TRUE.viscosity, "hersey_number": TRUE.viscosity / TRUE.load}
+            speeds = np.array([1e-3, 3e-2])
+            data = measured(
+                np.tile(speeds * values[abscissa], 2),
+                np.ones(4),
+                abscissa=abscissa,
+                curve=[0, 0, 1, 1],
+                curves=("a", "b"),
+                inputs=({}, {"load": 60.0}),
+            )
+            names = FREE if abscissa == "speed" else ("roughness", "load")
+            free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+            model = FrictionModel(TRUE, data, free)
+            parts = solved_parts(model, "published", 1e-7)
+            jacobian = model.predict(np.zeros(len(free)), parts).jacobian
+            step = 3e-3
+            for i in range(len(free)):
+                move = step * np.eye(len(free))[i]
+                slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
+                assert jacobian[:, i] == pytest.approx(slope, abs=2e-5)
+            first = [each.name for each in free].index("roughness")
+            assert np.all(jacobian[2:, first] == 0) and np.all(jacobian[:2, first + 1] == 0)
 
 
-@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
-def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
-    values = np.array([1e-3, 1e-1, 1e-2]) * {"speed": 1, "speed_viscosity": 0.05, "hersey_number": 0.05 / 30}[abscissa]
-    data = measured(
-        values,
-        np.ones(3),
-        abscissa=abscissa,
-        curve=[0, 0, 1],
-        curves=("a", "b"),
-        inputs=({}, {"viscosity": 0.01, "load": 20.0}),
-    )
-    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
-    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
-    model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
-    found = model.predict(theta, solved_parts(model, "balanced", 1e-8))
-    for i, value in enumerate(values):
-        contact = model.contact_of(data.curve[i], theta)
-        per_speed = {"speed": 1.0, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}
-        contact = contact.replace(speed=value / per_speed[abscissa])
-        assert found.friction[i] == pytest.approx(sb.solve(contact).friction(definition="balanced").total, rel=1e-6)
-    assert {each.name for each in free if each.is_factor} <= {"viscosity", "load"}
-    assert sum(each.name == "roughness" for each in free) == 2
+def test_the_prediction_is_the_friction_of_the_contacts(subtests):
+    for abscissa in ["speed", "speed_viscosity", "hersey_number"]:
+        with subtests.test(abscissa=abscissa):
+            values = np.array([1e-3, 1e-1, 1e-2]) * {"speed": 1, "speed_viscosity": 0.05, "hersey_number": 0.05 / 30}[abscissa]
+            data = measured(
+                values,
+                np.ones(3),
+                abscissa=abscissa,
+                curve=[0, 0, 1],
+                curves=("a", "b"),
+                inputs=({}, {"viscosity": 0.01, "load": 20.0}),
+            )
+            names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+            free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+            model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
+            found = model.predict(theta, solved_parts(model, "balanced", 1e-8))
+            for i, value in enumerate(values):
+                contact = model.contact_of(data.curve[i], theta)
+                per_speed = {
+                    "speed": 1.0,
+                    "speed_viscosity": contact.viscosity,
+                    "hersey_number": contact.viscosity / contact.load,
+                }
+                contact = contact.replace(speed=value / per_speed[abscissa])
+                assert found.friction[i] == pytest.approx(sb.solve(contact).friction(definition="balanced").total, rel=1e-6)
+            assert {each.name for each in free if each.is_factor} <= {"viscosity", "load"}
+            assert sum(each.name == "roughness" for each in free) == 2
 
 
 def test_atlas_and_solver_give_the_same_prediction():
@@ -381,14 +387,15 @@ def test_data_of_greenwood_and_tripp_pass_for_their_own(of_asperities):
     assert found.contact.law == contact.law
 
 
-@pytest.mark.parametrize("seed", [11, 12, 13])
-def test_a_plateau_that_falls_with_speed_is_noticed(seed):
-    speeds, friction = exact()
-    friction *= (speeds / speeds[0]) ** -0.05 * np.exp(0.03 * np.random.default_rng(seed).standard_normal(25))
-    found = sb.fit(measured(speeds, friction), TRUE, intervals=False)
-    assert found.converged
-    assert found.quality.structure_probability < 0.01
-    assert any("structure along the speed" in message for message in found.quality.messages)
+def test_a_plateau_that_falls_with_speed_is_noticed(subtests):
+    for seed in [11, 12, 13]:
+        with subtests.test(seed=seed):
+            speeds, friction = exact()
+            friction *= (speeds / speeds[0]) ** -0.05 * np.exp(0.03 * np.random.default_rng(seed).standard_normal(25))
+            found = sb.fit(measured(speeds, friction), TRUE, intervals=False)
+            assert found.converged
+            assert found.quality.structure_probability < 0.01
+            assert any("structure along the speed" in message for message in found.quality.messages)
 
 
 def test_outliers_do_not_steer_the_robust_fit():
@@ -448,11 +455,12 @@ FEW = {
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("rows", "free", "sentence"), FEW.values(), ids=FEW.keys())
-def test_too_few_rows_are_refused(rows, free, sentence):
-    speeds, friction = exact()
-    with pytest.raises(sb.InputError, match=sentence):
-        sb.fit(measured(speeds[:rows], friction[:rows]), TRUE, free=free)
+def test_too_few_rows_are_refused(subtests):
+    for rows, free, sentence in FEW.values():
+        with subtests.test(rows=rows, free=free, sentence=sentence):
+            speeds, friction = exact()
+            with pytest.raises(sb.InputError, match=sentence):
+                sb.fit(measured(speeds[:rows], friction[:rows]), TRUE, free=free)
 
 
 def test_bad_arguments_are_one_sentence(tmp_path):
@@ -559,19 +567,20 @@ def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
         sb.fit(CASE, tmp_path / "missing.toml")
 
 
-@pytest.mark.parametrize("case", [CASE, EXAMPLES / "pdms_cylinder.toml"], ids=["with [fit]", "without"])
-def test_what_counts_as_known_exactly_is_said(capsys, case):
-    fitted = {"boundary_friction", "roughness"} | ({"modulus"} if case == CASE else set())
-    held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
-    shown = ", ".join(each for each in held if each.split()[0] not in fitted)
-    assert (
-        f"Held fixed: {shown}. Their uncertainty is not included in the errors "
-        f"above" in call(capsys, "fit", MEASURED, case).out
-    )
-    found = json.loads(call(capsys, "fit", MEASURED, case, "--json").out)
-    known = {each["name"]: (each["values"], each["unit"]) for each in found["held"]}
-    assert set(known) == set(FREE) - fitted
-    assert known["viscosity"] == ([0.05, 0.005], "Pa*s")
+def test_what_counts_as_known_exactly_is_said(subtests, capsys):
+    for case in [CASE, EXAMPLES / "pdms_cylinder.toml"]:
+        with subtests.test(case=case):
+            fitted = {"boundary_friction", "roughness"} | ({"modulus"} if case == CASE else set())
+            held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
+            shown = ", ".join(each for each in held if each.split()[0] not in fitted)
+            assert (
+                f"Held fixed: {shown}. Their uncertainty is not included in the errors "
+                f"above" in call(capsys, "fit", MEASURED, case).out
+            )
+            found = json.loads(call(capsys, "fit", MEASURED, case, "--json").out)
+            known = {each["name"]: (each["values"], each["unit"]) for each in found["held"]}
+            assert set(known) == set(FREE) - fitted
+            assert known["viscosity"] == ([0.05, 0.005], "Pa*s")
 
 
 def test_what_the_data_hold_does_not_count_as_known():
@@ -592,8 +601,9 @@ MISUSE = {
 }
 
 
-@pytest.mark.parametrize(("tokens", "sentence"), MISUSE.values(), ids=MISUSE.keys())
-def test_misuse_of_the_command_is_one_sentence(capsys, tokens, sentence):
-    answer = call(capsys, "fit", *tokens)
-    assert answer.code == 2 and sentence in answer.err and answer.out == ""
-    assert len(answer.err.splitlines()) == 1
+def test_misuse_of_the_command_is_one_sentence(subtests, capsys):
+    for tokens, sentence in MISUSE.values():
+        with subtests.test(tokens=tokens, sentence=sentence):
+            answer = call(capsys, "fit", *tokens)
+            assert answer.code == 2 and sentence in answer.err and answer.out == ""
+            assert len(answer.err.splitlines()) == 1

@@ -80,85 +80,96 @@ FUNCTIONS = {
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("function", FUNCTIONS)
-@pytest.mark.parametrize("name", FILMS)
-def test_a_traced_film_has_the_differences_of_what_it_returns(name, function):
-    given = dict(zip(("gap", "pressure", "flux_gap"), some_films(), strict=True)) | {"speed": np.array(1.3)}
-    if not FILMS[name].uses_pressure:
-        given["pressure"] = None
-    if not FILMS[name].uses_speed:
-        del given["speed"]
+def test_a_traced_film_has_the_differences_of_what_it_returns(subtests):
+    for name in FILMS:
+        for function in FUNCTIONS:
+            with subtests.test(name=name, function=function):
+                given = dict(zip(("gap", "pressure", "flux_gap"), some_films(), strict=True)) | {"speed": np.array(1.3)}
+                if not FILMS[name].uses_pressure:
+                    given["pressure"] = None
+                if not FILMS[name].uses_speed:
+                    del given["speed"]
 
-    def values(speed=1.3, **at):
-        return FUNCTIONS[function](FILMS[name].at(speed), *at.values())
+                def values(speed=1.3, **at):
+                    return FUNCTIONS[function](FILMS[name].at(speed), *at.values())
 
-    traced = {each: None if value is None else Trace.number(each, np.asarray(value)) for each, value in given.items()}
-    found, plain = values(**traced), values(**given)
-    np.testing.assert_allclose(found.value, plain, rtol=1e-13, atol=1e-14 * np.abs(plain).max())  # walls differ by rounding
-    tolerance = {"rtol": 2e-6, "atol": 1e-7 * (1 + np.abs(plain).max())}
-    for each, value in given.items():
-        if value is not None:
-            expected = differences(lambda x, each=each: values(**given | {each: x}), value)
-            np.testing.assert_allclose(np.broadcast_to(found.columns.get(each, 0.0), plain.shape), expected, **tolerance)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("name", FILMS)
-def test_tractions_differ_by_the_pull_of_the_pressure_gradient(name):
-    film = FILMS[name].at(1.3)
-    h, p, m = some_films()
-    p = p if film.uses_pressure else None
-    substrate, cylinder = film.tractions(h, p, m)
-    if name != "patir-cheng":  # whose friction factors are fits that need not balance
-        np.testing.assert_allclose(substrate - cylinder, 6 * h * film.gradient(h, p, m), rtol=1e-10, atol=1e-13)
+                traced = {
+                    each: None if value is None else Trace.number(each, np.asarray(value)) for each, value in given.items()
+                }
+                found, plain = values(**traced), values(**given)
+                np.testing.assert_allclose(
+                    found.value, plain, rtol=1e-13, atol=1e-14 * np.abs(plain).max()
+                )  # walls differ by rounding
+                tolerance = {"rtol": 2e-6, "atol": 1e-7 * (1 + np.abs(plain).max())}
+                for each, value in given.items():
+                    if value is not None:
+                        expected = differences(lambda x, each=each: values(**given | {each: x}), value)
+                        np.testing.assert_allclose(
+                            np.broadcast_to(found.columns.get(each, 0.0), plain.shape), expected, **tolerance
+                        )
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", [name for name, film in FILMS.items() if film.uses_speed])
-def test_stacked_states_have_each_their_own_speed(name):
-    h, p, m = some_films()
-    speeds, fluxes = np.array([[0.3], [2.0]]), np.array([[1.0], [1.2]])
-    p = p if FILMS[name].uses_pressure else None
-    together = FILMS[name].at(speeds).gradient(np.stack([h, 1.1 * h]), None if p is None else np.stack([p, p]), fluxes)
-    for k, gap in enumerate((h, 1.1 * h)):
-        alone = FILMS[name].at(speeds[k, 0]).gradient(gap, p, fluxes[k])
-        np.testing.assert_allclose(together[k], alone, rtol=1e-11, atol=1e-15)
+def test_tractions_differ_by_the_pull_of_the_pressure_gradient(subtests):
+    for name in FILMS:
+        with subtests.test(name=name):
+            film = FILMS[name].at(1.3)
+            h, p, m = some_films()
+            p = p if film.uses_pressure else None
+            substrate, cylinder = film.tractions(h, p, m)
+            if name != "patir-cheng":  # whose friction factors are fits that need not balance
+                np.testing.assert_allclose(substrate - cylinder, 6 * h * film.gradient(h, p, m), rtol=1e-10, atol=1e-13)
+
+
+@pytest.mark.quick
+def test_stacked_states_have_each_their_own_speed(subtests):
+    for name in [name for name, film in FILMS.items() if film.uses_speed]:
+        with subtests.test(name=name):
+            h, p, m = some_films()
+            speeds, fluxes = np.array([[0.3], [2.0]]), np.array([[1.0], [1.2]])
+            p = p if FILMS[name].uses_pressure else None
+            together = FILMS[name].at(speeds).gradient(np.stack([h, 1.1 * h]), None if p is None else np.stack([p, p]), fluxes)
+            for k, gap in enumerate((h, 1.1 * h)):
+                alone = FILMS[name].at(speeds[k, 0]).gradient(gap, p, fluxes[k])
+                np.testing.assert_allclose(together[k], alone, rtol=1e-11, atol=1e-15)
 
 
 # Shear thinning
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("row", REFERENCE["generalised_newtonian_local"]["carreau"], ids=lambda row: f"{row['h']:g}")
-def test_a_carreau_film_has_the_gradient_of_its_solved_profile(row):
-    film = ShearThinning(Carreau(row["W"], row["n"]), slide=row["s"])
-    assert film.gradient(np.array([row["h"]]), None, row["m"])[0] == pytest.approx(row["G"], rel=1e-12)
+def test_a_carreau_film_has_the_gradient_of_its_solved_profile(subtests):
+    for row in REFERENCE["generalised_newtonian_local"]["carreau"]:
+        with subtests.test(row=row):
+            film = ShearThinning(Carreau(row["W"], row["n"]), slide=row["s"])
+            assert film.gradient(np.array([row["h"]]), None, row["m"])[0] == pytest.approx(row["G"], rel=1e-12)
 
 
-@pytest.mark.parametrize("law", [Carreau(4.0, 0.5, 0.05), Cross(4.0, 0.6, 0.01), Eyring(0.5)], ids=lambda law: law.name)
-def test_the_local_flow_is_that_of_the_boundary_value_problem_across_the_film(law):
-    h, m, s = 1.5, 1.0, 0.8
-    film = ShearThinning(law, slide=s)
-    expected = film.gradient(np.array([h]), None, m)[0]
-    t, g = film.tractions(np.array([h]), None, m), 6 * expected
-    stress = [-t[0][0], -t[1][0]]
-    assert stress[1] - stress[0] == pytest.approx(g * h, rel=1e-12)
+def test_the_local_flow_is_that_of_the_boundary_value_problem_across_the_film(subtests):
+    for law in [Carreau(4.0, 0.5, 0.05), Cross(4.0, 0.6, 0.01), Eyring(0.5)]:
+        with subtests.test(law=law):
+            h, m, s = 1.5, 1.0, 0.8
+            film = ShearThinning(law, slide=s)
+            expected = film.gradient(np.array([h]), None, m)[0]
+            t, g = film.tractions(np.array([h]), None, m), 6 * expected
+            stress = [-t[0][0], -t[1][0]]
+            assert stress[1] - stress[0] == pytest.approx(g * h, rel=1e-12)
 
-    def rate(tau):
-        return np.sign(tau) * law.rate(np.abs(tau) * law.time) / law.time
+            def rate(tau):
+                return np.sign(tau) * law.rate(np.abs(tau) * law.time) / law.time
 
-    # Velocity and volume carried from wall to wall: unknown are the stress in the middle and its gradient.
-    def profile(z, y, unknown):
-        return np.stack([rate(unknown[0] + unknown[1] * (z - h / 2)), y[0]])
+            # Velocity and volume carried from wall to wall: unknown are the stress in the middle and its gradient.
+            def profile(z, y, unknown):
+                return np.stack([rate(unknown[0] + unknown[1] * (z - h / 2)), y[0]])
 
-    def ends(a, b, unknown):
-        return np.array([a[0] - s, b[0], a[1], b[1] - (m - h) / 2 - s * h / 2])
+            def ends(a, b, unknown):
+                return np.array([a[0] - s, b[0], a[1], b[1] - (m - h) / 2 - s * h / 2])
 
-    z = np.linspace(0, h, 40)
-    start = np.stack([s * (1 - z / h), z * 0])
-    solved = solve_bvp(profile, ends, z, start, p=[-s / h, 0.1], tol=1e-9, max_nodes=20000)
-    assert solved.success
-    assert solved.p[1] == pytest.approx(g, rel=1e-7)
+            z = np.linspace(0, h, 40)
+            start = np.stack([s * (1 - z / h), z * 0])
+            solved = solve_bvp(profile, ends, z, start, p=[-s / h, 0.1], tol=1e-9, max_nodes=20000)
+            assert solved.success
+            assert solved.p[1] == pytest.approx(g, rel=1e-7)
 
 
 @pytest.mark.quick
@@ -183,22 +194,25 @@ def test_carreaus_stress_has_its_known_value():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("law", CURVES, ids=lambda law: f"{law.name}-{law.parameters}")
-def test_a_rate_law_its_slope_its_inverse_and_its_moments_belong_together(law):
-    rate = np.array([1e-6, 1e-3, 0.1, 0.7, 1.0, 3.0, 50.0, 1e5, 1e9])
-    stress, slope = law.stress(rate)
-    step = 1e-6 * rate
-    np.testing.assert_allclose((law.stress(rate + step)[0] - law.stress(rate - step)[0]) / (2 * step), slope, rtol=1e-8)
-    np.testing.assert_allclose(law.rate(stress), rate, rtol=1e-11)
-    for x, first, second in zip(rate, *law.moments(rate, stress), strict=True):
-        for weight, found in ((lambda g: 1.0, first), (lambda g: g, second)):
+def test_a_rate_law_its_slope_its_inverse_and_its_moments_belong_together(subtests):
+    for law in CURVES:
+        with subtests.test(law=law):
+            rate = np.array([1e-6, 1e-3, 0.1, 0.7, 1.0, 3.0, 50.0, 1e5, 1e9])
+            stress, slope = law.stress(rate)
+            step = 1e-6 * rate
+            np.testing.assert_allclose(
+                (law.stress(rate + step)[0] - law.stress(rate - step)[0]) / (2 * step), slope, rtol=1e-8
+            )
+            np.testing.assert_allclose(law.rate(stress), rate, rtol=1e-11)
+            for x, first, second in zip(rate, *law.moments(rate, stress), strict=True):
+                for weight, found in ((lambda g: 1.0, first), (lambda g: g, second)):
 
-            def integrand(v, weight=weight):
-                g, slope = law.stress(np.array([np.exp(v)]))
-                return float(np.exp(2 * v) * slope[0] * weight(float(g[0])))
+                    def integrand(v, weight=weight):
+                        g, slope = law.stress(np.array([np.exp(v)]))
+                        return float(np.exp(2 * v) * slope[0] * weight(float(g[0])))
 
-            expected = quad(integrand, np.log(x) - 60, np.log(x), epsabs=0, epsrel=1e-12, limit=400)[0]
-            assert found == pytest.approx(expected, rel=1e-10)
+                    expected = quad(integrand, np.log(x) - 60, np.log(x), epsabs=0, epsrel=1e-12, limit=400)[0]
+                    assert found == pytest.approx(expected, rel=1e-10)
 
 
 def test_a_rate_that_is_no_number_has_no_moments():
@@ -209,18 +223,19 @@ def test_a_rate_that_is_no_number_has_no_moments():
     assert np.isfinite([first[1], second[1]]).all()
 
 
-@pytest.mark.parametrize("law", CURVES, ids=lambda law: f"{law.name}-{law.parameters}")
-def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(law):
-    rng = np.random.default_rng(RNG_SEED)
-    size = 10 ** rng.uniform(-8, 8, 3000)
-    r_0 = size * rng.choice([0, 1, 1, 1e-3, -1, 1e-6], 3000)
-    r_1 = size * 10 ** rng.uniform(-6, 1, 3000) * rng.choice([-1, 1], 3000)
-    flow = local_flow.profile(law, r_0, r_1)
-    walls = np.stack(flow[:2])
-    (i_0, i_1), _ = local_flow._integrals(law, walls, np.sign(walls) * law.stress(np.abs(walls))[0])
-    scale = np.abs(r_0) + 6 * np.abs(r_1)
-    assert np.abs((i_0 - r_0) / scale).max() < 1e-12
-    assert np.abs((i_1 - r_1) / scale).max() < 1e-12
+def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(subtests):
+    for law in CURVES:
+        with subtests.test(law=law):
+            rng = np.random.default_rng(RNG_SEED)
+            size = 10 ** rng.uniform(-8, 8, 3000)
+            r_0 = size * rng.choice([0, 1, 1, 1e-3, -1, 1e-6], 3000)
+            r_1 = size * 10 ** rng.uniform(-6, 1, 3000) * rng.choice([-1, 1], 3000)
+            flow = local_flow.profile(law, r_0, r_1)
+            walls = np.stack(flow[:2])
+            (i_0, i_1), _ = local_flow._integrals(law, walls, np.sign(walls) * law.stress(np.abs(walls))[0])
+            scale = np.abs(r_0) + 6 * np.abs(r_1)
+            assert np.abs((i_0 - r_0) / scale).max() < 1e-12
+            assert np.abs((i_1 - r_1) / scale).max() < 1e-12
 
 
 def test_where_the_local_flow_starts_changes_rounding_only():
@@ -234,15 +249,16 @@ def test_where_the_local_flow_starts_changes_rounding_only():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("law", "order"), [(lambda t: Carreau(t, 0.5), 2), (lambda t: Cross(t, 0.7), 0.7), (lambda t: Eyring(1 / t), 2)]
-)
-def test_a_fluid_that_relaxes_at_once_is_newtonian(law, order):
-    h, _, m = some_films()
-    newtonian = Newtonian(slide=0.5).gradient(h, None, m)
-    errors = [np.abs(ShearThinning(law(t), slide=0.5).gradient(h, None, m) / newtonian - 1).max() for t in (1e-4, 1e-5)]
-    assert errors[1] < 3e-3
-    assert np.log10(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
+def test_a_fluid_that_relaxes_at_once_is_newtonian(subtests):
+    for law, order in [(lambda t: Carreau(t, 0.5), 2), (lambda t: Cross(t, 0.7), 0.7), (lambda t: Eyring(1 / t), 2)]:
+        with subtests.test(law=law, order=order):
+            h, _, m = some_films()
+            newtonian = Newtonian(slide=0.5).gradient(h, None, m)
+            errors = [
+                np.abs(ShearThinning(law(t), slide=0.5).gradient(h, None, m) / newtonian - 1).max() for t in (1e-4, 1e-5)
+            ]
+            assert errors[1] < 3e-3
+            assert np.log10(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
 
 
 @pytest.mark.quick
@@ -255,19 +271,20 @@ def test_at_rest_a_fluid_with_a_plateau_is_newtonian_and_a_power_law_is_finite()
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", FILMS)
-def test_a_blend_goes_from_the_newtonian_film_to_the_film_itself(name):
-    h, p, m = some_films()
-    film = FILMS[name]
-    p = p if film.uses_pressure else None
+def test_a_blend_goes_from_the_newtonian_film_to_the_film_itself(subtests):
+    for name in FILMS:
+        with subtests.test(name=name):
+            h, p, m = some_films()
+            film = FILMS[name]
+            p = p if film.uses_pressure else None
 
-    def gradient(part):
-        return blend(film, part).at(1.3).gradient(h, p, m)
+            def gradient(part):
+                return blend(film, part).at(1.3).gradient(h, p, m)
 
-    np.testing.assert_allclose(gradient(1.0), film.at(1.3).gradient(h, p, m), rtol=1e-12)
-    np.testing.assert_allclose(gradient(0.0), Newtonian().gradient(h, None, m), rtol=1e-12)
-    half = gradient(0.5)
-    assert (np.abs(half - gradient(1.0)) <= np.abs(gradient(0.0) - gradient(1.0))).all()
+            np.testing.assert_allclose(gradient(1.0), film.at(1.3).gradient(h, p, m), rtol=1e-12)
+            np.testing.assert_allclose(gradient(0.0), Newtonian().gradient(h, None, m), rtol=1e-12)
+            half = gradient(0.5)
+            assert (np.abs(half - gradient(1.0)) <= np.abs(gradient(0.0) - gradient(1.0))).all()
 
 
 # Pressure and density
@@ -315,26 +332,28 @@ def test_the_mean_gap_is_turned_into_the_nominal_one():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("row", REFERENCE["d_effective_medium_table"]["rows"], ids=lambda row: f"{row[0]:g}")
-def test_the_effective_medium_has_the_values_of_an_independent_program(row):
-    _, mean, _, phi = row
-    factors = EffectiveMedium(2.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
-    assert factors.pressure(np.array([mean]))[0][0] == pytest.approx(phi, abs=2e-5)
+def test_the_effective_medium_has_the_values_of_an_independent_program(subtests):
+    for row in REFERENCE["d_effective_medium_table"]["rows"]:
+        with subtests.test(row=row):
+            _, mean, _, phi = row
+            factors = EffectiveMedium(2.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
+            assert factors.pressure(np.array([mean]))[0][0] == pytest.approx(phi, abs=2e-5)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("separation", [0.1, 0.9, 3.67, 8.0])
-def test_the_width_of_the_medium_solves_its_equation(separation):
-    nodes, weights = np.polynomial.legendre.leggauss(600)
-    widest = separation + 9.0
-    u, share = 0.5 * widest * (nodes + 1), 0.5 * widest * weights
-    share = share * np.exp(-0.5 * (u - separation) ** 2) / np.sqrt(2 * np.pi)
+def test_the_width_of_the_medium_solves_its_equation(subtests):
+    for separation in [0.1, 0.9, 3.67, 8.0]:
+        with subtests.test(separation=separation):
+            nodes, weights = np.polynomial.legendre.leggauss(600)
+            widest = separation + 9.0
+            u, share = 0.5 * widest * (nodes + 1), 0.5 * widest * weights
+            share = share * np.exp(-0.5 * (u - separation) ** 2) / np.sqrt(2 * np.pi)
 
-    def excess(e):
-        return share @ ((u**3 - e**3) / (u**3 + e**3)) - ndtr(-separation)
+            def excess(e):
+                return share @ ((u**3 - e**3) / (u**3 + e**3)) - ndtr(-separation)
 
-    found = float(medium_width(np.array([separation]))[0][0])
-    assert found == pytest.approx(brentq(excess, 1e-3, 10.0, xtol=1e-14, rtol=1e-13), rel=1e-9)
+            found = float(medium_width(np.array([separation]))[0][0])
+            assert found == pytest.approx(brentq(excess, 1e-3, 10.0, xtol=1e-14, rtol=1e-13), rel=1e-9)
 
 
 def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_when_wide():
@@ -359,30 +378,32 @@ def test_shear_flow_factors_change_sign_with_the_rough_surface_and_nearly_meet_w
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("factors", [EffectiveMedium(2.0), PatirCheng(2.0), PatirCheng(2.0, 3.0)], ids=repr)
-def test_the_flow_factor_alone_is_that_beside_its_slope(factors):
-    factors = factors.scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
-    gap = np.concatenate([np.geomspace(1e-3, 1e4, 301), PERCOLATION + np.array([-1e-9, 0.0, 1e-9])])
-    np.testing.assert_array_equal(factors.factor(gap), factors.pressure(gap)[0])
+def test_the_flow_factor_alone_is_that_beside_its_slope(subtests):
+    for factors in [EffectiveMedium(2.0), PatirCheng(2.0), PatirCheng(2.0, 3.0)]:
+        with subtests.test(factors=factors):
+            factors = factors.scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
+            gap = np.concatenate([np.geomspace(1e-3, 1e4, 301), PERCOLATION + np.array([-1e-9, 0.0, 1e-9])])
+            np.testing.assert_array_equal(factors.factor(gap), factors.pressure(gap)[0])
 
 
-@pytest.mark.parametrize("argument", ["nominal", "mean"])
-@pytest.mark.parametrize(("gamma", "least"), [(1 / 9, 1.0), (1 / 6, 1.0), (1 / 3, 0.75), (1.0, 0.5), (3.0, 0.5), (9.0, 0.5)])
-def test_where_the_fits_end_flow_goes_on_and_a_wider_gap_carries_more(gamma, least, argument):
+def test_where_the_fits_end_flow_goes_on_and_a_wider_gap_carries_more(subtests):
     """Taken further the fits give a negative flow, and past a rough cylinder at rest less of it through a wider gap."""
-    factors = PatirCheng(1.0, gamma, 0.0, argument=argument).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
-    end = least if argument == "mean" else mean_width(least)
-    gap = end * np.array([0.3, 0.6, 0.9, 1 - 1e-9, 1 + 1e-9, 1.1, 1.5])
-    (phi, phi_slope), (carried, slope) = factors.pressure(gap), factors.shear(gap)
-    assert (phi > 0).all()
-    assert (np.diff(phi * gap**3) > 0).all()
-    if argument == "nominal":  # the mean gap taken for it may carry a little backwards
-        assert (np.diff(gap + carried) > 0).all()
-    np.testing.assert_allclose((phi[3], carried[3]), (phi[4], carried[4]), rtol=1e-7)
-    smooth = np.delete(gap, [3, 4])
-    for of, found in ((factors.pressure, phi_slope), (factors.shear, slope)):
-        by_difference = (of(smooth + 1e-6)[0] - of(smooth - 1e-6)[0]) / 2e-6
-        np.testing.assert_allclose(np.delete(found, [3, 4]), by_difference, rtol=1e-5, atol=1e-8)
+    for gamma, least in [(1 / 9, 1.0), (1 / 6, 1.0), (1 / 3, 0.75), (1.0, 0.5), (3.0, 0.5), (9.0, 0.5)]:
+        for argument in ["nominal", "mean"]:
+            with subtests.test(gamma=gamma, least=least, argument=argument):
+                factors = PatirCheng(1.0, gamma, 0.0, argument=argument).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
+                end = least if argument == "mean" else mean_width(least)
+                gap = end * np.array([0.3, 0.6, 0.9, 1 - 1e-9, 1 + 1e-9, 1.1, 1.5])
+                (phi, phi_slope), (carried, slope) = factors.pressure(gap), factors.shear(gap)
+                assert (phi > 0).all()
+                assert (np.diff(phi * gap**3) > 0).all()
+                if argument == "nominal":  # the mean gap taken for it may carry a little backwards
+                    assert (np.diff(gap + carried) > 0).all()
+                np.testing.assert_allclose((phi[3], carried[3]), (phi[4], carried[4]), rtol=1e-7)
+                smooth = np.delete(gap, [3, 4])
+                for of, found in ((factors.pressure, phi_slope), (factors.shear, slope)):
+                    by_difference = (of(smooth + 1e-6)[0] - of(smooth - 1e-6)[0]) / 2e-6
+                    np.testing.assert_allclose(np.delete(found, [3, 4]), by_difference, rtol=1e-5, atol=1e-8)
 
 
 @pytest.mark.quick
@@ -400,9 +421,8 @@ def test_the_friction_factor_is_the_mean_of_one_over_the_width():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("make", "said"),
-    [
+def test_impossible_parameters_are_refused_by_name(subtests):
+    for make, said in [
         (lambda: Carreau("1 ms", 1.5), "thicken"),
         (lambda: Carreau("1 ms", 0.5, "2 Pa*s").scaled(FilmUnits(1, 1, 1, 1.0)), "below the viscosity"),
         (lambda: Cross("1 ms", 1.0), "Carreau"),
@@ -412,8 +432,7 @@ def test_the_friction_factor_is_the_mean_of_one_over_the_width():
         (lambda: PatirCheng(2.0, 3.0, friction_factors=True), "isotropic"),
         (lambda: PatirCheng(-2.0), "alpha"),
         (lambda: EffectiveMedium().scaled(FilmUnits(1, 1, 1, 1)), "need alpha"),
-    ],
-)
-def test_impossible_parameters_are_refused_by_name(make, said):
-    with pytest.raises(sb.InputError, match=said):
-        make()
+    ]:
+        with subtests.test(make=make, said=said):
+            with pytest.raises(sb.InputError, match=said):
+                make()

@@ -70,21 +70,23 @@ def through(row):
     return guess
 
 
-@pytest.mark.parametrize("row", FILMS + THINNING, ids=lambda row: f"{row['case']}-{row.get('s', 1):g}-{row['speed']:g}")
-def test_a_film_is_that_of_an_independent_solver(row):
-    found = with_friction(through(row), row)
-    expected = {name: row[name] for name in found if name in row}
-    friction = {name: expected.pop(name) for name in list(expected) if name.startswith("mu")}
-    assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-6, abs=1e-9)
-    assert {name: found[name] for name in friction} == pytest.approx(friction, rel=3e-5)
+def test_a_film_is_that_of_an_independent_solver(subtests):
+    for row in FILMS + THINNING:
+        with subtests.test(row=row):
+            found = with_friction(through(row), row)
+            expected = {name: row[name] for name in found if name in row}
+            friction = {name: expected.pop(name) for name in list(expected) if name.startswith("mu")}
+            assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-6, abs=1e-9)
+            assert {name: found[name] for name in friction} == pytest.approx(friction, rel=3e-5)
 
 
-@pytest.mark.parametrize("row", REFERENCE["combined"], ids=("half-plane", "layer"))
-def test_all_laws_at_once_are_those_of_an_independent_solver(row):
-    film, d = film_of(row), (Layer(1.0, 0.5),) if "layer" in row["case"] else ()
-    state = solved(Model(film, Cavitation.EXIT, *d), row["speed"], row["load"], row["kappa"])
-    found = observed(state)
-    assert found == pytest.approx({name: row[name] for name in found}, rel=1e-6, abs=1e-9)
+def test_all_laws_at_once_are_those_of_an_independent_solver(subtests):
+    for row in REFERENCE["combined"]:
+        with subtests.test(row=row):
+            film, d = film_of(row), (Layer(1.0, 0.5),) if "layer" in row["case"] else ()
+            state = solved(Model(film, Cavitation.EXIT, *d), row["speed"], row["load"], row["kappa"])
+            found = observed(state)
+            assert found == pytest.approx({name: row[name] for name in found}, rel=1e-6, abs=1e-9)
 
 
 class Shortened(EffectiveMedium):
@@ -101,33 +103,31 @@ class Shortened(EffectiveMedium):
         return self.pressure(gap)[0]
 
 
-@pytest.mark.parametrize("row", REFERENCE["d_effective_medium_and_power_law"][:2], ids=lambda row: f"{row['speed']:g}")
-def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_its_wide_gaps(row):
+def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_its_wide_gaps(subtests):
     """Without them they differ by 7e-5 in the film and 5e-4 in the share at speed 1e-3."""
-    units = FilmUnits(1.0, row["speed"], 1.0, 1.0, decay_length=row["kappa"])
-    model = Model(Newtonian(flow=Shortened(2.0).scaled(units)), Cavitation.EXIT)
-    found = observed(solved(model, row["speed"], row["load"], row["kappa"]))
-    assert found == pytest.approx({name: row[name] for name in found}, rel=1e-5, abs=1e-7)
+    for row in REFERENCE["d_effective_medium_and_power_law"][:2]:
+        with subtests.test(row=row):
+            units = FilmUnits(1.0, row["speed"], 1.0, 1.0, decay_length=row["kappa"])
+            model = Model(Newtonian(flow=Shortened(2.0).scaled(units)), Cavitation.EXIT)
+            found = observed(solved(model, row["speed"], row["load"], row["kappa"]))
+            assert found == pytest.approx({name: row[name] for name in found}, rel=1e-5, abs=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("groups", "alpha", "gamma", "share", "cavitation"),
-    [
+def test_meshes_resolve_kinks_of_the_flow_between_asperities(subtests):
+    """Where no mesh saw the kinks the error stayed at 2e-5, at up to a thousand nodes."""
+    for groups, alpha, gamma, share, cavitation in [
         ((6.834312304194911e-10, 0.13531570505883228, 1.121902568602313), 3.5075, 3.0, 1.0, "none"),
         ((1.5616362323239672e-9, 0.1919816599071153, 23.679257664635262), 2.2885, 1.0, 1.0, "exit"),
         ((1.2626860284668381e-6, 2.838951018988636, 0.19617378129447713), 3.743, 3.0, 1.0, "exit"),
-    ],
-    ids=("where the fit of phi_x ends", "where the liquid behind the exit fills the gap", "where the fit of phi_s ends"),
-)
-def test_meshes_resolve_kinks_of_the_flow_between_asperities(groups, alpha, gamma, share, cavitation):
-    """Where no mesh saw the kinks the error stayed at 2e-5, at up to a thousand nodes."""
-    speed, load, kappa = groups
-    parts = {"flow_factors": sb.fluids.PatirCheng(alpha, gamma, share), "cavitation": cavitation}
-    states = [sb.solve(sb.Groups(speed, load, kappa * load), rtol=rtol, **parts) for rtol in (1e-6, 1e-7)]
-    assert states[0].mesh.size < 500
-    for name in ("flux_gap", "viscous_balanced", "viscous_upper"):
-        coarse, fine = (getattr(state.observables, name) for state in states)
-        assert abs(coarse - fine) < 1e-6 * abs(states[1].observables.viscous_balanced if "viscous" in name else fine)
+    ]:
+        with subtests.test(groups=groups, alpha=alpha, gamma=gamma, share=share, cavitation=cavitation):
+            speed, load, kappa = groups
+            parts = {"flow_factors": sb.fluids.PatirCheng(alpha, gamma, share), "cavitation": cavitation}
+            states = [sb.solve(sb.Groups(speed, load, kappa * load), rtol=rtol, **parts) for rtol in (1e-6, 1e-7)]
+            assert states[0].mesh.size < 500
+            for name in ("flux_gap", "viscous_balanced", "viscous_upper"):
+                coarse, fine = (getattr(state.observables, name) for state in states)
+                assert abs(coarse - fine) < 1e-6 * abs(states[1].observables.viscous_balanced if "viscous" in name else fine)
 
 
 def test_a_panel_ends_where_the_last_path_through_an_effective_medium_closes():
@@ -138,22 +138,20 @@ def test_a_panel_ends_where_the_last_path_through_an_effective_medium_closes():
     assert found.viscous_published == pytest.approx(6.6999643e-4, rel=1e-6)  # of its mesh with each panel halved
 
 
-@pytest.mark.parametrize(
-    ("groups", "alpha", "gamma", "share"),
-    [
+def test_films_thinner_than_the_fits_of_the_flow_go_are_found(subtests):
+    """By the fits themselves, phi_x falls to its floor within 1e-3 of the gap and transport falls with it: none was found."""
+    for groups, alpha, gamma, share in [
         ((2.6949457220654108e-05, 0.06175178558197661, 0.05545762765741805), 3.7662695662678196, 1 / 9, 0.0),
         ((4.0837349565841006e-07, 9.629742446055435, 0.3084386977268185), 1.7234322688164228, 1.0, 0.0),
         ((5.5325382930505305e-09, 5.56342839683587, 0.15559433591820415), 2.1941613361280785, 1 / 9, 0.5),
-    ],
-)
-def test_films_thinner_than_the_fits_of_the_flow_go_are_found(groups, alpha, gamma, share):
-    """By the fits themselves, phi_x falls to its floor within 1e-3 of the gap and transport falls with it: none was found."""
-    speed, load, kappa = groups
-    factors = sb.fluids.PatirCheng(alpha, gamma, share)
-    found = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-4, flow_factors=factors)
-    assert any("fits above" in note for note in found.notes)
-    finer = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-6, flow_factors=factors)
-    assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
+    ]:
+        with subtests.test(groups=groups, alpha=alpha, gamma=gamma, share=share):
+            speed, load, kappa = groups
+            factors = sb.fluids.PatirCheng(alpha, gamma, share)
+            found = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-4, flow_factors=factors)
+            assert any("fits above" in note for note in found.notes)
+            finer = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-6, flow_factors=factors)
+            assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
 
 
 def test_a_curve_takes_few_states_where_its_film_passes_the_end_of_the_fits_of_the_flow():
@@ -273,20 +271,17 @@ def test_where_the_fits_of_sliding_flow_do_not_meet_the_mesh_resolves_it_and_the
     assert found.flux_gap == pytest.approx(exact.flux_gap, rel=found.error_estimate)
 
 
-@pytest.mark.parametrize(
-    ("groups", "factors", "published"),
-    [
+def test_drag_where_asperities_close_the_last_paths_of_the_flow_is_within_its_error(subtests):
+    """A film that carries nothing: the drag was wrong by up to 1.2e-2 at a stated 2e-7."""
+    for groups, factors, published in [
         ((7.9e-11, 1.23, 34.7), sb.fluids.PatirCheng(3.94, 1 / 3), 4.255613066e-11),
         (
             (4.758226843202692e-12, 0.12275350586799971, 8.093737587181553e-05),
             sb.fluids.EffectiveMedium(2.7611058783912155),
             2.743854397e-05,
         ),
-    ],
-    ids=("nearer than the fits go", "interpolated"),
-)
-def test_drag_where_asperities_close_the_last_paths_of_the_flow_is_within_its_error(groups, factors, published):
-    """A film that carries nothing: the drag was wrong by up to 1.2e-2 at a stated 2e-7."""
-    found = sb.solve(sb.Groups(*groups), flow_factors=factors)
-    assert found.viscous_published == pytest.approx(published, rel=1e-6)
-    assert found.mesh.size < 600
+    ]:
+        with subtests.test(groups=groups, factors=factors, published=published):
+            found = sb.solve(sb.Groups(*groups), flow_factors=factors)
+            assert found.viscous_published == pytest.approx(published, rel=1e-6)
+            assert found.mesh.size < 600

@@ -234,28 +234,29 @@ def test_the_docstring_of_every_formula_is_complete():
     assert {name: found for name, found in faults.items() if found} == {}
 
 
-@pytest.mark.parametrize("geometry", ["line", "point"])
-def test_a_formula_depends_on_the_groups_that_it_names_and_on_no_others(geometry):
-    here = {"speed": 1e-6, "load": 0.1, "relative_roughness": 1e-3}
+def test_a_formula_depends_on_the_groups_that_it_names_and_on_no_others(subtests):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            here = {"speed": 1e-6, "load": 0.1, "relative_roughness": 1e-3}
 
-    def at(speed, load, relative_roughness):
-        groups = sb.Groups(speed, load, relative_roughness, geometry=geometry)
-        return replace(groups, roughness=relative_roughness * load**groups.scaling.roughness_exponent)
+            def at(speed, load, relative_roughness):
+                groups = sb.Groups(speed, load, relative_roughness, geometry=geometry)
+                return replace(groups, roughness=relative_roughness * load**groups.scaling.roughness_exponent)
 
-    def value(formula, x, **state):
-        with np.errstate(all="ignore"):
-            return np.nan_to_num(formula.function(at(**state), *x))
+            def value(formula, x, **state):
+                with np.errstate(all="ignore"):
+                    return np.nan_to_num(formula.function(at(**state), *x))
 
-    for formula in FORMULAS:
-        if formula.geometry != geometry:
-            continue
-        x = arguments(formula, at(**here))
-        first = value(formula, x, **here)
-        others = {name: value(formula, x, **here | {name: 1.2 * here[name]}) for name in here}
-        changed = [name for name, other in others.items() if not math.isclose(first, other, rel_tol=1e-10)]
-        # The roughness is the load times the relative roughness.
-        named = {"roughness": ("load", "relative_roughness")}
-        assert set(changed) == {part for name in formula.uses for part in named.get(name, (name,))}, formula.name
+            for formula in FORMULAS:
+                if formula.geometry != geometry:
+                    continue
+                x = arguments(formula, at(**here))
+                first = value(formula, x, **here)
+                others = {name: value(formula, x, **here | {name: 1.2 * here[name]}) for name in here}
+                changed = [name for name, other in others.items() if not math.isclose(first, other, rel_tol=1e-10)]
+                # The roughness is the load times the relative roughness.
+                named = {"roughness": ("load", "relative_roughness")}
+                assert set(changed) == {part for name in formula.uses for part in named.get(name, (name,))}, formula.name
 
 
 # --- the error ---
@@ -284,16 +285,17 @@ def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(formula):
     assert np.abs(errors).max() <= 1.02 * formula.worst, errors
 
 
-@pytest.mark.parametrize("name", JUDGED_FORMULAS)
-def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_most_the_stated_one(name):
-    formula = JUDGED_FORMULAS[name][0]
-    [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
-    ratios = (max(limit.low, 1e-5), 0.03, limit.high)
-    worst, median = largest_errors(name, (*ratios, limit.low / 10, limit.high * 10), points=(5, 4))
-    assert max(worst[:3]) <= formula.worst
-    assert max(median[:3]) < 0.2 * formula.worst
-    if "balanced" not in name:
-        assert max(worst[3:]) > formula.worst  # the range ends for a reason
+def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_most_the_stated_one(subtests):
+    for name in JUDGED_FORMULAS:
+        with subtests.test(name=name):
+            formula = JUDGED_FORMULAS[name][0]
+            [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
+            ratios = (max(limit.low, 1e-5), 0.03, limit.high)
+            worst, median = largest_errors(name, (*ratios, limit.low / 10, limit.high * 10), points=(5, 4))
+            assert max(worst[:3]) <= formula.worst
+            assert max(median[:3]) < 0.2 * formula.worst
+            if "balanced" not in name:
+                assert max(worst[3:]) > formula.worst  # the range ends for a reason
 
 
 def test_the_law_of_mixed_friction_is_worst_where_its_limits_meet():
@@ -336,45 +338,54 @@ def test_a_formula_is_silent_in_its_range():
             assert np.isfinite(formula(groups, *arguments(formula, groups))), formula.name
 
 
-@pytest.mark.parametrize("law", [law for law in LINE if law.needs_coefficients], ids=lambda law: law.name)
-@pytest.mark.parametrize("given", [{"beta": 300.0}, {"boundary_friction": 1e-6}, {"boundary_friction": 0.0}])
-def test_a_friction_law_warns_of_coefficients_outside_its_range(law, given):
-    groups = states(law)[0]
-    value = law.function(groups, **given)
-    what = "is undefined (nan)" if np.isnan(value) else "is used"
-    with pytest.warns(OutOfRangeWarning, match=f"{what} outside its range: .*beta/mu0"):
-        found = law(groups, **given)
-    assert found == pytest.approx(value, nan_ok=True)
-    with pytest.warns(OutOfRangeWarning):
-        law(groups, given.get("boundary_friction", 1.0), given.get("beta", 1.0))
+def test_a_friction_law_warns_of_coefficients_outside_its_range(subtests):
+    for given in [{"beta": 300.0}, {"boundary_friction": 1e-6}, {"boundary_friction": 0.0}]:
+        for law in [law for law in LINE if law.needs_coefficients]:
+            with subtests.test(given=given, law=law):
+                groups = states(law)[0]
+                value = law.function(groups, **given)
+                what = "is undefined (nan)" if np.isnan(value) else "is used"
+                with pytest.warns(OutOfRangeWarning, match=f"{what} outside its range: .*beta/mu0"):
+                    found = law(groups, **given)
+                assert found == pytest.approx(value, nan_ok=True)
+                with pytest.warns(OutOfRangeWarning):
+                    law(groups, given.get("boundary_friction", 1.0), given.get("beta", 1.0))
 
 
-@pytest.mark.parametrize("geometry", ["line", "point"])
-def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_complex(geometry):
-    for formula, groups in itertools.product((one for one in FORMULAS if one.geometry == geometry), anywhere(geometry)):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            x = arguments(formula, groups) if not formula.interval or np.isfinite(formula.interval(groups)).all() else (0.3,)
-            caught.clear()
-            value = formula(groups, *x)
-        assert np.isrealobj(value) and np.ndim(value) == 0, (formula.name, groups)
-        assert np.isfinite(value) or not formula.valid(groups), (formula.name, groups, value)
-        expected = bool(np.isnan(value)) or not formula.valid(groups)
-        assert [w.category for w in caught] == [OutOfRangeWarning] * expected, (
-            formula.name,
-            groups,
-            [str(w.message) for w in caught],
-        )
-        if caught:
-            what = "is undefined (nan)" if np.isnan(value) else "is used"
-            assert str(caught[0].message).startswith(f"{formula.name} {what} outside its range: {formula.range}")
-            assert caught[0].filename == __file__
+def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_complex(subtests):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            for formula, groups in itertools.product(
+                (one for one in FORMULAS if one.geometry == geometry), anywhere(geometry)
+            ):
+                with warnings.catch_warnings(record=True) as caught:
+                    warnings.simplefilter("always")
+                    x = (
+                        arguments(formula, groups)
+                        if not formula.interval or np.isfinite(formula.interval(groups)).all()
+                        else (0.3,)
+                    )
+                    caught.clear()
+                    value = formula(groups, *x)
+                assert np.isrealobj(value) and np.ndim(value) == 0, (formula.name, groups)
+                assert np.isfinite(value) or not formula.valid(groups), (formula.name, groups, value)
+                expected = bool(np.isnan(value)) or not formula.valid(groups)
+                assert [w.category for w in caught] == [OutOfRangeWarning] * expected, (
+                    formula.name,
+                    groups,
+                    [str(w.message) for w in caught],
+                )
+                if caught:
+                    what = "is undefined (nan)" if np.isnan(value) else "is used"
+                    assert str(caught[0].message).startswith(f"{formula.name} {what} outside its range: {formula.range}")
+                    assert caught[0].filename == __file__
 
 
-@pytest.mark.parametrize("option", [{"printed": "no"}, {"printed": np.nan}, {"form": np.array(["closed"])}])
-def test_an_option_is_one_of_what_it_may_be(option):
-    with pytest.raises(sb.InputError, match=f"{next(iter(option))} = .*; it must be"):
-        asymptotics.boundary.friction(sb.Groups(1e-12, 0.1, 1e-5), **option)
+def test_an_option_is_one_of_what_it_may_be(subtests):
+    for option in [{"printed": "no"}, {"printed": np.nan}, {"form": np.array(["closed"])}]:
+        with subtests.test(option=option):
+            with pytest.raises(sb.InputError, match=f"{next(iter(option))} = .*; it must be"):
+                asymptotics.boundary.friction(sb.Groups(1e-12, 0.1, 1e-5), **option)
 
 
 # --- the form ---
@@ -382,24 +393,27 @@ def test_an_option_is_one_of_what_it_may_be(option):
 PRINTED = [formula for formula in FORMULAS if "printed" in inspect.signature(formula.function).parameters]
 
 
-@pytest.mark.parametrize("formula", PRINTED, ids=lambda formula: formula.name)
-def test_the_printed_form_of_a_formula_is_another_one(formula):
-    def value(groups, printed):
-        return formula.function(groups, *arguments(formula, groups), printed=printed)
+def test_the_printed_form_of_a_formula_is_another_one(subtests):
+    for formula in PRINTED:
+        with subtests.test(formula=formula):
 
-    assert max(abs(value(groups, True) / value(groups, False) - 1) for groups in states(formula)) > 1e-3
-    assert inspect.signature(formula.function).parameters["printed"].default is False
+            def value(groups, printed):
+                return formula.function(groups, *arguments(formula, groups), printed=printed)
+
+            assert max(abs(value(groups, True) / value(groups, False) - 1) for groups in states(formula)) > 1e-3
+            assert inspect.signature(formula.function).parameters["printed"].default is False
 
 
 def test_formulas_with_a_printed_form_are_on_the_table():
     assert len(PRINTED) >= 10
 
 
-@pytest.mark.parametrize("plane", ["smooth", "rest", "mixed"])
-def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their_elements(plane):
-    for formula in LINE:
-        if formula.plane == plane:
-            check_arrays(formula)
+def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their_elements(subtests):
+    for plane in ["smooth", "rest", "mixed"]:
+        with subtests.test(plane=plane):
+            for formula in LINE:
+                if formula.plane == plane:
+                    check_arrays(formula)
 
 
 def check_arrays(formula):

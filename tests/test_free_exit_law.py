@@ -13,31 +13,33 @@ REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_tex
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("row", REFERENCE["boundary_first_order_free_exit"]["rows"], ids=lambda row: f"{row[0]:g}")
-def test_the_first_order_of_boundary_lubrication_is_its_quadrature(row):
-    load, x_c, flux_gap, share = row
-    assert tuple(boundary_film_with_free_exit(load)) == pytest.approx((x_c, flux_gap, share), rel=1e-8)
+def test_the_first_order_of_boundary_lubrication_is_its_quadrature(subtests):
+    for row in REFERENCE["boundary_first_order_free_exit"]["rows"]:
+        with subtests.test(row=row):
+            load, x_c, flux_gap, share = row
+            assert tuple(boundary_film_with_free_exit(load)) == pytest.approx((x_c, flux_gap, share), rel=1e-8)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("load", "equal"), [(1e-3, 63.365), (0.01, 22.016), (0.1, 3.8192)])
-def test_the_first_order_exceeds_the_second_of_a_full_film_up_to_a_fluid_number(load, equal):
-    n = 1e-4
-    full = float(sb.asymptotics.boundary.fluid_load_share(sb.Groups(n * 1e-10, load, 1e-5 * load))) / n**2
-    assert boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
+def test_the_first_order_exceeds_the_second_of_a_full_film_up_to_a_fluid_number(subtests):
+    for load, equal in [(1e-3, 63.365), (0.01, 22.016), (0.1, 3.8192)]:
+        with subtests.test(load=load, equal=equal):
+            n = 1e-4
+            full = float(sb.asymptotics.boundary.fluid_load_share(sb.Groups(n * 1e-10, load, 1e-5 * load))) / n**2
+            assert boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("kappa", "speeds", "speed", "friction"),
-    [(1e-4, (1e-5, 1e-4), 0.00725, -0.02661), (1e-2, (5e-3, 0.1), 0.07987, -0.19735)],
-)
-def test_the_minimum_of_friction_is_lower_and_at_more_speed(kappa, speeds, speed, friction):
-    found = [
-        sb.stribeck_curve(load=0.1, roughness=0.1 * kappa, speed=speeds, points=5, rtol=1e-4, cavitation=cavitation).minimum
-        for cavitation in ("none", "exit")
-    ]
-    assert found[1].value / found[0].value - 1 == pytest.approx(speed, abs=2e-4)
-    assert found[1].friction / found[0].friction - 1 == pytest.approx(friction, abs=2e-4)
+def test_the_minimum_of_friction_is_lower_and_at_more_speed(subtests):
+    for kappa, speeds, speed, friction in [(1e-4, (1e-5, 1e-4), 0.00725, -0.02661), (1e-2, (5e-3, 0.1), 0.07987, -0.19735)]:
+        with subtests.test(kappa=kappa, speeds=speeds, speed=speed, friction=friction):
+            found = [
+                sb.stribeck_curve(
+                    load=0.1, roughness=0.1 * kappa, speed=speeds, points=5, rtol=1e-4, cavitation=cavitation
+                ).minimum
+                for cavitation in ("none", "exit")
+            ]
+            assert found[1].value / found[0].value - 1 == pytest.approx(speed, abs=2e-4)
+            assert found[1].friction / found[0].friction - 1 == pytest.approx(friction, abs=2e-4)
 
 
 def test_states_approach_the_first_order_as_the_roughness_falls():
@@ -51,10 +53,11 @@ def test_states_approach_the_first_order_as_the_roughness_falls():
     assert (np.abs(slopes - 0.75) < 0.05).all()
 
 
-@pytest.mark.parametrize("load", [1.0, 0.0, "0.1", True, np.nan])
-def test_a_load_without_boundary_lubrication_is_refused(load):
-    with pytest.raises(sb.InputError, match="load ="):
-        boundary_film_with_free_exit(load)
+def test_a_load_without_boundary_lubrication_is_refused(subtests):
+    for load in [1.0, 0.0, "0.1", True, np.nan]:
+        with subtests.test(load=load):
+            with pytest.raises(sb.InputError, match="load ="):
+                boundary_film_with_free_exit(load)
 
 
 def test_smooth_films_that_end_have_their_own_outlet():
@@ -92,11 +95,12 @@ def test_fast_smooth_films_approach_that_of_a_rigid_parabola():
     assert arrays.central_gap.shape == (3,)
 
 
-@pytest.mark.parametrize("speed", [-1.0, np.inf, "fast"])
-def test_an_impossible_speed_of_a_film_that_ends_is_refused(speed):
-    for law in (sb.asymptotics.free_exit.slow_film_with_free_exit, sb.asymptotics.free_exit.rigid_film_with_free_exit):
-        with pytest.raises(sb.InputError, match="speed ="):
-            law(speed)
+def test_an_impossible_speed_of_a_film_that_ends_is_refused(subtests):
+    for speed in [-1.0, np.inf, "fast"]:
+        with subtests.test(speed=speed):
+            for law in (sb.asymptotics.free_exit.slow_film_with_free_exit, sb.asymptotics.free_exit.rigid_film_with_free_exit):
+                with pytest.raises(sb.InputError, match="speed ="):
+                    law(speed)
 
 
 def test_the_film_is_that_of_a_finite_volume_solver_that_conserves_mass():

@@ -54,8 +54,9 @@ def test_groups_that_differ_in_geometry_or_model_are_not_equal():
     assert "point" in repr(point) and repr(line) == "Groups(speed=1.0, load=0.1, roughness=0.0)"
 
 
-@pytest.mark.parametrize("geometry", ["ball", None, 3])
-def test_a_geometry_that_there_is_not_is_refused(geometry):
+def test_a_geometry_that_there_is_not_is_refused(subtests):
     """With those that there are."""
-    with pytest.raises(InputError, match="'line' or 'point'"):
-        Groups(1.0, 0.1, 0.0, geometry=geometry)
+    for geometry in ["ball", None, 3]:
+        with subtests.test(geometry=geometry):
+            with pytest.raises(InputError, match="'line' or 'point'"):
+                Groups(1.0, 0.1, 0.0, geometry=geometry)

@@ -74,16 +74,17 @@ def test_the_roughness_of_a_ball_is_recovered_from_friction_over_either_number(w
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("contact, number", [(LINE, "eta U/F_N"), (BALL, "eta U R/F_N")])
-def test_a_number_that_is_written_says_what_it_is(contact, number, capsys):
-    pytest.importorskip("xarray")
-    curve = sb.stribeck_curve(contact, speed=[0.5 * contact.speed, contact.speed], rtol=1e-3)
-    radius = contact.radius if contact is BALL else 1.0
-    expected = contact.viscosity * curve.values * radius / contact.load
-    assert curve.hersey_number == pytest.approx(expected, rel=1e-12)
-    written = curve.to_dataset()["hersey_number"]
-    assert f"{number}:" in written.attrs["long_name"] and written.attrs["units"] == "1"
-    np.testing.assert_allclose(written, curve.hersey_number, rtol=1e-14)
+def test_a_number_that_is_written_says_what_it_is(subtests, capsys):
+    for contact, number in [(LINE, "eta U/F_N"), (BALL, "eta U R/F_N")]:
+        with subtests.test(contact=contact, number=number):
+            pytest.importorskip("xarray")
+            curve = sb.stribeck_curve(contact, speed=[0.5 * contact.speed, contact.speed], rtol=1e-3)
+            radius = contact.radius if contact is BALL else 1.0
+            expected = contact.viscosity * curve.values * radius / contact.load
+            assert curve.hersey_number == pytest.approx(expected, rel=1e-12)
+            written = curve.to_dataset()["hersey_number"]
+            assert f"{number}:" in written.attrs["long_name"] and written.attrs["units"] == "1"
+            np.testing.assert_allclose(written, curve.hersey_number, rtol=1e-14)
 
 
 @pytest.mark.quick

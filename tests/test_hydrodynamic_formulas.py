@@ -19,16 +19,14 @@ def films():
     return np.array([found.central_gap, found.flux_gap, found.friction.fluid])
 
 
-@pytest.mark.parametrize(
-    ("name", "column", "within"),
-    [("central_gap", 0, 0.0028), ("flux_gap", 1, 0.0004), ("friction_uniform", 2, 0.00225)],
-)
-def test_our_laws_hold_at_every_speed(films, name, column, within):
-    law = getattr(hydrodynamic, name)
-    error = np.abs(law(sb.Groups(SPEEDS, 0.1, 0.0)) / films[column] - 1)
-    assert 0.8 * within < error.max() <= within
-    # At both ends they are exact, not merely fitted.
-    assert error[SPEEDS < 2e-9].max() < 1e-5 and error[SPEEDS > 1e7].max() < 3e-5
+def test_our_laws_hold_at_every_speed(subtests, films):
+    for name, column, within in [("central_gap", 0, 0.0028), ("flux_gap", 1, 0.0004), ("friction_uniform", 2, 0.00225)]:
+        with subtests.test(name=name, column=column, within=within):
+            law = getattr(hydrodynamic, name)
+            error = np.abs(law(sb.Groups(SPEEDS, 0.1, 0.0)) / films[column] - 1)
+            assert 0.8 * within < error.max() <= within
+            # At both ends they are exact, not merely fitted.
+            assert error[SPEEDS < 2e-9].max() < 1e-5 and error[SPEEDS > 1e7].max() < 3e-5
 
 
 def test_our_laws_are_better_than_those_of_the_paper(films):
@@ -39,23 +37,26 @@ def test_our_laws_are_better_than_those_of_the_paper(films):
     assert np.abs(film / films[0] - 1).max() > 0.1
 
 
-@pytest.mark.parametrize(
-    ("law", "slope"),
-    [(hydrodynamic.central_gap, 0.245), (hydrodynamic.flux_gap, 0.245), (hydrodynamic.friction_uniform, 4.0)],
-)
-def test_the_next_term_of_slow_speed_is_in_our_laws(law, slope):
-    def over_leading(speed):
-        groups = sb.Groups(speed, 0.3, 0.0)
-        return law(groups) / (
-            hydrodynamic.friction_large.function(groups)
-            if law is hydrodynamic.friction_uniform
-            else hydrodynamic.central_gap_large.function(groups)
-        )
+def test_the_next_term_of_slow_speed_is_in_our_laws(subtests):
+    for law, slope in [
+        (hydrodynamic.central_gap, 0.245),
+        (hydrodynamic.flux_gap, 0.245),
+        (hydrodynamic.friction_uniform, 4.0),
+    ]:
+        with subtests.test(law=law, slope=slope):
 
-    # The difference of two speeds, so that the leading term drops out; the friction goes on with lambda**(3/5).
-    u = np.array([1e-5, 4e-5])
-    found = np.diff([over_leading(value**2.5) for value in u]) / np.diff(u)
-    assert found == pytest.approx(slope, rel=0.02)
+            def over_leading(speed):
+                groups = sb.Groups(speed, 0.3, 0.0)
+                return law(groups) / (
+                    hydrodynamic.friction_large.function(groups)
+                    if law is hydrodynamic.friction_uniform
+                    else hydrodynamic.central_gap_large.function(groups)
+                )
+
+            # The difference of two speeds, so that the leading term drops out; the friction goes on with lambda**(3/5).
+            u = np.array([1e-5, 4e-5])
+            found = np.diff([over_leading(value**2.5) for value in u]) / np.diff(u)
+            assert found == pytest.approx(slope, rel=0.02)
 
 
 def test_the_next_term_of_slow_speed_is_that_of_the_solver():

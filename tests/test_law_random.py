@@ -48,9 +48,10 @@ def check(name, number, seed, true_errors, rtol=1e-6):
     return np.array(ratios)
 
 
-@pytest.mark.parametrize("name", list(laws()))
-def test_random_states_are_solved_from_cold_and_their_errors_covered(name, true_errors):
-    assert (check(name, 10, SEED, true_errors) <= 1).mean() >= 0.9
+def test_random_states_are_solved_from_cold_and_their_errors_covered(subtests, true_errors):
+    for name in list(laws()):
+        with subtests.test(name=name):
+            assert (check(name, 10, SEED, true_errors) <= 1).mean() >= 0.9
 
 
 @pytest.mark.slow

@@ -118,32 +118,30 @@ def test_the_jacobian_under_a_law_is_the_derivative_of_the_residual(shape):
     assert columns.residual(np.stack([y, y]))[1] == pytest.approx(second.residual(y), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["persson", "greenwood-tripp", "table"])
-def test_elasticities_under_a_law_are_the_differences_of_solved_friction(name):
-    contact = line_contact(law=laws()[name], alpha=1.0 if name == "greenwood-tripp" else 2.0)
-    _, found = friction_sensitivities(contact, rtol=1e-9)
-    for key in ("speed", "load", "roughness", "beta"):
-        d, value = 1e-4, getattr(contact, key)
-        ahead, behind = (
-            math.log(sb.solve(contact.replace(**{key: value * math.exp(sign * d)}), rtol=1e-9).friction().total)
-            for sign in (1, -1)
-        )
-        assert found[key] == pytest.approx((ahead - behind) / (2 * d), abs=2e-5), key
+def test_elasticities_under_a_law_are_the_differences_of_solved_friction(subtests):
+    for name in ["persson", "greenwood-tripp", "table"]:
+        with subtests.test(name=name):
+            contact = line_contact(law=laws()[name], alpha=1.0 if name == "greenwood-tripp" else 2.0)
+            _, found = friction_sensitivities(contact, rtol=1e-9)
+            for key in ("speed", "load", "roughness", "beta"):
+                d, value = 1e-4, getattr(contact, key)
+                ahead, behind = (
+                    math.log(sb.solve(contact.replace(**{key: value * math.exp(sign * d)}), rtol=1e-9).friction().total)
+                    for sign in (1, -1)
+                )
+                assert found[key] == pytest.approx((ahead - behind) / (2 * d), abs=2e-5), key
 
 
 # --- limits ---
 
 
-@pytest.mark.parametrize(
-    "groups",
-    [sb.Groups(1e-5, 0.1, 1e-3), sb.Groups(0.0, 2.0, 0.02), sb.Groups(1e-3, 3.0, 0.03)],
-    ids=["mixed", "rest", "heavy"],
-)
-def test_the_exponential_law_by_the_way_of_others_is_the_exponential_law(groups):
-    one, other = (sb.solve(groups, rtol=1e-9, law=law) for law in (None, EXPONENTIAL))
-    for name in ("contact_load_share", "central_gap", "minimum_gap", "offset", "flux_gap"):
-        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=3e-9, nan_ok=True), name
-    assert (one.law, other.law) == ("exponential", "function")
+def test_the_exponential_law_by_the_way_of_others_is_the_exponential_law(subtests):
+    for groups in [sb.Groups(1e-5, 0.1, 1e-3), sb.Groups(0.0, 2.0, 0.02), sb.Groups(1e-3, 3.0, 0.03)]:
+        with subtests.test(groups=groups):
+            one, other = (sb.solve(groups, rtol=1e-9, law=law) for law in (None, EXPONENTIAL))
+            for name in ("contact_load_share", "central_gap", "minimum_gap", "offset", "flux_gap"):
+                assert getattr(other, name) == pytest.approx(getattr(one, name), rel=3e-9, nan_ok=True), name
+            assert (one.law, other.law) == ("exponential", "function")
 
 
 @pytest.mark.quick
@@ -174,13 +172,14 @@ def test_at_large_separation_persson_is_exponential_and_at_small_it_is_stiffer()
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("load", [0.1, 1.0, 10.0, 100.0])
-def test_under_perssons_law_the_gap_is_positive_at_rest_at_any_load(load):
-    s = sb.solve(sb.Groups(0.0, load, 0.01 * load), law=laws()["persson"])
-    assert s.minimum_gap > 0
-    assert s.contact_load_share == pytest.approx(1.0, abs=1e-9)
-    if load > 1:
-        assert sb.solve(sb.Groups(0.0, load, 0.01 * load)).minimum_gap < 0
+def test_under_perssons_law_the_gap_is_positive_at_rest_at_any_load(subtests):
+    for load in [0.1, 1.0, 10.0, 100.0]:
+        with subtests.test(load=load):
+            s = sb.solve(sb.Groups(0.0, load, 0.01 * load), law=laws()["persson"])
+            assert s.minimum_gap > 0
+            assert s.contact_load_share == pytest.approx(1.0, abs=1e-9)
+            if load > 1:
+                assert sb.solve(sb.Groups(0.0, load, 0.01 * load)).minimum_gap < 0
 
 
 def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
@@ -237,10 +236,11 @@ def test_a_contact_and_its_groups_carry_the_law_through_copies():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("law", ["persson ", 3, GreenwoodTripp])
-def test_what_is_no_law_is_refused(law):
-    with pytest.raises(sb.InputError, match="^law = "):
-        sb.solve(sb.Groups(1e-3, 0.1, 1e-3), law=law)
+def test_what_is_no_law_is_refused(subtests):
+    for law in ["persson ", 3, GreenwoodTripp]:
+        with subtests.test(law=law):
+            with pytest.raises(sb.InputError, match="^law = "):
+                sb.solve(sb.Groups(1e-3, 0.1, 1e-3), law=law)
 
 
 def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
@@ -348,9 +348,8 @@ P = [1.0, 0.4, 0.15, 0.05, 0.02, 0.002]
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("s", "p", "sentence"),
-    [
+def test_a_table_that_is_no_law_is_refused_with_its_row(subtests):
+    for s, p, sentence in [
         (S, P[:-1], "separation has 6 rows and pressure 5"),
         (S[:3], P[:3], "has 3 rows; at least 4"),
         ([0.0, 1.0, 1.0, 3.0], P[:4], "row 3 of the contact law's table: separation 1 must exceed that of the row before, 1"),
@@ -358,22 +357,22 @@ P = [1.0, 0.4, 0.15, 0.05, 0.02, 0.002]
         (S[:4], [1.0, 0.4, 0.0, -1], "row 3 of the contact law's table: pressure 0 must be positive"),
         (S[:4], [1.0, math.nan, 0.1, 0.05], "row 2 of the contact law's table, 1 and nan, is not finite"),
         (S[:4], "abcd", "^pressure = 'abcd'; it must be a list of numbers"),
-    ],
-)
-def test_a_table_that_is_no_law_is_refused_with_its_row(s, p, sentence):
-    with pytest.raises(sb.InputError, match=sentence):
-        TableLaw(s, p)
+    ]:
+        with subtests.test(s=s, p=p, sentence=sentence):
+            with pytest.raises(sb.InputError, match=sentence):
+                TableLaw(s, p)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("rows", "degree"), [(S, 5), (S[:4], 3), ([0.0, 0.1, 2.0, 2.1, 4.0, 4.1], 1)])
-def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
-    law = TableLaw(rows, P[: len(rows)])
-    assert law.degree == degree
-    assert np.exp(law.log_pressure(np.array(rows))) == pytest.approx(P[: len(rows)], rel=1e-12)
-    s = np.linspace(-2, 9, 2000)
-    assert (law.log_slope(s) < 0).all()
-    assert (np.diff(law.log_pressure(s)) < 0).all()
+def test_a_table_is_met_and_falls_between_its_rows(subtests):
+    for rows, degree in [(S, 5), (S[:4], 3), ([0.0, 0.1, 2.0, 2.1, 4.0, 4.1], 1)]:
+        with subtests.test(rows=rows, degree=degree):
+            law = TableLaw(rows, P[: len(rows)])
+            assert law.degree == degree
+            assert np.exp(law.log_pressure(np.array(rows))) == pytest.approx(P[: len(rows)], rel=1e-12)
+            s = np.linspace(-2, 9, 2000)
+            assert (law.log_slope(s) < 0).all()
+            assert (np.diff(law.log_pressure(s)) < 0).all()
 
 
 @pytest.mark.quick
@@ -385,19 +384,20 @@ def test_a_table_that_is_flat_at_its_ends_still_falls_there():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("end", [0, -1])
-def test_a_table_goes_on_straight_with_the_slope_of_its_end(end):
-    law = TableLaw(S, P)
-    row = S[end]
-    beyond = row + (np.array([-3.0, -0.5]) if end == 0 else np.array([0.5, 3.0]))
-    at_row, slope = float(law.log_pressure(np.array(row))), float(law.log_slope(np.array(row)))
-    assert law.log_pressure(beyond) == pytest.approx(at_row + slope * (beyond - row), rel=1e-12)
-    assert law.log_slope(beyond) == pytest.approx(slope, rel=1e-12)
-    step = 1e-6
-    inside = row + (step if end == 0 else -step)
-    assert slope == pytest.approx((float(law.log_pressure(np.array(inside))) - at_row) / (inside - row), rel=1e-4)
-    # The slopes of the two ends differ, so that one in the other's place is seen.
-    assert abs(float(law.log_slope(np.array(S[0] + S[-1] - row))) / slope - 1) > 0.01
+def test_a_table_goes_on_straight_with_the_slope_of_its_end(subtests):
+    for end in [0, -1]:
+        with subtests.test(end=end):
+            law = TableLaw(S, P)
+            row = S[end]
+            beyond = row + (np.array([-3.0, -0.5]) if end == 0 else np.array([0.5, 3.0]))
+            at_row, slope = float(law.log_pressure(np.array(row))), float(law.log_slope(np.array(row)))
+            assert law.log_pressure(beyond) == pytest.approx(at_row + slope * (beyond - row), rel=1e-12)
+            assert law.log_slope(beyond) == pytest.approx(slope, rel=1e-12)
+            step = 1e-6
+            inside = row + (step if end == 0 else -step)
+            assert slope == pytest.approx((float(law.log_pressure(np.array(inside))) - at_row) / (inside - row), rel=1e-4)
+            # The slopes of the two ends differ, so that one in the other's place is seen.
+            assert abs(float(law.log_slope(np.array(S[0] + S[-1] - row))) / slope - 1) > 0.01
 
 
 def test_a_state_outside_the_rows_of_its_table_says_so():
@@ -410,25 +410,22 @@ def test_a_state_outside_the_rows_of_its_table_says_so():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("f", "slope", "sentence"),
-    [
+def test_functions_that_are_no_law_are_refused(subtests):
+    for f, slope, sentence in [
         (lambda s: -s, lambda s: -2 * np.ones_like(s), "^log_slope is -2 at separation 0.001; it must be the derivative"),
         (lambda s: s, lambda s: np.ones_like(s), "^log_slope is 1 at separation 0.001; it must be negative"),
         (lambda s: -s, lambda s: -1.0, "^log_slope must return a number for each separation"),
         (lambda s: np.log(5 - s), lambda s: -1 / (5 - s), "^log_pressure is nan at separation 5.*; it must be finite"),
         (lambda s: "x", lambda s: -s, "^log_pressure must return a number"),
-    ],
-)
-def test_functions_that_are_no_law_are_refused(f, slope, sentence):
-    with pytest.raises(sb.InputError, match=sentence):
-        sb.contact_laws.FunctionLaw(f, slope)
+    ]:
+        with subtests.test(f=f, slope=slope, sentence=sentence):
+            with pytest.raises(sb.InputError, match=sentence):
+                sb.contact_laws.FunctionLaw(f, slope)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("changed", "sentence"),
-    [
+def test_settings_of_a_law_of_functions_are_refused_by_name_and_value(subtests):
+    for changed, sentence in [
         ({"name": "exponential"}, "^name = 'exponential' must be a word other than exponential, persson"),
         ({"name": None}, "^name = None must be a word"),
         ({"log_pressure": None}, "^log_pressure = None must be a function"),
@@ -437,12 +434,11 @@ def test_functions_that_are_no_law_are_refused(f, slope, sentence):
         ({"lowest": "0"}, "^lowest = '0'"),
         ({"checked": 1.0}, "checked = 1.0; .* two increasing positive separations"),
         ({"checked": (1.0, 2.0, 3.0)}, "checked two increasing positive separations"),
-    ],
-)
-def test_settings_of_a_law_of_functions_are_refused_by_name_and_value(changed, sentence):
-    given = {"log_pressure": lambda s: -2 * s, "log_slope": lambda s: np.full_like(s, -2.0)}
-    with pytest.raises(sb.InputError, match=sentence):
-        sb.contact_laws.FunctionLaw(**given | changed)
+    ]:
+        with subtests.test(changed=changed, sentence=sentence):
+            given = {"log_pressure": lambda s: -2 * s, "log_slope": lambda s: np.full_like(s, -2.0)}
+            with pytest.raises(sb.InputError, match=sentence):
+                sb.contact_laws.FunctionLaw(**given | changed)
 
 
 def test_a_law_that_a_user_calls_exponential_is_solved_as_it_is():

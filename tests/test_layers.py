@@ -139,24 +139,26 @@ def test_the_edge_obeys_the_contact_law():
     assert np.abs(layer.pressure(xi) - np.exp(-layer.gap(xi))).max() < 1e-8
 
 
-@pytest.mark.parametrize(("name", "sign"), [("inlet", -1), ("outlet", 1)])
-def test_the_films_obey_reynolds(name, sign):
-    layer = LAYERS[name]()
-    for xi in np.linspace(-20, 20, 43):
-        gap = at(layer.gap, xi)
-        assert abs(slope(layer.pressure, xi) - sign * (gap - layer.constant) / gap**3) < 1e-5
+def test_the_films_obey_reynolds(subtests):
+    for name, sign in [("inlet", -1), ("outlet", 1)]:
+        with subtests.test(name=name, sign=sign):
+            layer = LAYERS[name]()
+            for xi in np.linspace(-20, 20, 43):
+                gap = at(layer.gap, xi)
+                assert abs(slope(layer.pressure, xi) - sign * (gap - layer.constant) / gap**3) < 1e-5
 
 
 # --- far fields ---
 
 
-@pytest.mark.parametrize(("name", "load"), [("edge", np.pi / 2), ("inlet", 0.0), ("outlet", 0.0)])
-def test_the_layer_carries_its_load_beside_that_of_hertz(name, load):
-    # Beyond the box P - P_H is of order |xi|**(-3/2) ln|xi|.
-    line, layer = LAYERS[name]().line, LAYERS[name]()
-    assert abs(line.weights @ layer.excess - load) < 0.02
-    narrow = LAYERS[name](1e4)
-    assert abs(line.weights @ layer.excess - load) < 0.2 * abs(narrow.line.weights @ narrow.excess - load)
+def test_the_layer_carries_its_load_beside_that_of_hertz(subtests):
+    for name, load in [("edge", np.pi / 2), ("inlet", 0.0), ("outlet", 0.0)]:
+        with subtests.test(name=name, load=load):
+            # Beyond the box P - P_H is of order |xi|**(-3/2) ln|xi|.
+            line, layer = LAYERS[name]().line, LAYERS[name]()
+            assert abs(line.weights @ layer.excess - load) < 0.02
+            narrow = LAYERS[name](1e4)
+            assert abs(line.weights @ layer.excess - load) < 0.2 * abs(narrow.line.weights @ narrow.excess - load)
 
 
 def test_the_edge_joins_the_logarithmic_gap_and_that_of_hertz():
@@ -174,34 +176,37 @@ def test_the_pressure_at_the_edge_departs_from_that_of_hertz_as_stated():
     assert np.abs(found / (5 / (8 * np.sqrt(2))) - 1).max() < 1e-4
 
 
-@pytest.mark.parametrize(("name", "sign"), [("inlet", 1), ("outlet", -1)])
-def test_the_films_join_the_uniform_film_and_the_gap_of_hertz(name, sign):
-    layer, c = LAYERS[name](), film_layers.inlet().constant
-    s = 1e5
-    assert abs((at(layer.gap, -s) - c) * np.sqrt(2 * s) / (sign * c**3) - 1) < 3e-3
-    beyond = 10 * layer.line.reach
-    assert abs((at(layer.gap, -beyond) - c) * np.sqrt(2 * beyond) / (sign * c**3) - 1) < 1e-2
-    assert abs(at(layer.gap, s) / (2 * np.sqrt(2) / 3 * s**1.5) - 1) < 1e-6
-    assert abs(at(layer.pressure, 1e4) * 1e8 / (sign * 9 / 16) - 1) < 1e-3
+def test_the_films_join_the_uniform_film_and_the_gap_of_hertz(subtests):
+    for name, sign in [("inlet", 1), ("outlet", -1)]:
+        with subtests.test(name=name, sign=sign):
+            layer, c = LAYERS[name](), film_layers.inlet().constant
+            s = 1e5
+            assert abs((at(layer.gap, -s) - c) * np.sqrt(2 * s) / (sign * c**3) - 1) < 3e-3
+            beyond = 10 * layer.line.reach
+            assert abs((at(layer.gap, -beyond) - c) * np.sqrt(2 * beyond) / (sign * c**3) - 1) < 1e-2
+            assert abs(at(layer.gap, s) / (2 * np.sqrt(2) / 3 * s**1.5) - 1) < 1e-6
+            assert abs(at(layer.pressure, 1e4) * 1e8 / (sign * 9 / 16) - 1) < 1e-3
 
 
-@pytest.mark.parametrize(("name", "sign"), [("inlet", 1), ("outlet", -1)])
-def test_the_pressure_inside_has_the_logarithm_that_the_film_asks_for(name, sign):
-    # P - P_H = (q0 + q1 ln s) s**(-3/2) + O(s**-2) with q1 = -+ c**3/(2 sqrt2 pi): slopes over decades, extrapolated.
-    layer = LAYERS[name](1e8)
-    s = np.array([1e3, 1e4, 1e5])
-    slopes = np.diff((layer.pressure(-s) - np.sqrt(2 * s)) * s**1.5) / np.log(10)
-    found = slopes[1] + (slopes[1] - slopes[0]) / (np.sqrt(10) - 1)
-    assert abs(found / (-sign * layer.constant**3 / (2 * np.sqrt(2) * np.pi)) - 1) < 0.04
+def test_the_pressure_inside_has_the_logarithm_that_the_film_asks_for(subtests):
+    for name, sign in [("inlet", 1), ("outlet", -1)]:
+        with subtests.test(name=name, sign=sign):
+            # P - P_H = (q0 + q1 ln s) s**(-3/2) + O(s**-2) with q1 = -+ c**3/(2 sqrt2 pi): slopes over decades, extrapolated.
+            layer = LAYERS[name](1e8)
+            s = np.array([1e3, 1e4, 1e5])
+            slopes = np.diff((layer.pressure(-s) - np.sqrt(2 * s)) * s**1.5) / np.log(10)
+            found = slopes[1] + (slopes[1] - slopes[0]) / (np.sqrt(10) - 1)
+            assert abs(found / (-sign * layer.constant**3 / (2 * np.sqrt(2) * np.pi)) - 1) < 0.04
 
 
-@pytest.mark.parametrize("film", [0.35, 0.55])
-def test_an_outlet_takes_any_film(film):
-    errors = []
-    for reach in (1e3, 1e5):
-        layer = film_layers.outlet(reach, film=film)
-        errors.append(abs(layer.excess[0]) + abs(at(layer.gap, -0.1 * reach) - film))
-    assert errors[1] < 0.2 * errors[0] < 0.02
+def test_an_outlet_takes_any_film(subtests):
+    for film in [0.35, 0.55]:
+        with subtests.test(film=film):
+            errors = []
+            for reach in (1e3, 1e5):
+                layer = film_layers.outlet(reach, film=film)
+                errors.append(abs(layer.excess[0]) + abs(at(layer.gap, -0.1 * reach) - film))
+            assert errors[1] < 0.2 * errors[0] < 0.02
 
 
 # --- collapse of the solver ---
@@ -215,13 +220,14 @@ def test_the_solver_collapses_onto_the_layer(field):
     assert errors[-1] < 1e-3
 
 
-@pytest.mark.parametrize("field", FIELDS[:2], ids=lambda field: field.name)
-def test_with_the_printed_edge_the_collapse_is_of_order_one_third(field):
-    steps = (1e-4, 1e-5, 1e-6)
-    errors = [relative_error(field, field.approach(small), printed=True) for small in steps]
-    assert abs(np.log10(errors[-2] / errors[-1]) - 1 / 3) < 0.035
-    shifted = [relative_error(field, field.approach(small)) for small in steps]
-    assert all(ours < 0.35 * printed for ours, printed in zip(shifted, errors, strict=True))
+def test_with_the_printed_edge_the_collapse_is_of_order_one_third(subtests):
+    for field in FIELDS[:2]:
+        with subtests.test(field=field):
+            steps = (1e-4, 1e-5, 1e-6)
+            errors = [relative_error(field, field.approach(small), printed=True) for small in steps]
+            assert abs(np.log10(errors[-2] / errors[-1]) - 1 / 3) < 0.035
+            shifted = [relative_error(field, field.approach(small)) for small in steps]
+            assert all(ours < 0.35 * printed for ours, printed in zip(shifted, errors, strict=True))
 
 
 @EVERY_FIELD
@@ -249,10 +255,11 @@ def test_gap_and_contact_pressure_at_the_edge_obey_the_law_in_any_shape():
     assert np.allclose(edge_layer.contact_pressure(groups, x) * np.ones((2, 1)), law, rtol=1e-10)
 
 
-@pytest.mark.parametrize(("field", "x"), [(field, 0.9) for field in FIELDS])
-def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(field, x):
-    with pytest.warns(OutOfRangeWarning, match="nan"):
-        assert np.isnan(field(sb.Groups(0.0, 0.1, 0.0), x))
+def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(subtests):
+    for field, x in [(field, 0.9) for field in FIELDS]:
+        with subtests.test(field=field, x=x):
+            with pytest.warns(OutOfRangeWarning, match="nan"):
+                assert np.isnan(field(sb.Groups(0.0, 0.1, 0.0), x))
 
 
 @EVERY_LAYER

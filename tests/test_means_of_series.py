@@ -43,12 +43,13 @@ def series(rng, memory, n=40, starting=2, speeds=SPEEDS, in_speed=0.002):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("settings", [{}, {"repeats": True}])
-def test_a_series_of_steps_becomes_means_without_its_rows_of_starting(settings):
-    found = sb.read_measurements(FILE, sb.FitSettings(**settings))
-    assert 1e3 * found.values == pytest.approx(np.geomspace(0.1, 300, 8), rel=3e-3)
-    assert any("16 rows" in note and "left out: 2, 3, 42, 43" in note for note in found.notes)
-    assert np.all((0.01 < found.error / found.friction) & (found.error / found.friction < 0.03))
+def test_a_series_of_steps_becomes_means_without_its_rows_of_starting(subtests):
+    for settings in [{}, {"repeats": True}]:
+        with subtests.test(settings=settings):
+            found = sb.read_measurements(FILE, sb.FitSettings(**settings))
+            assert 1e3 * found.values == pytest.approx(np.geomspace(0.1, 300, 8), rel=3e-3)
+            assert any("16 rows" in note and "left out: 2, 3, 42, 43" in note for note in found.notes)
+            assert np.all((0.01 < found.error / found.friction) & (found.error / found.friction < 0.03))
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])

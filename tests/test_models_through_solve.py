@@ -33,37 +33,41 @@ def groups_of(row, model):
     return sb.Groups(row["speed"], row["load"], row["kappa"] * row["load"], model=model)
 
 
-@pytest.mark.parametrize(("film", "row"), BARUS + ROLLING + THINNING + ROUGH)
-def test_a_film_through_solve_is_that_of_an_independent_solver(film, row):
-    solution = sb.solve(groups_of(row, Model(film, Cavitation.EXIT)))
-    assert max(differences(solution, row).values()) < 1e-6
-    assert solution.error_estimate <= 1e-6
+def test_a_film_through_solve_is_that_of_an_independent_solver(subtests):
+    for film, row in BARUS + ROLLING + THINNING + ROUGH:
+        with subtests.test(film=film, row=row):
+            solution = sb.solve(groups_of(row, Model(film, Cavitation.EXIT)))
+            assert max(differences(solution, row).values()) < 1e-6
+            assert solution.error_estimate <= 1e-6
 
 
-@pytest.mark.parametrize("row", REFERENCE["f_layer_lubricated"], ids=lambda row: f"{row['d']:g}-{row['kappa']:g}")
-def test_a_film_on_a_layer_through_solve_is_that_of_an_independent_solver(row):
-    model = Model(cavitation=Cavitation.EXIT, solid=Layer(row["d"], row["nu"]))
-    assert max(differences(sb.solve(groups_of(row, model)), row).values()) < 1e-6
+def test_a_film_on_a_layer_through_solve_is_that_of_an_independent_solver(subtests):
+    for row in REFERENCE["f_layer_lubricated"]:
+        with subtests.test(row=row):
+            model = Model(cavitation=Cavitation.EXIT, solid=Layer(row["d"], row["nu"]))
+            assert max(differences(sb.solve(groups_of(row, model)), row).values()) < 1e-6
 
 
-@pytest.mark.parametrize("row", REFERENCE["f_layer_dry"], ids=lambda row: f"{row['d']:g}")
-def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(row):
-    solution = sb.solve(groups_of(row, Model(solid=Layer(row["d"], row["nu"]))))
-    tolerance = max(1e-6, 20 * row["change"])
-    assert solution.central_gap == pytest.approx(row["h0"], rel=tolerance)
-    assert solution.flux_gap == pytest.approx(row["m"], rel=tolerance)
-    assert solution.pressure.max() == pytest.approx(row["pmax"], rel=3e-5)
+def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(subtests):
+    for row in REFERENCE["f_layer_dry"]:
+        with subtests.test(row=row):
+            solution = sb.solve(groups_of(row, Model(solid=Layer(row["d"], row["nu"]))))
+            tolerance = max(1e-6, 20 * row["change"])
+            assert solution.central_gap == pytest.approx(row["h0"], rel=tolerance)
+            assert solution.flux_gap == pytest.approx(row["m"], rel=tolerance)
+            assert solution.pressure.max() == pytest.approx(row["pmax"], rel=3e-5)
 
 
-@pytest.mark.parametrize("row", REFERENCE["a_p_cav_negative_with_reformation"], ids=lambda row: f"{row['p_cav']:g}")
-def test_a_film_that_forms_anew_is_that_of_an_independent_solver(row):
-    solution = sb.solve(groups_of(row, Model(cavitation=Cavitation.REFORM, cavity_pressure=row["p_cav"])))
-    for name, column in REFORMING.items():
-        assert getattr(solution, name) == pytest.approx(row[column], rel=1e-8)
-    tolerance = max(1e-6, 2 * row["change"])  # near the full film the reference has its edge off the mesh
-    assert solution.minimum_gap == pytest.approx(row["hmin"], rel=tolerance)
-    assert solution.viscous_balanced == pytest.approx(row["mu_traction_1"], rel=tolerance)
-    assert solution.contact_load_share == pytest.approx(row["contact_share"], abs=1e-6)
+def test_a_film_that_forms_anew_is_that_of_an_independent_solver(subtests):
+    for row in REFERENCE["a_p_cav_negative_with_reformation"]:
+        with subtests.test(row=row):
+            solution = sb.solve(groups_of(row, Model(cavitation=Cavitation.REFORM, cavity_pressure=row["p_cav"])))
+            for name, column in REFORMING.items():
+                assert getattr(solution, name) == pytest.approx(row[column], rel=1e-8)
+            tolerance = max(1e-6, 2 * row["change"])  # near the full film the reference has its edge off the mesh
+            assert solution.minimum_gap == pytest.approx(row["hmin"], rel=tolerance)
+            assert solution.viscous_balanced == pytest.approx(row["mu_traction_1"], rel=tolerance)
+            assert solution.contact_load_share == pytest.approx(row["contact_share"], abs=1e-6)
 
 
 def test_a_cavity_closes_where_its_pressure_is_that_of_the_suction_of_the_full_film():
@@ -188,14 +192,15 @@ def test_a_cavity_that_nearly_closes_is_found():
     assert solution.reformation_position - solution.exit_position == pytest.approx(0.016902, abs=1e-5)
 
 
-@pytest.mark.parametrize("speed", [1e-10, 1e-9])
-def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_panels_there(speed):
+def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_panels_there(subtests):
     """No load feels the gradient there: whole meshes were refined, to twice the nodes, or to the limit without an end."""
-    groups = sb.Groups(speed, 1.0, 1.0)
-    solution = sb.solve(groups, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
-    finer = sb.solve(groups, rtol=1e-8, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
-    assert solution.mesh.size < 260
-    assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
+    for speed in [1e-10, 1e-9]:
+        with subtests.test(speed=speed):
+            groups = sb.Groups(speed, 1.0, 1.0)
+            solution = sb.solve(groups, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
+            finer = sb.solve(groups, rtol=1e-8, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
+            assert solution.mesh.size < 260
+            assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
 
 
 def test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error():

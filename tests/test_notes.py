@@ -126,13 +126,14 @@ def test_a_heavy_load_is_not_noted_where_the_fluid_carries_it():
 # --- hard elastohydrodynamics ---
 
 
-@pytest.mark.parametrize(("part", "noted"), [(0.99, False), (1.01, True)])
-def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(part, noted):
-    factor = part * MAX_HERTZ_PRESSURE / TRUE.hertz.pressure
-    contact = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
-    solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
-    assert any(note.startswith(HARD_PREFIX) for note in solution.notes) == noted
-    assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD_PREFIX) == noted
+def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(subtests):
+    for part, noted in [(0.99, False), (1.01, True)]:
+        with subtests.test(part=part, noted=noted):
+            factor = part * MAX_HERTZ_PRESSURE / TRUE.hertz.pressure
+            contact = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
+            solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
+            assert any(note.startswith(HARD_PREFIX) for note in solution.notes) == noted
+            assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD_PREFIX) == noted
 
 
 def test_a_fluid_that_stiffens_with_pressure_is_not_said_to_be_missing():
@@ -205,14 +206,15 @@ def test_speed_and_viscosity_end_each_where_they_must():
     assert viscosity.more is not None and viscosity.more.value > 1e-5
 
 
-@pytest.mark.parametrize("name", ["speed", "load", "roughness", "viscosity"])
-def test_a_value_that_is_counts_as_possible(name):
-    low, high = physical_bounds(TRUE, name)
-    assert low < getattr(TRUE, name) < high
-    beyond = TRUE.replace(**{name: 10 * high})
-    assert physical_bounds(beyond, name)[1] >= 10 * high * (1 - 1e-12)
-    if name == "load":
-        assert TRUE.replace(load=high).hertz.half_width == pytest.approx(TRUE.radius)
+def test_a_value_that_is_counts_as_possible(subtests):
+    for name in ["speed", "load", "roughness", "viscosity"]:
+        with subtests.test(name=name):
+            low, high = physical_bounds(TRUE, name)
+            assert low < getattr(TRUE, name) < high
+            beyond = TRUE.replace(**{name: 10 * high})
+            assert physical_bounds(beyond, name)[1] >= 10 * high * (1 - 1e-12)
+            if name == "load":
+                assert TRUE.replace(load=high).hertz.half_width == pytest.approx(TRUE.radius)
 
 
 # --- cavitation ---

@@ -120,12 +120,13 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_a_wrong_argument_is_named_with_its_value_and_what_is_allowed(case):
-    call, words = REFUSED[case]
-    with pytest.raises(sb.InputError) as caught:
-        call()
-    assert words in str(caught.value)
+def test_a_wrong_argument_is_named_with_its_value_and_what_is_allowed(subtests):
+    for case in REFUSED:
+        with subtests.test(case=case):
+            call, words = REFUSED[case]
+            with pytest.raises(sb.InputError) as caught:
+                call()
+            assert words in str(caught.value)
 
 
 def test_a_tolerance_may_be_a_number_of_numpy_and_a_name_of_an_observable_must_be_known():
@@ -142,9 +143,8 @@ def test_a_tolerance_may_be_a_number_of_numpy_and_a_name_of_an_observable_must_b
 LONG = "x" * 300
 
 
-@pytest.mark.parametrize(
-    "tokens",
-    [
+def test_a_name_of_300_letters_is_refused_by_every_command(subtests, capsys):
+    for tokens in [
         ("check", f"{LONG}.toml"),
         ("surface", f"{LONG}.csv"),
         ("fit", f"{LONG}.csv", PDMS),
@@ -153,12 +153,11 @@ LONG = "x" * 300
         ("curve", PDMS, "--points", "3", "-o", f"{LONG}.nc"),
         ("curve", PDMS, "--points", "3", "--plot", f"{LONG}.png"),
         ("sweep", f"{LONG}.toml", "--out", "store"),
-    ],
-)
-def test_a_name_of_300_letters_is_refused_by_every_command(capsys, tokens):
-    answer = call(capsys, *tokens)
-    assert answer.code in (1, 2) and "File name too long" in answer.err
-    assert "report it" not in answer.err
+    ]:
+        with subtests.test(tokens=tokens):
+            answer = call(capsys, *tokens)
+            assert answer.code in (1, 2) and "File name too long" in answer.err
+            assert "report it" not in answer.err
 
 
 def test_a_number_of_5000_digits_is_refused_and_not_reported(capsys, tmp_path):

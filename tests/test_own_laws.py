@@ -114,11 +114,17 @@ def test_laws_that_are_those_of_the_package_give_their_films():
     assert film(Stiffening(2e-8)) == pytest.approx(film(sb.fluids.Barus("20 1/GPa")), rel=1e-9)
 
 
-@pytest.mark.parametrize("law", ["Carreau", "Cross", "PowerLaw", "Eyring", "Barus", "Roelands", "DowsonHigginson"])
-def test_the_laws_of_the_package_pass_the_check_of_others(law):
-    given = {"Carreau": ("1 ms", 0.5, "1 mPa*s"), "Cross": ("1 ms", 0.4), "PowerLaw": ("1 ms", 0.7), "Eyring": ("5 kPa",)}
-    arguments = given.get(law, () if law == "DowsonHigginson" else ("20 1/GPa",))
-    sb.fluids.Fluid(**{kind_of(law): other(getattr(sb.fluids, law))(*arguments)})
+def test_the_laws_of_the_package_pass_the_check_of_others(subtests):
+    for law in ["Carreau", "Cross", "PowerLaw", "Eyring", "Barus", "Roelands", "DowsonHigginson"]:
+        with subtests.test(law=law):
+            given = {
+                "Carreau": ("1 ms", 0.5, "1 mPa*s"),
+                "Cross": ("1 ms", 0.4),
+                "PowerLaw": ("1 ms", 0.7),
+                "Eyring": ("5 kPa",),
+            }
+            arguments = given.get(law, () if law == "DowsonHigginson" else ("20 1/GPa",))
+            sb.fluids.Fluid(**{kind_of(law): other(getattr(sb.fluids, law))(*arguments)})
 
 
 def kind_of(law):
@@ -139,16 +145,16 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("what", WRONG)
-def test_a_law_of_shear_that_contradicts_itself_is_refused(what):
-    said, members = WRONG[what]
-    with pytest.raises(sb.InputError, match=said):
-        film(other(Yasuda, **members)(1e-4, 0.5))
+def test_a_law_of_shear_that_contradicts_itself_is_refused(subtests):
+    for what in WRONG:
+        with subtests.test(what=what):
+            said, members = WRONG[what]
+            with pytest.raises(sb.InputError, match=said):
+                film(other(Yasuda, **members)(1e-4, 0.5))
 
 
-@pytest.mark.parametrize(
-    ("said", "members"),
-    [
+def test_a_law_of_pressure_that_contradicts_itself_is_refused(subtests):
+    for said, members in [
         ("scaled", {"scaled": lambda self, units: self}),
         (
             "slope",
@@ -158,12 +164,10 @@ def test_a_law_of_shear_that_contradicts_itself_is_refused(what):
             "ambient",
             {"log": lambda self, pressure: (1 + self.coefficient * pressure, np.full_like(pressure, self.coefficient))},
         ),
-    ],
-    ids=["no units", "another slope", "not one at rest"],
-)
-def test_a_law_of_pressure_that_contradicts_itself_is_refused(said, members):
-    with pytest.raises(sb.InputError, match=said):
-        film(other(Stiffening, **members)(2e-8))
+    ]:
+        with subtests.test(said=said, members=members):
+            with pytest.raises(sb.InputError, match=said):
+                film(other(Stiffening, **members)(2e-8))
 
 
 def test_a_law_that_sets_in_as_the_square_of_the_pressure_is_refused_without_units():
@@ -172,40 +176,35 @@ def test_a_law_that_sets_in_as_the_square_of_the_pressure_is_refused_without_uni
         film(other(StiffeningLate, scaled=lambda self, units: self)(1e-10))
 
 
-@pytest.mark.parametrize(
-    ("said", "members"),
-    [
+def test_flow_factors_that_contradict_themselves_are_refused(subtests):
+    for said, members in [
         ("scaled", {"scaled": lambda self, units: self}),
         ("slope", {"pressure": lambda self, gap: (1 + (self.depth / gap) ** 2, np.zeros_like(gap))}),
         ("shear", {"shear": lambda self, gap: (self.depth**2 / gap, np.zeros_like(gap))}),
         ("two arrays", {"shear": lambda self, gap: np.zeros_like(gap)}),
-    ],
-    ids=["no units", "no slope", "no slope of the shear", "one array"],
-)
-def test_flow_factors_that_contradict_themselves_are_refused(said, members):
-    assert sb.solve(CONTACT, flow_factors=Grooves(1e-6)).central_gap > 0
-    with pytest.raises(sb.InputError, match=said):
-        sb.solve(CONTACT, flow_factors=other(Grooves, **members)(1e-6))
+    ]:
+        with subtests.test(said=said, members=members):
+            assert sb.solve(CONTACT, flow_factors=Grooves(1e-6)).central_gap > 0
+            with pytest.raises(sb.InputError, match=said):
+                sb.solve(CONTACT, flow_factors=other(Grooves, **members)(1e-6))
 
 
-@pytest.mark.parametrize("factors", ["PatirCheng", "EffectiveMedium"])
-def test_flow_factors_of_the_package_pass_the_check_of_others(factors):
-    own = other(getattr(sb.fluids, factors))()
-    assert sb.solve(CONTACT, flow_factors=own).central_gap > 0
+def test_flow_factors_of_the_package_pass_the_check_of_others(subtests):
+    for factors in ["PatirCheng", "EffectiveMedium"]:
+        with subtests.test(factors=factors):
+            own = other(getattr(sb.fluids, factors))()
+            assert sb.solve(CONTACT, flow_factors=own).central_gap > 0
 
 
-@pytest.mark.parametrize(
-    ("said", "members"),
-    [
+def test_a_law_that_cannot_be_evaluated_is_refused_with_a_sentence(subtests):
+    for said, members in [
         ("log must return two arrays", {"log": lambda self, pressure: (self.coefficient * pressure, self.coefficient)}),
         ("log must return two arrays", {"log": lambda self, pressure: self.coefficient * pressure}),
         ("stiffening.*ZeroDivisionError", {"log": lambda self, pressure: 1 / 0}),
-    ],
-    ids=["a number for slopes", "one array", "an exception"],
-)
-def test_a_law_that_cannot_be_evaluated_is_refused_with_a_sentence(said, members):
-    with pytest.raises(sb.InputError, match=said):
-        film(other(Stiffening, **members)(2e-8))
+    ]:
+        with subtests.test(said=said, members=members):
+            with pytest.raises(sb.InputError, match=said):
+                film(other(Stiffening, **members)(2e-8))
 
 
 def test_a_shape_that_lacks_a_number_of_the_law_is_refused_with_a_sentence():
@@ -213,11 +212,12 @@ def test_a_shape_that_lacks_a_number_of_the_law_is_refused_with_a_sentence():
         film(other(Yasuda, shape=property(lambda self: ()))(1e-4, 0.5))
 
 
-@pytest.mark.parametrize("lacks", ["scaled", "stress", "time", "shape", "smallest"])
-def test_a_law_that_lacks_a_member_cannot_be_made(lacks):
-    members = {name: value for name, value in vars(Yasuda).items() if name != lacks and not name.startswith("__")}
-    with pytest.raises(TypeError, match=lacks):
-        type("Lacking", (TabulatedLaw,), members | {"relaxation_time": 1e-4, "exponent": 0.5})()
+def test_a_law_that_lacks_a_member_cannot_be_made(subtests):
+    for lacks in ["scaled", "stress", "time", "shape", "smallest"]:
+        with subtests.test(lacks=lacks):
+            members = {name: value for name, value in vars(Yasuda).items() if name != lacks and not name.startswith("__")}
+            with pytest.raises(TypeError, match=lacks):
+                type("Lacking", (TabulatedLaw,), members | {"relaxation_time": 1e-4, "exponent": 0.5})()
 
 
 def test_contact_laws_that_contradict_themselves_are_refused():
@@ -269,9 +269,8 @@ def test_a_body_of_ones_own_is_solved_and_nearly_a_half_plane_where_it_hardly_yi
     assert sb.solve(CONTACT, solid=Pad(1e-9)).central_gap == pytest.approx(sb.solve(CONTACT).central_gap, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("said", "members"),
-    [
+def test_a_body_that_contradicts_itself_is_refused_where_it_enters(subtests):
+    for said, members in [
         ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: self}),
         ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: type(self)(self.length * length)}),
         ("scaled does not agree", {"scaled": lambda self, length, speed=1.0: self, "lengths": Lengths()}),
@@ -283,43 +282,29 @@ def test_a_body_of_ones_own_is_solved_and_nearly_a_half_plane_where_it_hardly_yi
         ("pad.*ZeroDivisionError", {"deflection": lambda self, mesh: 1 / 0}),
         ("a number for each place", {"far_gap": lambda self, x: 0.0}),
         ("cannot be hashed", {"__hash__": None}),
-    ],
-    ids=[
-        "no units",
-        "inverse",
-        "no units, no lengths",
-        "no logarithm",
-        "sign",
-        "factor",
-        "shape",
-        "nan",
-        "raises",
-        "one number",
-        "hash",
-    ],
-)
-def test_a_body_that_contradicts_itself_is_refused_where_it_enters(said, members):
-    body = other(Pad, **members)(1e-4)
-    for enter in (
-        lambda: sb.solve(CONTACT, solid=body),
-        lambda: CONTACT.replace(solid=body),
-        lambda: sb.solids.TwoBodies(body),
-    ):
-        with pytest.raises(sb.InputError, match=said):
-            enter()
+    ]:
+        with subtests.test(said=said, members=members):
+            body = other(Pad, **members)(1e-4)
+            for enter in (
+                lambda: sb.solve(CONTACT, solid=body),
+                lambda: CONTACT.replace(solid=body),
+                lambda: sb.solids.TwoBodies(body),
+            ):
+                with pytest.raises(sb.InputError, match=said):
+                    enter()
 
 
-@pytest.mark.parametrize("lacks", ["name", "parameters", "scaled", "far_gap"])
-def test_a_body_that_lacks_a_member_is_refused_with_its_name(lacks):
-    members = {name: value for name, value in vars(Pad).items() if name not in (lacks, "__dict__", "__weakref__")}
-    body = type("Lacking", (), members)(1e-4)
-    with pytest.raises(sb.InputError, match=f"lacks {lacks}"):
-        CONTACT.replace(solid=body)
+def test_a_body_that_lacks_a_member_is_refused_with_its_name(subtests):
+    for lacks in ["name", "parameters", "scaled", "far_gap"]:
+        with subtests.test(lacks=lacks):
+            members = {name: value for name, value in vars(Pad).items() if name not in (lacks, "__dict__", "__weakref__")}
+            body = type("Lacking", (), members)(1e-4)
+            with pytest.raises(sb.InputError, match=f"lacks {lacks}"):
+                CONTACT.replace(solid=body)
 
 
-@pytest.mark.parametrize(
-    "body",
-    [
+def test_the_bodies_of_the_package_pass_the_check_of_others(subtests):
+    for body in [
         (sb.solids.HalfPlane,),
         (sb.solids.Layer, "2 mm"),
         (sb.solids.Layer, "1 um", 0.3),
@@ -327,23 +312,23 @@ def test_a_body_that_lacks_a_member_is_refused_with_its_name(lacks):
         (sb.solids.StandardLinearSolid, "1 s", 3.0, sb.solids.Layer("2 mm")),
         (sb.solids.Prony, ["1 ms", "10 ms"], [1.0, 0.5]),
         (sb.solids.TwoBodies, sb.solids.Layer("1 mm"), None, 0.3),
-    ],
-    ids=lambda body: body[0].__name__,
-)
-def test_the_bodies_of_the_package_pass_the_check_of_others(body):
-    kind, *arguments = body
-    assert CONTACT.replace(solid=other(kind)(*arguments)).solid.name
+    ]:
+        with subtests.test(body=body):
+            kind, *arguments = body
+            assert CONTACT.replace(solid=other(kind)(*arguments)).solid.name
 
 
-@pytest.mark.parametrize("name", ["fluid", "cavitation"])
-def test_a_film_and_an_end_of_it_are_not_given_as_classes(name):
-    class Film:
-        def gradient(self, gap, pressure, flux_gap):
-            return gap
+def test_a_film_and_an_end_of_it_are_not_given_as_classes(subtests):
+    for name in ["fluid", "cavitation"]:
+        with subtests.test(name=name):
 
-    for enter in (sb.solve, lambda contact, **part: contact.replace(**part)):
-        with pytest.raises(sb.InputError, match=f"{name} = .*(give a law|must be 'none')"):
-            enter(CONTACT, **{name: Film()})
+            class Film:
+                def gradient(self, gap, pressure, flux_gap):
+                    return gap
+
+            for enter in (sb.solve, lambda contact, **part: contact.replace(**part)):
+                with pytest.raises(sb.InputError, match=f"{name} = .*(give a law|must be 'none')"):
+                    enter(CONTACT, **{name: Film()})
 
 
 def test_groups_take_no_film_of_ones_own_and_check_their_body():

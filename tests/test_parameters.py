@@ -171,21 +171,19 @@ def test_modulus_follows_from_youngs_modulus_and_poisson_ratio():
     assert contact(modulus=None, youngs_modulus=3e6, poisson_ratio=0).modulus == 3e6
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
+def test_elasticity_is_given_once_and_possible(subtests):
+    for changes, words in [
         ({"youngs_modulus": 1e6, "poisson_ratio": 0.5}, "give either modulus, or"),
         ({"poisson_ratio": 0.5}, "give either modulus, or"),
         ({"modulus": None}, "modulus (which is E*) is missing"),
         ({"modulus": None, "youngs_modulus": 1e6}, "poisson_ratio is missing beside youngs_modulus"),
         ({"modulus": None, "youngs_modulus": 1e6}, "for example poisson_ratio = 0.5 (rubber and gels)"),
         ({"modulus": None, "poisson_ratio": 0.5}, "youngs_modulus is missing beside poisson_ratio"),
-    ],
-)
-def test_elasticity_is_given_once_and_possible(changes, words):
-    with pytest.raises(InputError) as caught:
-        contact(**changes)
-    assert words in str(caught.value)
+    ]:
+        with subtests.test(changes=changes, words=words):
+            with pytest.raises(InputError) as caught:
+                contact(**changes)
+            assert words in str(caught.value)
 
 
 # --- the table of inputs ---
@@ -230,10 +228,11 @@ def test_zero_is_taken_where_it_is_possible():
         assert getattr(contact(**{name: 0}), name) == 0.0
 
 
-@pytest.mark.parametrize("changes", [{"beta": 1e-200}, {"load": 1e-300, "radius": 1e300}, {"radius": 1e-320}])
-def test_values_whose_groups_overflow_are_refused(changes):
-    with pytest.raises(InputError, match="leave the range of double precision"):
-        contact(**changes)
+def test_values_whose_groups_overflow_are_refused(subtests):
+    for changes in [{"beta": 1e-200}, {"load": 1e-300, "radius": 1e300}, {"radius": 1e-320}]:
+        with subtests.test(changes=changes):
+            with pytest.raises(InputError, match="leave the range of double precision"):
+                contact(**changes)
 
 
 # --- the objects ---
@@ -252,13 +251,14 @@ def test_replace_checks_and_keeps_the_rest():
         c.replace(speed="2 m")
 
 
-@pytest.mark.parametrize("frozen", [contact(), contact().groups, contact().hertz])
-def test_parameters_are_frozen_and_survive_copies(frozen):
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        setattr(frozen, dataclasses.fields(frozen)[0].name, 1.0)
-    for twin in (copy.deepcopy(frozen), pickle.loads(pickle.dumps(frozen))):
-        assert twin == frozen
-        assert hash(twin) == hash(frozen)
+def test_parameters_are_frozen_and_survive_copies(subtests):
+    for frozen in [contact(), contact().groups, contact().hertz]:
+        with subtests.test(frozen=frozen):
+            with pytest.raises(dataclasses.FrozenInstanceError):
+                setattr(frozen, dataclasses.fields(frozen)[0].name, 1.0)
+            for twin in (copy.deepcopy(frozen), pickle.loads(pickle.dumps(frozen))):
+                assert twin == frozen
+                assert hash(twin) == hash(frozen)
 
 
 # --- groups ---
@@ -282,11 +282,12 @@ def test_groups_keep_read_only_copies_of_arrays():
         groups.speed[0] = 7.0
 
 
-@pytest.mark.parametrize("value", [1, np.float32(0.5), np.array(0.5), np.int64(2)])
-def test_scalar_groups_are_plain_floats(value):
-    groups = Groups(value, value, value)
-    assert [type(groups.speed), type(groups.load), type(groups.roughness)] == [float] * 3
-    assert groups.shape == ()
+def test_scalar_groups_are_plain_floats(subtests):
+    for value in [1, np.float32(0.5), np.array(0.5), np.int64(2)]:
+        with subtests.test(value=value):
+            groups = Groups(value, value, value)
+            assert [type(groups.speed), type(groups.load), type(groups.roughness)] == [float] * 3
+            assert groups.shape == ()
 
 
 def test_only_the_load_must_not_be_zero():
@@ -318,9 +319,10 @@ def test_derived_quantities_of_groups_broadcast_without_warnings():
     assert groups.hersey_number(1e200)[1, 1] == math.inf
 
 
-@pytest.mark.parametrize("beta", [0.0, -1.0, math.nan, "1", None])
-def test_friction_scales_refuse_an_impossible_beta(beta):
-    groups = Groups(1.0, 1.0, 1.0)
-    for method in (groups.hersey_number, groups.slope):
-        with pytest.raises(InputError, match="^beta = "):
-            method(beta)
+def test_friction_scales_refuse_an_impossible_beta(subtests):
+    for beta in [0.0, -1.0, math.nan, "1", None]:
+        with subtests.test(beta=beta):
+            groups = Groups(1.0, 1.0, 1.0)
+            for method in (groups.hersey_number, groups.slope):
+                with pytest.raises(InputError, match="^beta = "):
+                    method(beta)

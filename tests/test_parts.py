@@ -69,13 +69,14 @@ def test_a_change_of_load_scales_the_laws_anew_and_keeps_them():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("factors", ["patir-cheng", "effective-medium"])
-def test_flow_between_smooth_surfaces_has_no_factors(factors):
+def test_flow_between_smooth_surfaces_has_no_factors(subtests):
     """A contact without roughness was lost: its gap over the roughness has no bound."""
-    plain = contact(cavitation="exit").replace(roughness=0.0)
-    smooth = plain.replace(flow_factors=factors)
-    assert smooth.groups.model == plain.groups.model
-    assert sb.solve(smooth, rtol=1e-4).outcome.ok
+    for factors in ["patir-cheng", "effective-medium"]:
+        with subtests.test(factors=factors):
+            plain = contact(cavitation="exit").replace(roughness=0.0)
+            smooth = plain.replace(flow_factors=factors)
+            assert smooth.groups.model == plain.groups.model
+            assert sb.solve(smooth, rtol=1e-4).outcome.ok
 
 
 @pytest.mark.quick
@@ -110,9 +111,8 @@ def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("parts", "said"),
-    [
+def test_parts_that_are_none_or_do_not_go_together_are_refused_by_name(subtests):
+    for parts, said in [
         ({"fluid": "carreau"}, "fluid = 'carreau'"),
         ({"fluid": sb.fluids.Carreau}, "give a law of sb.fluids"),
         ({"fluid": sb.fluids.Barus("100 1/MPa")}, "hard elastohydrodynamics"),
@@ -124,11 +124,10 @@ def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
         ({"cavitation": "reform", "cavity_pressure": "-1e-30 Pa"}, "give 0, or -[0-9.]+e-1[0-9] Pa or less"),
         ({"slide_to_roll": 1e3}, "slide_to_roll"),
         ({"solid": "rubber"}, "sb.solids"),
-    ],
-)
-def test_parts_that_are_none_or_do_not_go_together_are_refused_by_name(parts, said):
-    with pytest.raises(sb.InputError, match=said):
-        _ = contact(**parts).groups
+    ]:
+        with subtests.test(parts=parts, said=said):
+            with pytest.raises(sb.InputError, match=said):
+                _ = contact(**parts).groups
 
 
 def test_what_fails_in_a_property_of_a_contact_is_not_hidden_as_an_unknown_name(monkeypatch):
@@ -175,22 +174,24 @@ DOW = {  # mPa s at 20 degrees, Dow's table of glycerol by weight
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("fraction", DOW)
-def test_glycerol_in_water_has_its_measured_viscosity(fraction):
-    assert 1e3 * sb.fluids.glycerol_water(fraction, "20 degC").viscosity == pytest.approx(DOW[fraction], rel=0.04)
+def test_glycerol_in_water_has_its_measured_viscosity(subtests):
+    for fraction in DOW:
+        with subtests.test(fraction=fraction):
+            assert 1e3 * sb.fluids.glycerol_water(fraction, "20 degC").viscosity == pytest.approx(DOW[fraction], rel=0.04)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", sb.fluids.PRESETS)
-def test_every_preset_is_a_fluid_of_a_contact_with_its_source(name):
-    preset = sb.fluids.PRESETS[name]
-    liquid = preset()
-    assert liquid.source == preset.source
-    c = sb.LineContact(**{**CONTACT, **liquid.inputs})
-    assert c.viscosity == liquid.viscosity and c.fluid == liquid.fluid
-    _ = c.groups
-    with pytest.raises(sb.InputError, match="no condition"):
-        preset(pressure=1.0)
+def test_every_preset_is_a_fluid_of_a_contact_with_its_source(subtests):
+    for name in sb.fluids.PRESETS:
+        with subtests.test(name=name):
+            preset = sb.fluids.PRESETS[name]
+            liquid = preset()
+            assert liquid.source == preset.source
+            c = sb.LineContact(**{**CONTACT, **liquid.inputs})
+            assert c.viscosity == liquid.viscosity and c.fluid == liquid.fluid
+            _ = c.groups
+            with pytest.raises(sb.InputError, match="no condition"):
+                preset(pressure=1.0)
 
 
 @pytest.mark.quick

@@ -208,17 +208,18 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
 merging = functools.cache(roughness_without_minimum)
 
 
-@pytest.mark.parametrize(("load", "ratio"), [(0.1, 1.0), (0.01, 20.0)])
-def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(load, ratio):
-    merged = merging(load, ratio)
-    for factor, falls in ((0.98, True), (1.02, False)):
-        place = weakening(sb.Groups(1.0, load, factor * merged), boundary_friction=ratio)
-        speeds = (place.speed / 30, place.speed * 30)
-        curve = sb.stribeck_curve(
-            load=load, roughness=factor * merged, speed=speeds, points=121, rtol=1e-9, boundary_friction=ratio
-        )
-        assert (np.diff(curve.friction).min() < 0) == falls
-        assert place.present == falls
+def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(subtests):
+    for load, ratio in [(0.1, 1.0), (0.01, 20.0)]:
+        with subtests.test(load=load, ratio=ratio):
+            merged = merging(load, ratio)
+            for factor, falls in ((0.98, True), (1.02, False)):
+                place = weakening(sb.Groups(1.0, load, factor * merged), boundary_friction=ratio)
+                speeds = (place.speed / 30, place.speed * 30)
+                curve = sb.stribeck_curve(
+                    load=load, roughness=factor * merged, speed=speeds, points=121, rtol=1e-9, boundary_friction=ratio
+                )
+                assert (np.diff(curve.friction).min() < 0) == falls
+                assert place.present == falls
 
 
 def test_the_minimum_passes_the_plateau_before_it_disappears():
@@ -247,12 +248,11 @@ def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
     assert math.isnan(roughness_without_minimum(0.1))
 
 
-@pytest.mark.parametrize(
-    "arguments", [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"boundary_friction": -1}]
-)
-def test_bad_input_to_the_merging_is_refused(arguments):
-    with pytest.raises(sb.InputError):
-        roughness_without_minimum(**{"load": 0.1} | arguments)
+def test_bad_input_to_the_merging_is_refused(subtests):
+    for arguments in [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"boundary_friction": -1}]:
+        with subtests.test(arguments=arguments):
+            with pytest.raises(sb.InputError):
+                roughness_without_minimum(**{"load": 0.1} | arguments)
 
 
 def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
@@ -334,9 +334,8 @@ def test_a_row_that_fails_keeps_its_reason_and_leaves_the_others(monkeypatch):
 # --- bad input ---
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
+def test_bad_input_is_refused_with_a_sentence(subtests):
+    for changes, words in [
         ({"load": None}, "load missing"),
         ({"load": None, "roughness": None}, "load and roughness missing"),
         ({"load": (0.0, 0.1)}, "load = (0.0, 0.1)"),
@@ -352,13 +351,12 @@ def test_a_row_that_fails_keeps_its_reason_and_leaves_the_others(monkeypatch):
         ({"definition": "mine"}, "definition"),
         ({"beta": 0.0}, "beta"),
         ({"problem": 7}, "problem = 7"),
-    ],
-)
-def test_bad_input_is_refused_with_a_sentence(changes, words):
-    with pytest.raises(sb.InputError) as caught:
-        made(**changes)
-    assert words in str(caught.value)
-    assert str(caught.value).endswith(".")
+    ]:
+        with subtests.test(changes=changes, words=words):
+            with pytest.raises(sb.InputError) as caught:
+                made(**changes)
+            assert words in str(caught.value)
+            assert str(caught.value).endswith(".")
 
 
 # --- pictures ---

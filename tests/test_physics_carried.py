@@ -22,9 +22,10 @@ def groups_of_a_diagram():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("made", [groups_of_a_curve, groups_of_a_diagram])
-def test_groups_made_of_others_share_their_physics(made):
-    assert made().physics == BALL.physics
+def test_groups_made_of_others_share_their_physics(subtests):
+    for made in [groups_of_a_curve, groups_of_a_diagram]:
+        with subtests.test(made=made):
+            assert made().physics == BALL.physics
 
 
 @pytest.mark.quick

@@ -245,15 +245,16 @@ def test_the_marks_lie_on_the_line_that_is_drawn(heavy):
         assert set(zip(*line(axes, label).get_data(), strict=True)) <= drawn
 
 
-@pytest.mark.parametrize("kind", ["over speed", "over load", "over roughness"])
-def test_the_contact_itself_is_marked_where_it_lies(kind):
-    curve = KINDS[kind]()
-    own = getattr(curve.contact, curve.over)
-    axes = curve.plot(**({"abscissa": "speed"} if curve.over == "speed" else {})).axes[0]
-    np.testing.assert_allclose(line(axes, "this contact, at ").get_xdata(), own, rtol=1e-9)
-    beyond = KINDS["over speed"]().contact.replace(speed=50.0)
-    far = sb.stribeck_curve(beyond, speed=("1 mm/s", "1 m/s"), points=2).plot()
-    assert not any(each.get_label().startswith("this contact") for each in far.axes[0].lines)
+def test_the_contact_itself_is_marked_where_it_lies(subtests):
+    for kind in ["over speed", "over load", "over roughness"]:
+        with subtests.test(kind=kind):
+            curve = KINDS[kind]()
+            own = getattr(curve.contact, curve.over)
+            axes = curve.plot(**({"abscissa": "speed"} if curve.over == "speed" else {})).axes[0]
+            np.testing.assert_allclose(line(axes, "this contact, at ").get_xdata(), own, rtol=1e-9)
+            beyond = KINDS["over speed"]().contact.replace(speed=50.0)
+            far = sb.stribeck_curve(beyond, speed=("1 mm/s", "1 m/s"), points=2).plot()
+            assert not any(each.get_label().startswith("this contact") for each in far.axes[0].lines)
 
 
 def test_the_lower_axis_is_the_one_that_is_wanted(curve):
@@ -282,26 +283,27 @@ def test_the_command_leaves_the_notes_out_of_the_picture_and_prints_them(tmp_pat
 # --- legibility ---
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_texts_lie_inside_the_picture_and_apart_from_one_another(kind):
-    figure = KINDS[kind]().plot(title="A title")
-    figure.canvas.draw()
-    renderer = figure.canvas.get_renderer()
-    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts(figure)]
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            labels = [label for label in axis.get_ticklabels(which="both") if label.get_text()]
-            low, high = sorted(axis.get_view_interval())
-            positions = [*axis.get_majorticklocs(), *axis.get_minorticklocs()]
-            inside = [low * (1 - 1e-9) <= at <= high * (1 + 1e-9) for at in positions]
-            labels = [label for label, kept in zip(axis.get_ticklabels(which="both"), inside, strict=True) if kept]
-            boxes += [(label.get_text(), label.get_window_extent(renderer)) for label in labels if label.get_text()]
-    whole = figure.bbox
-    for text, box in boxes:
-        assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1, text
-    for (text, box), (other, beside) in itertools.combinations(boxes, 2):
-        overlap = min(box.x1, beside.x1) - max(box.x0, beside.x0), min(box.y1, beside.y1) - max(box.y0, beside.y0)
-        assert min(overlap) < 1.0, (text, other)
+def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests):
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            figure = KINDS[kind]().plot(title="A title")
+            figure.canvas.draw()
+            renderer = figure.canvas.get_renderer()
+            boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts(figure)]
+            for axes in figure.axes:
+                for axis in (axes.xaxis, axes.yaxis):
+                    labels = [label for label in axis.get_ticklabels(which="both") if label.get_text()]
+                    low, high = sorted(axis.get_view_interval())
+                    positions = [*axis.get_majorticklocs(), *axis.get_minorticklocs()]
+                    inside = [low * (1 - 1e-9) <= at <= high * (1 + 1e-9) for at in positions]
+                    labels = [label for label, kept in zip(axis.get_ticklabels(which="both"), inside, strict=True) if kept]
+                    boxes += [(label.get_text(), label.get_window_extent(renderer)) for label in labels if label.get_text()]
+            whole = figure.bbox
+            for text, box in boxes:
+                assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1, text
+            for (text, box), (other, beside) in itertools.combinations(boxes, 2):
+                overlap = min(box.x1, beside.x1) - max(box.x0, beside.x0), min(box.y1, beside.y1) - max(box.y0, beside.y0)
+                assert min(overlap) < 1.0, (text, other)
 
 
 @pytest.mark.parametrize("groups", [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)])

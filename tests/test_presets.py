@@ -41,11 +41,12 @@ def test_a_grade_may_have_its_unit():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", sorted(sb.fluids.PRESETS))
-def test_every_liquid_has_a_source_and_a_range(name):
-    preset = sb.fluids.PRESETS[name]
-    assert preset.source and preset.range
-    assert preset().viscosity > 0
+def test_every_liquid_has_a_source_and_a_range(subtests):
+    for name in sorted(sb.fluids.PRESETS):
+        with subtests.test(name=name):
+            preset = sb.fluids.PRESETS[name]
+            assert preset.source and preset.range
+            assert preset().viscosity > 0
 
 
 @pytest.mark.quick

@@ -39,45 +39,46 @@ CONTACT = sb.LineContact(
 )
 
 
-@pytest.mark.parametrize(
-    ("fluid", "contact", "regime"),
-    [
+def test_a_regime_is_named_by_the_shares_of_load_and_friction(subtests):
+    for fluid, contact, regime in [
         (0.0, 1.0, "boundary"),
         (0.05, 0.99, "boundary"),
         (0.051, 0.99, "mixed"),
         (0.99, 0.11, "mixed"),
         (0.99, 0.1, "hydrodynamic"),
         (0.04, 0.1, "hydrodynamic"),
-    ],
-)
-def test_a_regime_is_named_by_the_shares_of_load_and_friction(fluid, contact, regime):
-    assert sb.regime_of(fluid, contact) == regime
+    ]:
+        with subtests.test(fluid=fluid, contact=contact, regime=regime):
+            assert sb.regime_of(fluid, contact) == regime
 
 
-@pytest.mark.parametrize("name", LINE.exponents)
-def test_the_exponents_are_those_of_the_groups(name):
-    def logs(factor):
-        groups = CONTACT.replace(**{name: factor * getattr(CONTACT, name)}).groups
-        return np.log([groups.speed, groups.load, groups.roughness])
-
-    slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
-    np.testing.assert_allclose(slope, LINE.exponents[name], atol=1e-12)
-
-
-@pytest.mark.parametrize(("speed", "definition"), [(1e-3, "published"), (0.03, "balanced")])
-def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
-    contact = CONTACT.replace(speed=speed)
-    solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
-    assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
-    step = 1e-2
+def test_the_exponents_are_those_of_the_groups(subtests):
     for name in LINE.exponents:
+        with subtests.test(name=name):
 
-        def log_friction(k, name=name):
-            other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})
-            return math.log(sb.solve(other, rtol=1e-9).friction(definition=definition).total)
+            def logs(factor):
+                groups = CONTACT.replace(**{name: factor * getattr(CONTACT, name)}).groups
+                return np.log([groups.speed, groups.load, groups.roughness])
 
-        f = [log_friction(k) for k in (-2, -1, 1, 2)]
-        assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
+            slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
+            np.testing.assert_allclose(slope, LINE.exponents[name], atol=1e-12)
+
+
+def test_elasticities_agree_with_differences_of_cold_solves(subtests):
+    for speed, definition in [(1e-3, "published"), (0.03, "balanced")]:
+        with subtests.test(speed=speed, definition=definition):
+            contact = CONTACT.replace(speed=speed)
+            solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
+            assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
+            step = 1e-2
+            for name in LINE.exponents:
+
+                def log_friction(k, name=name):
+                    other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})
+                    return math.log(sb.solve(other, rtol=1e-9).friction(definition=definition).total)
+
+                f = [log_friction(k) for k in (-2, -1, 1, 2)]
+                assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
 
 
 def test_elasticities_obey_the_dimensions():
@@ -109,10 +110,11 @@ def test_where_there_is_no_friction_elasticities_are_no_number():
     assert all(math.isnan(value) for value in found.values())
 
 
-@pytest.mark.parametrize("arguments", [{"rtol": 1e-20}, {"definition": "mine"}])
-def test_bad_settings_are_refused(arguments):
-    with pytest.raises(sb.InputError):
-        friction_sensitivities(CONTACT, **arguments)
+def test_bad_settings_are_refused(subtests):
+    for arguments in [{"rtol": 1e-20}, {"definition": "mine"}]:
+        with subtests.test(arguments=arguments):
+            with pytest.raises(sb.InputError):
+                friction_sensitivities(CONTACT, **arguments)
 
 
 def test_a_substrate_that_is_overtaken_has_regimes_too():
@@ -175,25 +177,23 @@ def test_a_curve_of_another_definition_gives_no_margins(mixed):
     assert speed.more.value == pytest.approx(alone.more.value, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("changes", "definition"),
-    [({}, "published"), ({"speed": 1e-5}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
-)
-def test_at_a_crossing_the_named_regime_begins(changes, definition):
-    contact = CONTACT.replace(**changes)
-    found = regime_margins(contact, definition=definition)
-    assert found.regime == shares(contact, definition)[0]
-    seen = list(crossings(found))
-    assert len(seen) >= 3
-    for name, mark in seen:
-        value = getattr(contact, name)
-        assert mark.factor == pytest.approx(mark.value / value, rel=1e-12)
-        regime, fluid, part = shares(contact.replace(**{name: mark.value}), definition)
-        bound = abs(part - 0.1) if "hydrodynamic" in (found.regime, mark.regime) else abs(fluid - 0.05)
-        assert bound < 1e-7
-        beyond = math.copysign(1e-4, mark.factor - 1)
-        names = [shares(contact.replace(**{name: mark.value * math.exp(s)}), definition)[0] for s in (-beyond, beyond)]
-        assert names == [found.regime, mark.regime]
+def test_at_a_crossing_the_named_regime_begins(subtests):
+    for changes, definition in [({}, "published"), ({"speed": 1e-5}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")]:
+        with subtests.test(changes=changes, definition=definition):
+            contact = CONTACT.replace(**changes)
+            found = regime_margins(contact, definition=definition)
+            assert found.regime == shares(contact, definition)[0]
+            seen = list(crossings(found))
+            assert len(seen) >= 3
+            for name, mark in seen:
+                value = getattr(contact, name)
+                assert mark.factor == pytest.approx(mark.value / value, rel=1e-12)
+                regime, fluid, part = shares(contact.replace(**{name: mark.value}), definition)
+                bound = abs(part - 0.1) if "hydrodynamic" in (found.regime, mark.regime) else abs(fluid - 0.05)
+                assert bound < 1e-7
+                beyond = math.copysign(1e-4, mark.factor - 1)
+                names = [shares(contact.replace(**{name: mark.value * math.exp(s)}), definition)[0] for s in (-beyond, beyond)]
+                assert names == [found.regime, mark.regime]
 
 
 def test_a_crossing_is_the_nearest(mixed):
@@ -313,13 +313,11 @@ def test_an_interruption_of_the_search_is_passed_on():
         regime_margins(CONTACT, on_point=stop)
 
 
-@pytest.mark.parametrize(
-    ("contact", "settings"),
-    [(CONTACT.groups, {}), (CONTACT, {"rtol": 1.0}), (CONTACT, {"definition": "mine"})],
-)
-def test_distances_refuse_bad_input(contact, settings):
-    with pytest.raises(sb.InputError):
-        regime_margins(contact, **settings)
+def test_distances_refuse_bad_input(subtests):
+    for contact, settings in [(CONTACT.groups, {}), (CONTACT, {"rtol": 1.0}), (CONTACT, {"definition": "mine"})]:
+        with subtests.test(contact=contact, settings=settings):
+            with pytest.raises(sb.InputError):
+                regime_margins(contact, **settings)
 
 
 # --- in words and as JSON ---
@@ -406,22 +404,23 @@ def sensitivity_of(name, contact, regime, value, uncertain):
     return math.log(high / low) / 2 / 1.959964 / math.sqrt(math.log1p(error**2))
 
 
-@pytest.mark.parametrize("uncertain", ["roughness", "boundary_friction"])
-def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(uncertain):
-    contact = CONTACT.replace(speed="5 mm/s")
-    curves = [
-        sb.stribeck_curve(
-            contact.replace(**{uncertain: getattr(contact, uncertain) * math.exp(step)}),
-            speed=("0.1 mm/s", "0.1 m/s"),
-            points=11,
-            rtol=1e-5,
-        )
-        for step in (-0.02, 0.0, 0.02)
-    ]
-    for mark, regime in ((Transition.HYDRODYNAMIC_START, "hydrodynamic"), (Transition.BOUNDARY_END, "boundary")):
-        low, here, high = (curve.landmark(mark).value for curve in curves)
-        found = sensitivity_of("speed", contact, regime, here, uncertain)
-        assert found == pytest.approx(abs(math.log(high / low)) / 0.04, rel=1e-2, abs=1e-3)
+def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests):
+    for uncertain in ["roughness", "boundary_friction"]:
+        with subtests.test(uncertain=uncertain):
+            contact = CONTACT.replace(speed="5 mm/s")
+            curves = [
+                sb.stribeck_curve(
+                    contact.replace(**{uncertain: getattr(contact, uncertain) * math.exp(step)}),
+                    speed=("0.1 mm/s", "0.1 m/s"),
+                    points=11,
+                    rtol=1e-5,
+                )
+                for step in (-0.02, 0.0, 0.02)
+            ]
+            for mark, regime in ((Transition.HYDRODYNAMIC_START, "hydrodynamic"), (Transition.BOUNDARY_END, "boundary")):
+                low, here, high = (curve.landmark(mark).value for curve in curves)
+                found = sensitivity_of("speed", contact, regime, here, uncertain)
+                assert found == pytest.approx(abs(math.log(high / low)) / 0.04, rel=1e-2, abs=1e-3)
 
 
 def test_an_uncertain_input_moves_the_factor_by_which_it_is_to_be_changed_itself():
@@ -451,23 +450,21 @@ def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with
     assert counted.startswith("the errors of speed; radius, effective modulus, ") and counted.endswith(" count as exact.")
 
 
-@pytest.mark.parametrize(
-    ("parts", "names"),
-    [
+def test_inputs_that_change_the_numbers_of_a_fluid_or_layer_move_friction_through_them_too(subtests):
+    for parts, names in [
         ({"solid": sb.solids.Layer("0.3 mm", 0.5)}, ("modulus", "load", "speed")),
         ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
         ({"flow_factors": "effective-medium"}, ("roughness",)),
-    ],
-)
-def test_inputs_that_change_the_numbers_of_a_fluid_or_layer_move_friction_through_them_too(parts, names):
-    contact = CONTACT.replace(speed="10 mm/s", **parts)
-    _, found = friction_sensitivities(contact, rtol=1e-6)
-    for name in names:
-        value = getattr(contact, name)
-        high, low = (
-            sb.solve(contact.replace(**{name: value * factor}), rtol=1e-7).friction().total for factor in (1.01, 0.99)
-        )
-        assert found[name] == pytest.approx(math.log(high / low) / math.log(1.01 / 0.99), abs=2e-3)
+    ]:
+        with subtests.test(parts=parts, names=names):
+            contact = CONTACT.replace(speed="10 mm/s", **parts)
+            _, found = friction_sensitivities(contact, rtol=1e-6)
+            for name in names:
+                value = getattr(contact, name)
+                high, low = (
+                    sb.solve(contact.replace(**{name: value * factor}), rtol=1e-7).friction().total for factor in (1.01, 0.99)
+                )
+                assert found[name] == pytest.approx(math.log(high / low) / math.log(1.01 / 0.99), abs=2e-3)
 
 
 def test_a_fluid_that_thins_has_no_margin_in_viscosity(monkeypatch):
@@ -511,13 +508,14 @@ def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("contact", "viscous"), [(0.3, 0.1), (-0.3, -0.1), (0.3, -0.1)])
-def test_the_share_of_asperities_has_derivatives_by_complex_steps(contact, viscous):
+def test_the_share_of_asperities_has_derivatives_by_complex_steps(subtests):
     """Errors of transitions come from them; by absolute values they were zero, and 4e-7 was stated as 1e-9."""
-    step = 1e-6
-    slope = (friction_share(contact + step, viscous) - friction_share(contact - step, viscous)) / (2 * step)
-    assert friction_share(contact + 1e-20j, viscous).imag / 1e-20 == pytest.approx(slope, rel=1e-6)
-    assert friction_share(0.0, 0.0) == 0.0 and np.isnan(friction_share(contact, np.nan))
+    for contact, viscous in [(0.3, 0.1), (-0.3, -0.1), (0.3, -0.1)]:
+        with subtests.test(contact=contact, viscous=viscous):
+            step = 1e-6
+            slope = (friction_share(contact + step, viscous) - friction_share(contact - step, viscous)) / (2 * step)
+            assert friction_share(contact + 1e-20j, viscous).imag / 1e-20 == pytest.approx(slope, rel=1e-6)
+            assert friction_share(0.0, 0.0) == 0.0 and np.isnan(friction_share(contact, np.nan))
 
 
 def test_margins_are_a_dataset():

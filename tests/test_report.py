@@ -47,19 +47,17 @@ def test_a_contact_area_that_vanishes_is_zero(capsys, tmp_path):
     assert re.search(r"real contact area at x = 0 +0 *\n", answer.out)
 
 
-@pytest.mark.parametrize(
-    ("part", "error", "text"),
-    [
+def test_shares_are_bounded_by_their_errors(subtests):
+    for part, error, text in [
         (0.2034, 1e-7, "20.3 %"),
         (0.0, 1e-7, "0 %"),
         (9.75e-155, 1e-9, "< 0.01 %"),
         (3e-8, 3.14e-8, "< 0.01 %"),
         (3e-4, 3.14e-4, "< 0.04 %"),
         (1.0, 0.0, "100 %"),
-    ],
-)
-def test_shares_are_bounded_by_their_errors(part, error, text):
-    assert format_share(part, error) == text
+    ]:
+        with subtests.test(part=part, error=error, text=text):
+            assert format_share(part, error) == text
 
 
 def test_the_model_line_names_what_differs_from_the_article_in_si_units():

@@ -344,29 +344,33 @@ def test_a_sweep_shows_itself_and_draws(tmp_path):
     assert ax.lines[0].get_xdata().tolist() == pytest.approx([1e-5, 1e-4]) and ax.get_xlabel().startswith("speed")
 
 
-@pytest.mark.parametrize("name", ["pdms_cylinder", "pdms_ball"])
-def test_films_and_the_largest_pressure_of_a_contact_are_in_si_units(name):
-    contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
-    state = sb.solve(contact, rtol=1e-3)
-    assert state.central_film_thickness == pytest.approx(state.central_gap * contact.hertz.indentation)
-    assert state.minimum_film_thickness == pytest.approx(state.minimum_gap * contact.hertz.indentation)
-    assert 0 < state.minimum_film_thickness <= state.central_film_thickness
-    # Hertz's pressure is that of a dry smooth contact, to which films add and from which they take a little.
-    assert 0.5 < state.maximum_pressure / contact.hertz.pressure < 1.5
-    groups = sb.solve(contact.groups, rtol=1e-3)
-    for attribute in ("central_film_thickness", "minimum_film_thickness", "maximum_pressure"):
-        with pytest.raises(sb.InputError, match=f"{attribute} is in SI units, but this state was solved from groups alone"):
-            getattr(groups, attribute)
+def test_films_and_the_largest_pressure_of_a_contact_are_in_si_units(subtests):
+    for name in ["pdms_cylinder", "pdms_ball"]:
+        with subtests.test(name=name):
+            contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
+            state = sb.solve(contact, rtol=1e-3)
+            assert state.central_film_thickness == pytest.approx(state.central_gap * contact.hertz.indentation)
+            assert state.minimum_film_thickness == pytest.approx(state.minimum_gap * contact.hertz.indentation)
+            assert 0 < state.minimum_film_thickness <= state.central_film_thickness
+            # Hertz's pressure is that of a dry smooth contact, to which films add and from which they take a little.
+            assert 0.5 < state.maximum_pressure / contact.hertz.pressure < 1.5
+            groups = sb.solve(contact.groups, rtol=1e-3)
+            for attribute in ("central_film_thickness", "minimum_film_thickness", "maximum_pressure"):
+                with pytest.raises(
+                    sb.InputError, match=f"{attribute} is in SI units, but this state was solved from groups alone"
+                ):
+                    getattr(groups, attribute)
 
 
-@pytest.mark.parametrize("method", ["atlas", "solver"])
-def test_a_curve_and_its_minimum_have_the_inputs_by_name(method):
-    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
-    curve = sb.stribeck_curve(contact, speed=("1 mm/s", "1 m/s"), points=7, method=method)
-    np.testing.assert_array_equal(curve.speed, curve.values)
-    assert set(curve.load) == {contact.load} and set(curve.roughness) == {contact.roughness}
-    assert curve.minimum.speed == curve.minimum.value
-    with pytest.raises(AttributeError, match="over speed"):
-        _ = curve.minimum.load
-    over = sb.stribeck_curve(contact, roughness=("0.3 um", "3 um"), points=3, method=method)
-    np.testing.assert_array_equal(over.roughness, over.values)
+def test_a_curve_and_its_minimum_have_the_inputs_by_name(subtests):
+    for method in ["atlas", "solver"]:
+        with subtests.test(method=method):
+            contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
+            curve = sb.stribeck_curve(contact, speed=("1 mm/s", "1 m/s"), points=7, method=method)
+            np.testing.assert_array_equal(curve.speed, curve.values)
+            assert set(curve.load) == {contact.load} and set(curve.roughness) == {contact.roughness}
+            assert curve.minimum.speed == curve.minimum.value
+            with pytest.raises(AttributeError, match="over speed"):
+                _ = curve.minimum.load
+            over = sb.stribeck_curve(contact, roughness=("0.3 um", "3 um"), points=3, method=method)
+            np.testing.assert_array_equal(over.roughness, over.values)

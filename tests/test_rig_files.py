@@ -71,13 +71,14 @@ READ_AS_THEY_ARE = {
 }
 
 
-@pytest.mark.parametrize("name", READ_AS_THEY_ARE)
-def test_a_file_of_a_rig_is_read_without_a_setting(name):
-    inputs, rows, sum_over_measured, rtol = READ_AS_THEY_ARE[name]
-    found = read(name)
-    assert found.abscissa == "speed" and len(found) == rows
-    assert_on_curve(found, sum_over_measured=sum_over_measured, rtol=rtol)
-    assert found.inputs == ({key: pytest.approx(value) for key, value in inputs.items()},)
+def test_a_file_of_a_rig_is_read_without_a_setting(subtests):
+    for name in READ_AS_THEY_ARE:
+        with subtests.test(name=name):
+            inputs, rows, sum_over_measured, rtol = READ_AS_THEY_ARE[name]
+            found = read(name)
+            assert found.abscissa == "speed" and len(found) == rows
+            assert_on_curve(found, sum_over_measured=sum_over_measured, rtol=rtol)
+            assert found.inputs == ({key: pytest.approx(value) for key, value in inputs.items()},)
 
 
 def test_the_command_reads_a_file_of_a_rig(tmp_path, capsys):

@@ -12,17 +12,20 @@ FAR = ("3e-2", "0.1", "1e-3")
 """Groups of a film beyond the range of the exponential law, while asperities still cause friction."""
 
 
-@pytest.mark.parametrize(("mu", "beta"), [(0.6, 0.1), (0.05, 1.0), (1.0, 0.02)])
-def test_notes_of_groups_take_the_coefficients_that_were_given(capsys, mu, beta):
-    answer = call(capsys, "solve", "--groups", *FAR, "--boundary-friction", str(mu), "--beta", str(beta), "-v")
-    text = " ".join(answer.out.split())
-    solution = sb.solve(sb.Groups(*map(float, FAR)))
-    share = 100 * solution.friction(mu, beta).contact_share
-    said = float(re.search(r"cause ([0-9.e-]+) % of the friction", text)[1])
-    assert said == pytest.approx(share, rel=0.02) and "at boundary friction 1" not in text
-    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(3e-2, 3.1e-2), points=2, boundary_friction=mu, beta=beta)
-    [told] = [float(each) for note in curve.notes for each in re.findall(r"cause ([0-9.e-]+) % of the friction", note)]
-    assert told == pytest.approx(share, rel=0.02)
+def test_notes_of_groups_take_the_coefficients_that_were_given(subtests, capsys):
+    for mu, beta in [(0.6, 0.1), (0.05, 1.0), (1.0, 0.02)]:
+        with subtests.test(mu=mu, beta=beta):
+            answer = call(capsys, "solve", "--groups", *FAR, "--boundary-friction", str(mu), "--beta", str(beta), "-v")
+            text = " ".join(answer.out.split())
+            solution = sb.solve(sb.Groups(*map(float, FAR)))
+            share = 100 * solution.friction(mu, beta).contact_share
+            said = float(re.search(r"cause ([0-9.e-]+) % of the friction", text)[1])
+            assert said == pytest.approx(share, rel=0.02) and "at boundary friction 1" not in text
+            curve = sb.stribeck_curve(
+                load=0.1, roughness=1e-3, speed=(3e-2, 3.1e-2), points=2, boundary_friction=mu, beta=beta
+            )
+            [told] = [float(each) for note in curve.notes for each in re.findall(r"cause ([0-9.e-]+) % of the friction", note)]
+            assert told == pytest.approx(share, rel=0.02)
 
 
 def test_an_interval_says_which_inputs_count_as_exact(capsys):
@@ -65,13 +68,14 @@ CURVED = {
 """Contacts near the minimum of friction, where it is curved, with errors, and the ends by 3000 solved states."""
 
 
-@pytest.mark.parametrize("name", CURVED)
-def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states_have_it(name):
-    parts, errors, (low, high) = CURVED[name]
-    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", **parts)
-    found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
-    # The ends of 3000 draws scatter by 2 % of the width themselves.
-    assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
+def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states_have_it(subtests):
+    for name in CURVED:
+        with subtests.test(name=name):
+            parts, errors, (low, high) = CURVED[name]
+            contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", **parts)
+            found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
+            # The ends of 3000 draws scatter by 2 % of the width themselves.
+            assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
 
 
 def test_an_interval_that_solved_states_do_not_settle_says_so():

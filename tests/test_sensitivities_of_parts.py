@@ -20,23 +20,21 @@ STEP = 1e-3
 FACTORS = math.exp(-STEP), math.exp(STEP)
 
 
-@pytest.mark.parametrize(
-    ("parts", "names"),
-    [
+def test_sensitivities_are_differences_of_solved_friction(subtests):
+    for parts, names in [
         ({"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}, ("pressure_coefficient", "modulus", "beta")),
         ({"cavitation": "reform", "cavity_pressure": "-2 kPa"}, ("viscosity", "load")),
         ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
         ({"slide_to_roll": -1.0}, ("boundary_friction", "load")),
         ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "radius")),
-    ],
-)
-def test_sensitivities_are_differences_of_solved_friction(parts, names):
-    contact = TRUE.replace(speed="10 mm/s", **parts)
-    state, found = friction_sensitivities(contact, rtol=1e-7)
-    for name in names:
-        moved = [contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}) for sign in (1, -1)]
-        ends = [math.log(abs(sb.solve(each, rtol=1e-7).friction())) for each in moved]
-        assert found[name] == pytest.approx((ends[0] - ends[1]) / (2 * STEP), abs=2e-4), name
+    ]:
+        with subtests.test(parts=parts, names=names):
+            contact = TRUE.replace(speed="10 mm/s", **parts)
+            state, found = friction_sensitivities(contact, rtol=1e-7)
+            for name in names:
+                moved = [contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}) for sign in (1, -1)]
+                ends = [math.log(abs(sb.solve(each, rtol=1e-7).friction())) for each in moved]
+                assert found[name] == pytest.approx((ends[0] - ends[1]) / (2 * STEP), abs=2e-4), name
 
 
 @pytest.mark.parametrize(
@@ -67,28 +65,26 @@ def test_at_the_end_of_what_an_input_may_be_its_sensitivity_is_that_to_the_other
     )
 
 
-@pytest.mark.parametrize(
-    "parts",
-    [
+def test_derivatives_of_both_frictions_are_differences_of_solved_states(subtests):
+    """Without the moment of the pressure beyond the panels in x, those of the printed one were off by up to 8e-4."""
+    for parts in [
         {"cavitation": "reform", "cavity_pressure": -0.02},
         {"cavitation": "reform", "cavity_pressure": -0.02, "fluid": sb.fluids.Barus(2.0)},
         {"cavitation": "exit", "fluid": sb.fluids.Barus(2.0)},
         {"fluid": sb.fluids.Barus(2.0)},
-    ],
-)
-def test_derivatives_of_both_frictions_are_differences_of_solved_states(parts):
-    """Without the moment of the pressure beyond the panels in x, those of the printed one were off by up to 8e-4."""
-    state = solved_point(with_parts(sb.Groups(1e-2, 0.1, 1e-3), **parts), 1e-6).state
-    groups, model, changes = state.groups, state.groups.model, []
-    ways = {name: [replace(groups, **{name: getattr(groups, name) * factor}) for factor in FACTORS] for name in GROUPS}
-    if model.cavity_pressure:
-        models = [replace(model, cavity_pressure=model.cavity_pressure * factor) for factor in FACTORS]
-        ways["cavity_pressure"], changes = [replace(groups, model=each) for each in models], [(*models, 2 * STEP)]
-    found = log_derivatives(state, changes)
-    for column, moved in enumerate(ways.values()):
-        below, above = (friction_on_mesh_of(state, each) for each in moved)
-        for row, name in enumerate(("viscous_published", "viscous_balanced")):
-            assert found[name][column] == pytest.approx((above - below)[row] / (2 * STEP), abs=1e-6), (name, column)
+    ]:
+        with subtests.test(parts=parts):
+            state = solved_point(with_parts(sb.Groups(1e-2, 0.1, 1e-3), **parts), 1e-6).state
+            groups, model, changes = state.groups, state.groups.model, []
+            ways = {name: [replace(groups, **{name: getattr(groups, name) * factor}) for factor in FACTORS] for name in GROUPS}
+            if model.cavity_pressure:
+                models = [replace(model, cavity_pressure=model.cavity_pressure * factor) for factor in FACTORS]
+                ways["cavity_pressure"], changes = [replace(groups, model=each) for each in models], [(*models, 2 * STEP)]
+            found = log_derivatives(state, changes)
+            for column, moved in enumerate(ways.values()):
+                below, above = (friction_on_mesh_of(state, each) for each in moved)
+                for row, name in enumerate(("viscous_published", "viscous_balanced")):
+                    assert found[name][column] == pytest.approx((above - below)[row] / (2 * STEP), abs=1e-6), (name, column)
 
 
 def friction_on_mesh_of(state, groups):

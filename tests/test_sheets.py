@@ -116,24 +116,27 @@ def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
         assert to_si(float(value) if dimension == "number" else value, dimension, name) == pytest.approx(changed, rel=0.01)
 
 
-@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
-def test_the_picture_of_a_report_has_films_in_micrometres_and_measured_points_at_their_speeds(content, abscissa):
-    _, said = content
-    contact, speeds = said.solution.contact, [1e-3, 1e-2, 0.1]
-    per_speed = {"speed": 1, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}[abscissa]
-    data = measured([speed * per_speed for speed in speeds], [0.5, 0.3, 0.1], abscissa=abscissa)
-    left, right = draw_report(said.curve, data, said.uncertainty).axes
-    [points] = [each.lines[0] for each in left.containers if each.get_label() == "measured"]
-    assert points.get_xdata() == pytest.approx(speeds) and points.get_ydata() == pytest.approx([0.5, 0.3, 0.1])
-    lines = {line.get_label(): line for line in right.lines}
-    films = [(name, value) for name, value, _ in said.films if name in lines]
-    assert len(films) == 2
-    for name, value in films:
-        x, y = lines[name].get_data()
-        film = math.exp(np.interp(math.log(contact.speed), np.log(x), np.log(y)))
-        assert 1e-6 * film == pytest.approx(to_si(value, "length", name), rel=0.02)
-    roughness = next(line for label, line in lines.items() if label.startswith("roughness"))
-    assert 1e-6 * roughness.get_ydata()[0] == pytest.approx(contact.roughness)
+def test_the_picture_of_a_report_has_films_in_micrometres_and_measured_points_at_their_speeds(subtests, content):
+    for abscissa in ["speed", "speed_viscosity", "hersey_number"]:
+        with subtests.test(abscissa=abscissa):
+            _, said = content
+            contact, speeds = said.solution.contact, [1e-3, 1e-2, 0.1]
+            per_speed = {"speed": 1, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}[
+                abscissa
+            ]
+            data = measured([speed * per_speed for speed in speeds], [0.5, 0.3, 0.1], abscissa=abscissa)
+            left, right = draw_report(said.curve, data, said.uncertainty).axes
+            [points] = [each.lines[0] for each in left.containers if each.get_label() == "measured"]
+            assert points.get_xdata() == pytest.approx(speeds) and points.get_ydata() == pytest.approx([0.5, 0.3, 0.1])
+            lines = {line.get_label(): line for line in right.lines}
+            films = [(name, value) for name, value, _ in said.films if name in lines]
+            assert len(films) == 2
+            for name, value in films:
+                x, y = lines[name].get_data()
+                film = math.exp(np.interp(math.log(contact.speed), np.log(x), np.log(y)))
+                assert 1e-6 * film == pytest.approx(to_si(value, "length", name), rel=0.02)
+            roughness = next(line for label, line in lines.items() if label.startswith("roughness"))
+            assert 1e-6 * roughness.get_ydata()[0] == pytest.approx(contact.roughness)
 
 
 def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):

@@ -38,14 +38,15 @@ def thick():
     return sb.solve(sb.PointContact(**THICK), rtol=1e-3)
 
 
-@pytest.mark.parametrize("radii", [1.5, 4.0, 7.0, 14.0, 40.0, 200.0])
-def test_a_drop_in_a_thick_film_drags_as_the_film_up_to_its_edge(radii, thick):
-    contact = sb.PointContact(**THICK)
-    drop = sb.solve(contact.replace(wetted_radius=radii * contact.hertz.half_width), rtol=1e-3)
-    wanted = 1.5 / math.pi * contact.slope * contact.groups.speed * within(thick.central_gap, radii)
-    found = drop.friction()
-    assert found.fluid == pytest.approx(wanted, rel=0.02)
-    assert 0 < found.fluid < thick.friction().fluid
+def test_a_drop_in_a_thick_film_drags_as_the_film_up_to_its_edge(subtests, thick):
+    for radii in [1.5, 4.0, 7.0, 14.0, 40.0, 200.0]:
+        with subtests.test(radii=radii):
+            contact = sb.PointContact(**THICK)
+            drop = sb.solve(contact.replace(wetted_radius=radii * contact.hertz.half_width), rtol=1e-3)
+            wanted = 1.5 / math.pi * contact.slope * contact.groups.speed * within(thick.central_gap, radii)
+            found = drop.friction()
+            assert found.fluid == pytest.approx(wanted, rel=0.02)
+            assert 0 < found.fluid < thick.friction().fluid
 
 
 def test_a_drop_has_one_friction_however_one_asks():
@@ -60,12 +61,13 @@ def test_a_drop_has_one_friction_however_one_asks():
             assert abs(other - one.total) <= error + one.error
 
 
-@pytest.mark.parametrize("radii", [1.1, 1.5, 2.0, 4.9, 5.0, 6.0, 12.0, 30.0])
-@pytest.mark.parametrize("speed", [1e-3, 1.0, 10.0, 100.0])
-def test_friction_of_the_atlas_is_positive_and_grows_with_the_drop(radii, speed):
-    groups = sb.Groups(speed, 0.1, 1e-3, geometry="point")
-    smaller, larger = (sb.atlas.viscous_friction(groups, 0.1, wetted_radius=each * radii) for each in (1.0, 1.1))
-    assert 0 < smaller < larger
+def test_friction_of_the_atlas_is_positive_and_grows_with_the_drop(subtests):
+    for speed in [1e-3, 1.0, 10.0, 100.0]:
+        for radii in [1.1, 1.5, 2.0, 4.9, 5.0, 6.0, 12.0, 30.0]:
+            with subtests.test(speed=speed, radii=radii):
+                groups = sb.Groups(speed, 0.1, 1e-3, geometry="point")
+                smaller, larger = (sb.atlas.viscous_friction(groups, 0.1, wetted_radius=each * radii) for each in (1.0, 1.1))
+                assert 0 < smaller < larger
 
 
 def test_far_films_and_integrated_ones_meet_within_the_stated_error():
@@ -134,11 +136,12 @@ def broken(found, contact):
     return [name for name, holds in said.items() if not holds]
 
 
-@pytest.mark.parametrize("seed", range(16))
-def test_no_random_contact_has_a_sign_that_physics_forbids(seed):
-    contact, given = drawn(np.random.default_rng(seed))
-    contact = contact.replace(**given)
-    assert broken(sb.solve(contact, rtol=1e-2), contact) == []
+def test_no_random_contact_has_a_sign_that_physics_forbids(subtests):
+    for seed in range(16):
+        with subtests.test(seed=seed):
+            contact, given = drawn(np.random.default_rng(seed))
+            contact = contact.replace(**given)
+            assert broken(sb.solve(contact, rtol=1e-2), contact) == []
 
 
 def test_a_drop_whose_friction_is_lost_in_a_thick_film_that_breaks_is_refused():

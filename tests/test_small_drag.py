@@ -1,7 +1,5 @@
 """A drag that nearly vanishes, as of rolling films on one wall: the error that is stated of it is its own."""
 
-import pytest
-
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 
@@ -24,18 +22,19 @@ def vanishing(speed: float, wall: str, cavitation: str) -> tuple[float, float]:
     return (NEARLY - 1) * (low + high) / (2 * slope), NEARLY * (low + high) / 2
 
 
-@pytest.mark.parametrize("cavitation", ["none", "exit"])
-@pytest.mark.parametrize("wall", ["viscous_balanced", "viscous_upper"])
-def test_the_stated_error_of_a_drag_that_nearly_vanishes_holds(wall, cavitation):
-    ratio, true = vanishing(1e-2, wall, cavitation)
-    groups = rolling(1e-2, ratio, cavitation)
-    curve = sb.stribeck_curve(groups, points=2, speed=(5e-3, 2e-2), rtol=RTOL)
-    for found in (sb.solve(groups, rtol=RTOL), curve.at(1e-2), curve.solve_at(1e-2)):
-        assert abs(getattr(found, wall) - true) <= abs(true) * found.errors[wall]
-    state = sb.solve(groups, rtol=RTOL)
-    assert state.error_estimate <= RTOL
-    if wall == "viscous_balanced":
-        friction = curve.at(1e-2)
-        assert abs(friction.friction.fluid - true) <= friction.friction.error
-        of_state = state.friction(boundary_friction=1e-9)  # the errors of asperities would hide that of the drag
-        assert abs(of_state.fluid - true) <= of_state.error
+def test_the_stated_error_of_a_drag_that_nearly_vanishes_holds(subtests):
+    for wall in ["viscous_balanced", "viscous_upper"]:
+        for cavitation in ["none", "exit"]:
+            with subtests.test(wall=wall, cavitation=cavitation):
+                ratio, true = vanishing(1e-2, wall, cavitation)
+                groups = rolling(1e-2, ratio, cavitation)
+                curve = sb.stribeck_curve(groups, points=2, speed=(5e-3, 2e-2), rtol=RTOL)
+                for found in (sb.solve(groups, rtol=RTOL), curve.at(1e-2), curve.solve_at(1e-2)):
+                    assert abs(getattr(found, wall) - true) <= abs(true) * found.errors[wall]
+                state = sb.solve(groups, rtol=RTOL)
+                assert state.error_estimate <= RTOL
+                if wall == "viscous_balanced":
+                    friction = curve.at(1e-2)
+                    assert abs(friction.friction.fluid - true) <= friction.friction.error
+                    of_state = state.friction(boundary_friction=1e-9)  # the errors of asperities would hide that of the drag
+                    assert abs(of_state.fluid - true) <= of_state.error

@@ -38,15 +38,16 @@ def remembered(pressure, deborah):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("deborah", [0.03, 0.3, 3.0])
-def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
-    found = remembered(bump(FINE.nodes), deborah)
-    x = np.array([-0.5, 0.0, 0.3, 1.0, 6.0])
-    age, weights = np.polynomial.legendre.leggauss(2000)
-    age, weights = 20 * (1 + age) * deborah, 20 * weights
-    expected = [np.sum(weights * np.exp(-age / deborah) * bump(each - age)) for each in x]
-    np.testing.assert_allclose(FINE.interpolate(found, x), expected, atol=1e-9)
-    assert FINE.weights @ found == pytest.approx(FINE.weights @ bump(FINE.nodes), rel=1e-9)  # the load is kept
+def test_the_memory_is_the_exponential_mean_of_what_has_passed(subtests):
+    for deborah in [0.03, 0.3, 3.0]:
+        with subtests.test(deborah=deborah):
+            found = remembered(bump(FINE.nodes), deborah)
+            x = np.array([-0.5, 0.0, 0.3, 1.0, 6.0])
+            age, weights = np.polynomial.legendre.leggauss(2000)
+            age, weights = 20 * (1 + age) * deborah, 20 * weights
+            expected = [np.sum(weights * np.exp(-age / deborah) * bump(each - age)) for each in x]
+            np.testing.assert_allclose(FINE.interpolate(found, x), expected, atol=1e-9)
+            assert FINE.weights @ found == pytest.approx(FINE.weights @ bump(FINE.nodes), rel=1e-9)  # the load is kept
 
 
 SINGULAR_BY_COLLOCATION = 256 / 16.868016151387604
@@ -54,14 +55,15 @@ SINGULAR_BY_COLLOCATION = 256 / 16.868016151387604
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("deborah", [1.0, SINGULAR_BY_COLLOCATION])
-def test_memory_of_a_pressure_that_reaches_to_infinity(deborah):
-    found = remembered(1 / (1 + FINE.nodes**2), deborah)
-    nodes, weights = np.polynomial.legendre.leggauss(10)
-    age = np.add.outer(np.arange(400), 0.5 * (1 + nodes)).ravel() / 10  # 400 panels up to 40 times
-    past = 1 / (1 + (FINE.nodes[:, None] - deborah * age) ** 2)
-    expected = past @ (np.tile(weights / 20, 400) * np.exp(-age))
-    np.testing.assert_allclose(found * (1 + FINE.nodes**2), expected * (1 + FINE.nodes**2), rtol=0, atol=1e-6)
+def test_memory_of_a_pressure_that_reaches_to_infinity(subtests):
+    for deborah in [1.0, SINGULAR_BY_COLLOCATION]:
+        with subtests.test(deborah=deborah):
+            found = remembered(1 / (1 + FINE.nodes**2), deborah)
+            nodes, weights = np.polynomial.legendre.leggauss(10)
+            age = np.add.outer(np.arange(400), 0.5 * (1 + nodes)).ravel() / 10  # 400 panels up to 40 times
+            past = 1 / (1 + (FINE.nodes[:, None] - deborah * age) ** 2)
+            expected = past @ (np.tile(weights / 20, 400) * np.exp(-age))
+            np.testing.assert_allclose(found * (1 + FINE.nodes**2), expected * (1 + FINE.nodes**2), rtol=0, atol=1e-6)
 
 
 @pytest.mark.quick
@@ -107,17 +109,20 @@ def dry(model, kappa=1e-3, load=0.1, guess=None):
     return guess
 
 
-@pytest.mark.parametrize("row", DRY[:3], ids=lambda row: f"{row['De']:g}")
-def test_a_dry_contact_on_a_standard_linear_solid_is_that_of_an_independent_solver(row):
-    solid = StandardLinearSolid(row["De"], row["r"])
-    state = dry(Model(solid=solid))
-    pressure = state.equations.pressures(state.y)[0]
-    tolerance = max(1e-6, 10 * row["change"])
-    assert hysteresis_friction(state.mesh, solid, pressure) == pytest.approx(row["mu_over_aR"], rel=max(2e-5, tolerance))
-    assert pressure.max() == pytest.approx(row["pmax"], rel=1e-3)
-    # The friction is the moment of the pressure on the punch, too.
-    moment = -(state.mesh.weights[:-12] * state.mesh.nodes[:-12]) @ pressure[:-12] / LOAD
-    assert moment == pytest.approx(row["mu_over_aR"], rel=max(2e-5, tolerance))
+def test_a_dry_contact_on_a_standard_linear_solid_is_that_of_an_independent_solver(subtests):
+    for row in DRY[:3]:
+        with subtests.test(row=row):
+            solid = StandardLinearSolid(row["De"], row["r"])
+            state = dry(Model(solid=solid))
+            pressure = state.equations.pressures(state.y)[0]
+            tolerance = max(1e-6, 10 * row["change"])
+            assert hysteresis_friction(state.mesh, solid, pressure) == pytest.approx(
+                row["mu_over_aR"], rel=max(2e-5, tolerance)
+            )
+            assert pressure.max() == pytest.approx(row["pmax"], rel=1e-3)
+            # The friction is the moment of the pressure on the punch, too.
+            moment = -(state.mesh.weights[:-12] * state.mesh.nodes[:-12]) @ pressure[:-12] / LOAD
+            assert moment == pytest.approx(row["mu_over_aR"], rel=max(2e-5, tolerance))
 
 
 def test_slow_sliding_has_the_friction_of_a_small_lag():
@@ -129,15 +134,16 @@ def test_slow_sliding_has_the_friction_of_a_small_lag():
     assert abs(friction[1] - 1) < abs(friction[0] - 1) < 0.031
 
 
-@pytest.mark.parametrize("row", REFERENCE["f_layer_dry"], ids=lambda row: f"{row['d']:g}")
-def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(row):
-    guess = None
-    for d in [each for each in (1.0, 0.7) if each > row["d"]] + [row["d"]]:
-        guess = dry(Model(solid=Layer(d, row["nu"])), guess=guess)
-    found = observed(guess)
-    tolerance = max(1e-6, 10 * row["change"])
-    for name in ("h0", "hmin", "m"):
-        assert found[name] == pytest.approx(row[name], rel=tolerance)
+def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(subtests):
+    for row in REFERENCE["f_layer_dry"]:
+        with subtests.test(row=row):
+            guess = None
+            for d in [each for each in (1.0, 0.7) if each > row["d"]] + [row["d"]]:
+                guess = dry(Model(solid=Layer(d, row["nu"])), guess=guess)
+            found = observed(guess)
+            tolerance = max(1e-6, 10 * row["change"])
+            for name in ("h0", "hmin", "m"):
+                assert found[name] == pytest.approx(row[name], rel=tolerance)
 
 
 @pytest.mark.quick
@@ -177,14 +183,15 @@ def test_groups_that_hold_a_memory_at_one_speed_have_no_curve_over_it():
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), solid=StandardLinearSolid(0.3, 2.0), points=3)
 
 
-@pytest.mark.parametrize("solid", [StandardLinearSolid("1 ms", 2.0), Prony(["1 ms", "30 ms"], [0.7, 0.5])])
-def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed(solid):
-    contact = TRUE.replace(solid=solid)
-    curve = sb.stribeck_curve(contact, speed=(0.01, 0.1), points=3)
-    for speed in (0.02, 0.07):
-        state = sb.solve(contact.replace(speed=speed))
-        assert float(curve.at(speed).friction) == pytest.approx(state.friction().total, rel=1e-6)
-        assert curve.at(speed).central_gap == pytest.approx(state.central_gap, rel=1e-6)
+def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed(subtests):
+    for solid in [StandardLinearSolid("1 ms", 2.0), Prony(["1 ms", "30 ms"], [0.7, 0.5])]:
+        with subtests.test(solid=solid):
+            contact = TRUE.replace(solid=solid)
+            curve = sb.stribeck_curve(contact, speed=(0.01, 0.1), points=3)
+            for speed in (0.02, 0.07):
+                state = sb.solve(contact.replace(speed=speed))
+                assert float(curve.at(speed).friction) == pytest.approx(state.friction().total, rel=1e-6)
+                assert curve.at(speed).central_gap == pytest.approx(state.central_gap, rel=1e-6)
 
 
 def test_a_curve_along_which_a_body_remembers_more_and_more_of_the_panel_at_infinity_is_solved():
@@ -195,22 +202,22 @@ def test_a_curve_along_which_a_body_remembers_more_and_more_of_the_panel_at_infi
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("cavitation", ["none", "exit"])
-def test_rows_of_states_are_deflected_each_by_its_own_solid(cavitation):
-    groups = sb.solve(sb.Groups(1e-3, 0.1, 1e-2), cavitation=cavitation, solid=StandardLinearSolid(0.3, 2.0)).groups
-    mesh = replace(FINE, reformation=math.inf)
-    solids = tuple(TwoBodies(StandardLinearSolid(time, 3.0), Layer(2.0), 0.4) for time in (0.1, 0.3, 2.0))
-    together = OperatorsOfRows(mesh, groups.model, solids)
-    pressure = bump(mesh.nodes + np.array([[0.1], [0.3], [0.0]]))
-    each = [Operators(mesh, replace(groups.model, solid=solid)) for solid in solids]
-    expected = [one.deflected(row, None) for one, row in zip(each, pressure, strict=True)]
-    np.testing.assert_allclose(together.deflected(pressure, None), expected, rtol=1e-12, atol=1e-12)
+def test_rows_of_states_are_deflected_each_by_its_own_solid(subtests):
+    for cavitation in ["none", "exit"]:
+        with subtests.test(cavitation=cavitation):
+            groups = sb.solve(sb.Groups(1e-3, 0.1, 1e-2), cavitation=cavitation, solid=StandardLinearSolid(0.3, 2.0)).groups
+            mesh = replace(FINE, reformation=math.inf)
+            solids = tuple(TwoBodies(StandardLinearSolid(time, 3.0), Layer(2.0), 0.4) for time in (0.1, 0.3, 2.0))
+            together = OperatorsOfRows(mesh, groups.model, solids)
+            pressure = bump(mesh.nodes + np.array([[0.1], [0.3], [0.0]]))
+            each = [Operators(mesh, replace(groups.model, solid=solid)) for solid in solids]
+            expected = [one.deflected(row, None) for one, row in zip(each, pressure, strict=True)]
+            np.testing.assert_allclose(together.deflected(pressure, None), expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("make", "said"),
-    [
+def test_impossible_solids_are_refused_by_name(subtests):
+    for make, said in [
         (lambda: StandardLinearSolid(0, 2.0), "time"),
         (lambda: StandardLinearSolid("10 ms", 1.0), "ratio"),
         (lambda: Prony("1 s", [1.0]), "must be a list"),
@@ -219,33 +226,33 @@ def test_rows_of_states_are_deflected_each_by_its_own_solid(cavitation):
         (lambda: TwoBodies(first_share=1.2), "first_share"),
         (lambda: TwoBodies(None, 3), "second = 3; give one of sb.solids"),
         (lambda: StandardLinearSolid("10 ms", 2.0, Layer), "base = .*Layer.*; give one of sb.solids"),
-    ],
-)
-def test_impossible_solids_are_refused_by_name(make, said):
-    with pytest.raises(sb.InputError, match=said):
-        make()
+    ]:
+        with subtests.test(make=make, said=said):
+            with pytest.raises(sb.InputError, match=said):
+                make()
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("d", [0.9, 0.1, 0.004])
-def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its_kernel(d):
-    mesh = Mesh(np.array([-6.1, -6.0, 6.0, 6.1]), 12)
-    at = np.flatnonzero(np.abs(mesh.nodes) < 6.1)[8:-8]
+def test_pressures_on_a_panel_much_wider_than_a_layer_is_thick_deflect_it_by_its_kernel(subtests):
+    for d in [0.9, 0.1, 0.004]:
+        with subtests.test(d=d):
+            mesh = Mesh(np.array([-6.1, -6.0, 6.0, 6.1]), 12)
+            at = np.flatnonzero(np.abs(mesh.nodes) < 6.1)[8:-8]
 
-    def pressure(y):
-        return (1 + 0.3 * y) * (1 - (y / 8) ** 2) ** 3 * (np.abs(y) < 6)
+            def pressure(y):
+                return (1 + 0.3 * y) * (1 - (y / 8) ** 2) ** 3 * (np.abs(y) < 6)
 
-    def exact(x):
-        def pushed(y):
-            xi = np.array([abs(x - y) / d])
-            return float((smooth_kernel(xi, 0.45) - np.log(xi) / math.pi)[0]) * pressure(y)
+            def exact(x):
+                def pushed(y):
+                    xi = np.array([abs(x - y) / d])
+                    return float((smooth_kernel(xi, 0.45) - np.log(xi) / math.pi)[0]) * pressure(y)
 
-        first, last = max(-6, x - KERNEL_RADIUS * d), min(6, x + KERNEL_RADIUS * d)
-        places = sorted({first, last} | {y for y in (x - 0.3 * d, x, x + 0.3 * d) if first < y < last})
-        return sum(quad(pushed, *part, epsabs=1e-11, epsrel=0)[0] for part in pairwise(places))
+                first, last = max(-6, x - KERNEL_RADIUS * d), min(6, x + KERNEL_RADIUS * d)
+                places = sorted({first, last} | {y for y in (x - 0.3 * d, x, x + 0.3 * d) if first < y < last})
+                return sum(quad(pushed, *part, epsabs=1e-11, epsrel=0)[0] for part in pairwise(places))
 
-    found = (Layer(d, 0.45).deflection(mesh) @ pressure(mesh.nodes))[at]
-    np.testing.assert_allclose(found, [exact(x) for x in mesh.nodes[at]], rtol=0, atol=1e-9 * d)
+            found = (Layer(d, 0.45).deflection(mesh) @ pressure(mesh.nodes))[at]
+            np.testing.assert_allclose(found, [exact(x) for x in mesh.nodes[at]], rtol=0, atol=1e-9 * d)
 
 
 @pytest.mark.parametrize("poisson_ratio", [0.0, 0.5])
@@ -257,25 +264,26 @@ def test_what_a_wide_panel_does_far_away_is_what_it_does_at_each_place(monkeypat
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("d", [0.5, 1.3, 3.0])
-def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_a_finer_rule(d):
-    mesh, layer = Mesh(np.array([-12.0, -6.0, -1.0, -0.5, 0.0, 0.5, 1.0, 6.0, 12.0]), 12), Layer(d, 0.4)
-    x, pressed = mesh.nodes, (mesh.nodes > 1) & (mesh.nodes < 6)
-    near = np.abs(x) < 12
+def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_a_finer_rule(subtests):
+    for d in [0.5, 1.3, 3.0]:
+        with subtests.test(d=d):
+            mesh, layer = Mesh(np.array([-12.0, -6.0, -1.0, -0.5, 0.0, 0.5, 1.0, 6.0, 12.0]), 12), Layer(d, 0.4)
+            x, pressed = mesh.nodes, (mesh.nodes > 1) & (mesh.nodes < 6)
+            near = np.abs(x) < 12
 
-    def pressure(y):
-        return 0.01 * (y - 1) * (6 - y) ** 3
+            def pressure(y):
+                return 0.01 * (y - 1) * (6 - y) ** 3
 
-    beside = (layer.deflection(mesh) - HalfPlane().deflection(mesh))[np.ix_(near, pressed)] @ pressure(x[pressed])
-    t, weights = np.polynomial.legendre.leggauss(120)
-    y, weights = 3.5 + 2.5 * t, 2.5 * weights
-    distance = np.abs(x[near][:, None] - y) / d
-    beyond = np.log(np.maximum(distance, KERNEL_RADIUS)) / math.pi  # where the whole kernel is zero
-    smooth = (
-        np.where(distance < KERNEL_RADIUS, smooth_kernel(np.minimum(distance, KERNEL_RADIUS), 0.4), beyond)
-        + math.log(d) / math.pi
-    )
-    np.testing.assert_allclose(beside, smooth @ (weights * pressure(y)), rtol=0, atol=1e-9)
+            beside = (layer.deflection(mesh) - HalfPlane().deflection(mesh))[np.ix_(near, pressed)] @ pressure(x[pressed])
+            t, weights = np.polynomial.legendre.leggauss(120)
+            y, weights = 3.5 + 2.5 * t, 2.5 * weights
+            distance = np.abs(x[near][:, None] - y) / d
+            beyond = np.log(np.maximum(distance, KERNEL_RADIUS)) / math.pi  # where the whole kernel is zero
+            smooth = (
+                np.where(distance < KERNEL_RADIUS, smooth_kernel(np.minimum(distance, KERNEL_RADIUS), 0.4), beyond)
+                + math.log(d) / math.pi
+            )
+            np.testing.assert_allclose(beside, smooth @ (weights * pressure(y)), rtol=0, atol=1e-9)
 
 
 def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():

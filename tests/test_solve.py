@@ -65,16 +65,17 @@ def scale_of(name, listed):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
-@pytest.mark.parametrize("listed", REFERENCE, ids=lambda state: f"speed {state['speed']:.1e}")
-def test_the_reference_states_are_reached(listed, rtol, solved):
-    # An independent solver's numbers.  Its own uncertainty bounds some: where contact carries nothing the two
-    # frictions are equal, which it meets to 1e-8 in the state at speed 0.994, and this solver to 1e-14.
-    s = solved(listed["speed"], listed["load"], listed["roughness"], rtol=rtol)
-    allowed = 1e-6 if rtol == 1e-6 else max(1e-8, listed["relative_uncertainty"])
-    errors = {name: abs(value(s) - listed[name]) / scale_of(name, listed) for name, value in OBSERVABLES.items()}
-    assert s.outcome.ok
-    assert max(errors.values()) < allowed, errors
+def test_the_reference_states_are_reached(subtests, solved):
+    for listed in REFERENCE:
+        for rtol in [1e-6, 1e-9]:
+            with subtests.test(listed=listed, rtol=rtol):
+                # An independent solver's numbers.  Its own uncertainty bounds some: where contact carries nothing the two
+                # frictions are equal, which it meets to 1e-8 in the state at speed 0.994, and this solver to 1e-14.
+                s = solved(listed["speed"], listed["load"], listed["roughness"], rtol=rtol)
+                allowed = 1e-6 if rtol == 1e-6 else max(1e-8, listed["relative_uncertainty"])
+                errors = {name: abs(value(s) - listed[name]) / scale_of(name, listed) for name, value in OBSERVABLES.items()}
+                assert s.outcome.ok
+                assert max(errors.values()) < allowed, errors
 
 
 @pytest.mark.quick
@@ -191,10 +192,11 @@ def test_the_two_frictions_differ_by_the_moment_of_the_contact_pressure(state):
     assert difference == pytest.approx(expected, abs=3e-9 * viscous(state) + 1e-18)
 
 
-@pytest.mark.parametrize("speed", [1e-3, 1.0, 1e3])
-def test_both_frictions_agree_where_asperities_carry_nothing(speed, solved):
-    s = solved(speed, 0.1, 0.0, rtol=1e-9)
-    assert viscous(s) == pytest.approx(viscous(s, "balanced"), rel=1e-9)
+def test_both_frictions_agree_where_asperities_carry_nothing(subtests, solved):
+    for speed in [1e-3, 1.0, 1e3]:
+        with subtests.test(speed=speed):
+            s = solved(speed, 0.1, 0.0, rtol=1e-9)
+            assert viscous(s) == pytest.approx(viscous(s, "balanced"), rel=1e-9)
 
 
 @pytest.mark.quick
@@ -270,33 +272,35 @@ def test_at_speed_zero_the_pressure_depends_on_relative_roughness_alone(solved):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("load", [0.3, 0.99, 1.0, 4.0])
-def test_heavy_loads_at_speed_zero_shift_the_gap(load, solved):
-    kappa, x = 0.03, np.linspace(-1.3, 1.3, 41)
-    light, heavy = (solved(0.0, value, kappa * value, rtol=1e-9) for value in (5e-3, load))
-    shift = -0.5 * kappa * math.log(load / 5e-3)
-    assert np.abs(heavy.profile(x).gap - light.profile(x).gap - shift).max() < 1e-8
-    assert heavy.gap.min() - light.gap.min() == pytest.approx(shift, abs=1e-3)
-    assert np.abs(heavy.profile(heavy.x).gap - heavy.gap).max() < 1e-9 * heavy.gap.max()
-    assert heavy.offset - light.offset == pytest.approx(shift, abs=1e-8)
-    assert heavy.central_gap - light.central_gap == pytest.approx(shift, abs=1e-8)
-    assert heavy.minimum_gap - light.minimum_gap == pytest.approx(shift, abs=1e-8)
-    law = load**-0.5 * np.exp(-heavy.profile(x).gap / kappa)
-    assert np.abs(heavy.profile(x).contact_pressure - law).max() < 1e-7
+def test_heavy_loads_at_speed_zero_shift_the_gap(subtests, solved):
+    for load in [0.3, 0.99, 1.0, 4.0]:
+        with subtests.test(load=load):
+            kappa, x = 0.03, np.linspace(-1.3, 1.3, 41)
+            light, heavy = (solved(0.0, value, kappa * value, rtol=1e-9) for value in (5e-3, load))
+            shift = -0.5 * kappa * math.log(load / 5e-3)
+            assert np.abs(heavy.profile(x).gap - light.profile(x).gap - shift).max() < 1e-8
+            assert heavy.gap.min() - light.gap.min() == pytest.approx(shift, abs=1e-3)
+            assert np.abs(heavy.profile(heavy.x).gap - heavy.gap).max() < 1e-9 * heavy.gap.max()
+            assert heavy.offset - light.offset == pytest.approx(shift, abs=1e-8)
+            assert heavy.central_gap - light.central_gap == pytest.approx(shift, abs=1e-8)
+            assert heavy.minimum_gap - light.minimum_gap == pytest.approx(shift, abs=1e-8)
+            law = load**-0.5 * np.exp(-heavy.profile(x).gap / kappa)
+            assert np.abs(heavy.profile(x).contact_pressure - law).max() < 1e-7
 
 
-@pytest.mark.parametrize("load", [1.1, 2.0, 10.0])
-def test_a_load_that_asperities_cannot_carry_gives_a_negative_gap_and_says_so(load, solved):
-    s = solved(0.0, load, 0.01 * load)
-    notes = " ".join(s.notes)
-    assert s.outcome.ok
-    assert s.central_gap < 0 and s.minimum_gap < 0
-    assert math.isnan(s.flux_gap)
-    assert "not below 1: the exponential contact law is outside its range" in notes
-    assert "The gap is negative: the exponential contact law is outside its range" in notes
-    assert "no flux gap" in notes
-    assert s.error_estimate <= 1e-6
-    assert math.isnan(s.errors["flux_gap"])
+def test_a_load_that_asperities_cannot_carry_gives_a_negative_gap_and_says_so(subtests, solved):
+    for load in [1.1, 2.0, 10.0]:
+        with subtests.test(load=load):
+            s = solved(0.0, load, 0.01 * load)
+            notes = " ".join(s.notes)
+            assert s.outcome.ok
+            assert s.central_gap < 0 and s.minimum_gap < 0
+            assert math.isnan(s.flux_gap)
+            assert "not below 1: the exponential contact law is outside its range" in notes
+            assert "The gap is negative: the exponential contact law is outside its range" in notes
+            assert "no flux gap" in notes
+            assert s.error_estimate <= 1e-6
+            assert math.isnan(s.errors["flux_gap"])
 
 
 def test_the_offset_at_speed_zero_ends_in_hertz_with_an_error_of_a_third_of_kappa_squared(solved):
@@ -579,26 +583,30 @@ def test_thin_films_between_rough_surfaces_are_noted():
     assert "outside its range" in notes["beyond"]
 
 
-@pytest.mark.parametrize(("modulus", "wide"), [(2.7e6, False), (4.5e4, False), (4e4, True), (70.0, True)])
-def test_contacts_too_wide_for_a_half_space_are_noted(modulus, wide):
-    contact = sb.LineContact(
-        radius=0.01,
-        modulus=modulus,
-        load=30.0,
-        viscosity=0.1,
-        speed=1.0,
-        roughness=0.0,
-        alpha=2.0,
-        beta=0.05,
-        boundary_friction=0.8,
-    )
-    slope = 2 * contact.beta * float(contact.groups.load) ** 0.5
-    assert (slope > 0.3) == wide
-    notes = sb.solve(contact, rtol=1e-4).notes
-    assert (
-        any(note.startswith(f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius.") for note in notes)
-        == wide
-    )
+def test_contacts_too_wide_for_a_half_space_are_noted(subtests):
+    for modulus, wide in [(2.7e6, False), (4.5e4, False), (4e4, True), (70.0, True)]:
+        with subtests.test(modulus=modulus, wide=wide):
+            contact = sb.LineContact(
+                radius=0.01,
+                modulus=modulus,
+                load=30.0,
+                viscosity=0.1,
+                speed=1.0,
+                roughness=0.0,
+                alpha=2.0,
+                beta=0.05,
+                boundary_friction=0.8,
+            )
+            slope = 2 * contact.beta * float(contact.groups.load) ** 0.5
+            assert (slope > 0.3) == wide
+            notes = sb.solve(contact, rtol=1e-4).notes
+            assert (
+                any(
+                    note.startswith(f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius.")
+                    for note in notes
+                )
+                == wide
+            )
 
 
 def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
@@ -635,17 +643,19 @@ GROUPS = sb.Groups(1e-2, 0.1, 1e-4)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("rtol", [1e-13, 0.1, 0.0, -1e-6, math.nan, True, "1e-6", None, 1e-6 + 0j])
-def test_a_tolerance_out_of_range_is_refused_in_a_sentence(rtol):
-    with pytest.raises(sb.InputError, match=r"rtol = .*from 1e-11.* to 0.01"):
-        sb.solve(GROUPS, rtol=rtol)
+def test_a_tolerance_out_of_range_is_refused_in_a_sentence(subtests):
+    for rtol in [1e-13, 0.1, 0.0, -1e-6, math.nan, True, "1e-6", None, 1e-6 + 0j]:
+        with subtests.test(rtol=rtol):
+            with pytest.raises(sb.InputError, match=r"rtol = .*from 1e-11.* to 0.01"):
+                sb.solve(GROUPS, rtol=rtol)
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("problem", [0.1, "case.toml", (1e-2, 0.1, 1e-4), None])
-def test_a_problem_of_another_kind_is_refused(problem):
-    with pytest.raises(sb.InputError, match="must be a LineContact, PointContact or Groups"):
-        sb.solve(problem)
+def test_a_problem_of_another_kind_is_refused(subtests):
+    for problem in [0.1, "case.toml", (1e-2, 0.1, 1e-4), None]:
+        with subtests.test(problem=problem):
+            with pytest.raises(sb.InputError, match="must be a LineContact, PointContact or Groups"):
+                sb.solve(problem)
 
 
 def test_arrays_of_groups_are_refused():
@@ -653,29 +663,29 @@ def test_arrays_of_groups_are_refused():
         sb.solve(sb.Groups(np.array([1e-2, 1e-3]), 0.1, 1e-4))
 
 
-@pytest.mark.parametrize("on_failure", ["ignore", None, True])
-def test_an_unknown_treatment_of_failures_is_refused(on_failure):
-    with pytest.raises(sb.InputError, match="'raise' or 'return'"):
-        sb.solve(GROUPS, on_failure=on_failure)
+def test_an_unknown_treatment_of_failures_is_refused(subtests):
+    for on_failure in ["ignore", None, True]:
+        with subtests.test(on_failure=on_failure):
+            with pytest.raises(sb.InputError, match="'raise' or 'return'"):
+                sb.solve(GROUPS, on_failure=on_failure)
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
+def test_friction_refuses_what_it_does_not_know(subtests, solved):
+    for arguments, message in [
         ({"boundary_friction": -0.1}, "boundary_friction = -0.1"),
         ({"beta": 0.0}, "beta = 0"),
         ({"definition": "both"}, "'balanced' or 'published'"),
-    ],
-)
-def test_friction_refuses_what_it_does_not_know(arguments, message, solved):
-    with pytest.raises(sb.InputError, match=message):
-        solved(*TYPICAL["mixed"]).friction(**arguments)
+    ]:
+        with subtests.test(arguments=arguments, message=message):
+            with pytest.raises(sb.InputError, match=message):
+                solved(*TYPICAL["mixed"]).friction(**arguments)
 
 
-@pytest.mark.parametrize("x", [[0.0, math.nan], [math.inf], [[0.0, 1.0]]])
-def test_positions_must_be_finite_and_in_one_dimension(x, solved):
-    with pytest.raises(sb.InputError, match="positions must be finite"):
-        solved(*TYPICAL["mixed"]).profile(x)
+def test_positions_must_be_finite_and_in_one_dimension(subtests, solved):
+    for x in [[0.0, math.nan], [math.inf], [[0.0, 1.0]]]:
+        with subtests.test(x=x):
+            with pytest.raises(sb.InputError, match="positions must be finite"):
+                solved(*TYPICAL["mixed"]).profile(x)
 
 
 # Failures

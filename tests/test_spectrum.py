@@ -16,21 +16,24 @@ SHAPES = [
 ]
 
 
-@pytest.mark.parametrize("surface", SHAPES)
-@pytest.mark.parametrize("order", [0, 1, 2, 4])
-def test_moments_are_the_integrals_of_the_definition(surface, order):
-    H, q_r = surface.hurst, surface.roll_off
-    ends = [math.log(surface.q0), math.log(q_r), math.log(surface.q1)]
+def test_moments_are_the_integrals_of_the_definition(subtests):
+    for order in [0, 1, 2, 4]:
+        for surface in SHAPES:
+            with subtests.test(order=order, surface=surface):
+                H, q_r = surface.hurst, surface.roll_off
+                ends = [math.log(surface.q0), math.log(q_r), math.log(surface.q1)]
 
-    def density(q):
-        return min(1.0, (q / q_r) ** (-2 * (1 + H)))
+                def density(q):
+                    return min(1.0, (q / q_r) ** (-2 * (1 + H)))
 
-    def integral(n):
-        parts = zip(ends[:-1], ends[1:], strict=True)
-        return sum(quad(lambda v: math.exp(v * (n + 1)) * density(math.exp(v)), a, b, epsrel=1e-12)[0] for a, b in parts)
+                def integral(n):
+                    parts = zip(ends[:-1], ends[1:], strict=True)
+                    return sum(
+                        quad(lambda v: math.exp(v * (n + 1)) * density(math.exp(v)), a, b, epsrel=1e-12)[0] for a, b in parts
+                    )
 
-    expected = surface.h_rms**2 * integral(order + 1) / integral(1)
-    assert surface.spectrum.moment(order) == pytest.approx(expected, rel=1e-11, abs=0)
+                expected = surface.h_rms**2 * integral(order + 1) / integral(1)
+                assert surface.spectrum.moment(order) == pytest.approx(expected, rel=1e-11, abs=0)
 
 
 def test_height_slope_and_curvature_of_hurst_one():
@@ -67,26 +70,26 @@ def test_scaling_keeps_the_shape():
     assert ratio == pytest.approx((5e-6 / 3e-7) ** 2, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("kind", ["self-affine", "spectrum", "law"])
-@pytest.mark.parametrize(("factor", "shown"), [(0.5, "500 mm"), (2, "2 m")])
-def test_a_factor_in_place_of_a_height_is_refused(kind, factor, shown):
+def test_a_factor_in_place_of_a_height_is_refused(subtests):
     """A surface of 1 µm with waves of up to 628 µm cannot have a roughness of half a metre."""
-    rough = SHAPES[0]
-    found = {"self-affine": rough, "spectrum": rough.spectrum, "law": persson_law(rough)}[kind]
-    with pytest.raises(sb.InputError) as refused:
-        found.scaled(factor)
-    assert str(refused.value) == (
-        f"rms_height = {factor} would be {shown}, more than the longest wavelength of the roughness, 628 µm; "
-        "give the new rms height in m, such as 1e-6, not a factor."
-    )
-    assert found.scaled(6.2e-4) is not None
-    with pytest.raises(sb.InputError, match="longest wavelength of the roughness, 628 µm"):
-        found.scaled(1e-7).scaled(6.3e-4)
+    for factor, shown in [(0.5, "500 mm"), (2, "2 m")]:
+        for kind in ["self-affine", "spectrum", "law"]:
+            with subtests.test(factor=factor, shown=shown, kind=kind):
+                rough = SHAPES[0]
+                found = {"self-affine": rough, "spectrum": rough.spectrum, "law": persson_law(rough)}[kind]
+                with pytest.raises(sb.InputError) as refused:
+                    found.scaled(factor)
+                assert str(refused.value) == (
+                    f"rms_height = {factor} would be {shown}, more than the longest wavelength of the roughness, 628 µm; "
+                    "give the new rms height in m, such as 1e-6, not a factor."
+                )
+                assert found.scaled(6.2e-4) is not None
+                with pytest.raises(sb.InputError, match="longest wavelength of the roughness, 628 µm"):
+                    found.scaled(1e-7).scaled(6.3e-4)
 
 
-@pytest.mark.parametrize(
-    ("wavenumber", "density", "words"),
-    [
+def test_a_table_that_is_no_spectrum_is_refused_by_row(subtests):
+    for wavenumber, density, words in [
         ([1, 2, 2], [1, 1, 1], "wavenumber in row 3 = 2 is not above the one before it"),
         ([1, 2, 3], [1, 0, 1], "density in row 2 of the spectrum = 0"),
         ([1, 2, 3], [1, np.nan, 1], "gaps"),
@@ -95,27 +98,24 @@ def test_a_factor_in_place_of_a_height_is_refused(kind, factor, shown):
         ([1, 2], [1], "2 wave numbers and 1 densities"),
         (["a", "b"], [1, 1], "not a column of numbers"),
         ([[1, 2]], [1, 2], r"shape \(1, 2\)"),
-    ],
-)
-def test_a_table_that_is_no_spectrum_is_refused_by_row(wavenumber, density, words):
-    with pytest.raises(sb.InputError, match=words):
-        Spectrum(wavenumber, density)
+    ]:
+        with subtests.test(wavenumber=wavenumber, density=density, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                Spectrum(wavenumber, density)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
+def test_an_impossible_self_affine_surface_is_refused(subtests):
+    for change, words in [
         ({"hurst": 1.2}, "hurst = 1.2 is above 1"),
         ({"hurst": 0.0}, "hurst = 0.0 is not a positive number"),
         ({"q1": 10.0}, "q1 = 10 is not above q0 = 100"),
         ({"roll_off": 50.0}, "roll_off = 50 lies outside"),
         ({"h_rms": -1.0}, "h_rms = -1.0"),
         ({"q0": float("nan")}, "q0 = nan"),
-    ],
-)
-def test_an_impossible_self_affine_surface_is_refused(change, words):
-    with pytest.raises(sb.InputError, match=words):
-        SelfAffine(**{"h_rms": 1.0, "q0": 100.0, "q1": 1e4, "hurst": 0.8} | change)
+    ]:
+        with subtests.test(change=change, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                SelfAffine(**{"h_rms": 1.0, "q0": 100.0, "q1": 1e4, "hurst": 0.8} | change)
 
 
 # --- the table [surface] of a case ---
@@ -132,14 +132,12 @@ def test_wavelengths_and_wave_numbers_say_the_same():
     assert by_length.law.alpha == pytest.approx(by_number.law.alpha, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
+def test_an_impossible_table_surface_is_refused(subtests):
+    for change, words in [
         ({"q0": None}, "q0 .* is missing; give it, or longest_wavelength"),
         ({"q1": None}, "q1 .* is missing; give it, or shortest_wavelength"),
         ({"longest_wavelength": "1 mm"}, "are both given; give either q0, or longest_wavelength"),
-    ],
-)
-def test_an_impossible_table_surface_is_refused(change, words):
-    with pytest.raises(sb.InputError, match=words):
-        RoughSurface(**{"h_rms": "1 um", "hurst": 0.8, "q0": "1e5 1/m", "q1": "1e8 1/m"} | change)
+    ]:
+        with subtests.test(change=change, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                RoughSurface(**{"h_rms": "1 um", "hurst": 0.8, "q0": "1e5 1/m", "q1": "1e8 1/m"} | change)

@@ -181,21 +181,21 @@ json.dump(list(sys.modules), sys.stderr)
 """
 
 
-@pytest.mark.parametrize(
-    ("arguments", "unloaded"),
-    [
+def test_the_command_loads_what_it_uses(subtests):
+    """Half of the time of a short command was the import of what it did not use."""
+    for arguments, unloaded in [
         (["--help"], {"numpy", "scipy", "pydantic", "stribeck.solver", "stribeck.curves"}),
         (
             ["solve", str(EXAMPLE)],
             {"scipy.optimize", "stribeck.fits", "xarray"},
         ),
-    ],
-)
-def test_the_command_loads_what_it_uses(arguments, unloaded):
-    """Half of the time of a short command was the import of what it did not use."""
-    run = subprocess.run([sys.executable, "-c", LOADED.format(arguments=arguments)], capture_output=True, text=True)
-    assert run.returncode == 0, run.stderr
-    assert (unloaded | {"pint", "matplotlib", "stribeck.sweeps", "stribeck.explorer"}) & set(json.loads(run.stderr)) == set()
+    ]:
+        with subtests.test(arguments=arguments, unloaded=unloaded):
+            run = subprocess.run([sys.executable, "-c", LOADED.format(arguments=arguments)], capture_output=True, text=True)
+            assert run.returncode == 0, run.stderr
+            assert (unloaded | {"pint", "matplotlib", "stribeck.sweeps", "stribeck.explorer"}) & set(
+                json.loads(run.stderr)
+            ) == set()
 
 
 def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
@@ -222,19 +222,20 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
 NAMESPACES = [stribeck, stribeck.contact_laws, stribeck.fluids, stribeck.results, stribeck.solids]
 
 
-@pytest.mark.parametrize("package", NAMESPACES, ids=lambda each: each.__name__)
-def test_the_stub_of_a_package_has_its_names(package):
-    tree = ast.parse(Path(package.__file__).with_suffix(".pyi").read_text())
-    stub = {
-        alias.name: getattr(importlib.import_module(node.module), alias.name)
-        for node in tree.body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-        if node.module != "stribeck" or importlib.import_module(f"stribeck.{alias.name}")
-    }
-    assert stub == {name: getattr(package, name) for name in package.__all__}
-    [names] = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)]
-    assert sorted(names) == package.__all__
+def test_the_stub_of_a_package_has_its_names(subtests):
+    for package in NAMESPACES:
+        with subtests.test(package=package):
+            tree = ast.parse(Path(package.__file__).with_suffix(".pyi").read_text())
+            stub = {
+                alias.name: getattr(importlib.import_module(node.module), alias.name)
+                for node in tree.body
+                if isinstance(node, ast.ImportFrom)
+                for alias in node.names
+                if node.module != "stribeck" or importlib.import_module(f"stribeck.{alias.name}")
+            }
+            assert stub == {name: getattr(package, name) for name in package.__all__}
+            [names] = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)]
+            assert sorted(names) == package.__all__
 
 
 # --- docstrings ---

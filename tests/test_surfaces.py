@@ -39,14 +39,15 @@ def fitted(surface, points, seed, **options):
 # --- the spectrum ---
 
 
-@pytest.mark.parametrize("window", ["hann", "none"])
-def test_the_spectrum_of_white_noise_is_its_variance_over_the_band(window):
-    z = np.random.default_rng(91).standard_normal((200, 160)) * 1e-7
-    spectrum = power_spectrum(Topography(z, (1e-6, 2e-6)), window)
-    level = np.average(spectrum.density, weights=spectrum.modes)
-    assert level == pytest.approx(1e-14 * 1e-6 * 2e-6 / (2 * math.pi) ** 2, rel=0.03, abs=0)
-    line = power_spectrum(Topography(z[:, :100].ravel(), (1e-6,)), window)
-    assert np.average(line.density, weights=line.modes) == pytest.approx(1e-14 * 1e-6 / (2 * math.pi), rel=0.04, abs=0)
+def test_the_spectrum_of_white_noise_is_its_variance_over_the_band(subtests):
+    for window in ["hann", "none"]:
+        with subtests.test(window=window):
+            z = np.random.default_rng(91).standard_normal((200, 160)) * 1e-7
+            spectrum = power_spectrum(Topography(z, (1e-6, 2e-6)), window)
+            level = np.average(spectrum.density, weights=spectrum.modes)
+            assert level == pytest.approx(1e-14 * 1e-6 * 2e-6 / (2 * math.pi) ** 2, rel=0.03, abs=0)
+            line = power_spectrum(Topography(z[:, :100].ravel(), (1e-6,)), window)
+            assert np.average(line.density, weights=line.modes) == pytest.approx(1e-14 * 1e-6 / (2 * math.pi), rel=0.04, abs=0)
 
 
 def test_one_wave_has_all_its_power_in_its_ring():
@@ -120,13 +121,14 @@ def scores(surface, points, seeds, names):
     )
 
 
-@pytest.mark.parametrize("points", [(128, 128), (1024,)])
-def test_known_spectra_are_recovered_within_their_errors(points):
-    surface = ROLLED if len(points) == 2 else SelfAffine(1e-6, FUNDAMENTAL / 32, 3e6, 0.8, 3 * FUNDAMENTAL)
-    z = scores(surface, points, range(400, 416 if len(points) == 2 else 408), ("h_rms", "hurst", "roll_off"))
-    assert np.all(np.abs(z.mean(axis=0)) < 0.9)
-    assert np.all((z.std(axis=0) > 0.5) & (z.std(axis=0) < 1.6))
-    assert np.all((np.abs(z) < 2).mean(axis=0) >= 0.75)
+def test_known_spectra_are_recovered_within_their_errors(subtests):
+    for points in [(128, 128), (1024,)]:
+        with subtests.test(points=points):
+            surface = ROLLED if len(points) == 2 else SelfAffine(1e-6, FUNDAMENTAL / 32, 3e6, 0.8, 3 * FUNDAMENTAL)
+            z = scores(surface, points, range(400, 416 if len(points) == 2 else 408), ("h_rms", "hurst", "roll_off"))
+            assert np.all(np.abs(z.mean(axis=0)) < 0.9)
+            assert np.all((z.std(axis=0) > 0.5) & (z.std(axis=0) < 1.6))
+            assert np.all((np.abs(z) < 2).mean(axis=0) >= 0.75)
 
 
 @pytest.mark.slow
@@ -171,35 +173,39 @@ def test_intervals_of_alpha_and_beta_follow_from_those_of_the_fit():
         assert all(each.low < each.value < each.high and each.high - each.low < width * truth[i] for each in found)
 
 
-@pytest.mark.parametrize("longest", [1.0, 0.05])
-def test_intervals_of_alpha_and_beta_hold_for_any_longest_wave_beyond_the_scan(longest):
-    surface = SelfAffine(1e-6, longest * FUNDAMENTAL, 3e6, 0.8, 7 * FUNDAMENTAL)
-    inside = []
-    for seed in range(520, 528):
-        fit = fitted(surface, (128, 128), seed)
-        truth = exponential_limit(surface.spectrum.between(surface.q0, fit.roughness.q1))
-        inside += [each.low < true < each.high for each, true in zip(fit.exponential_limit(), truth, strict=True)]
-    assert sum(inside) >= 14
+def test_intervals_of_alpha_and_beta_hold_for_any_longest_wave_beyond_the_scan(subtests):
+    for longest in [1.0, 0.05]:
+        with subtests.test(longest=longest):
+            surface = SelfAffine(1e-6, longest * FUNDAMENTAL, 3e6, 0.8, 7 * FUNDAMENTAL)
+            inside = []
+            for seed in range(520, 528):
+                fit = fitted(surface, (128, 128), seed)
+                truth = exponential_limit(surface.spectrum.between(surface.q0, fit.roughness.q1))
+                inside += [each.low < true < each.high for each, true in zip(fit.exponential_limit(), truth, strict=True)]
+            assert sum(inside) >= 14
 
 
-@pytest.mark.parametrize("hurst", [0.6, 0.8])
-def test_intervals_of_alpha_and_beta_allow_for_waves_shorter_than_the_scan_shows(hurst):
+def test_intervals_of_alpha_and_beta_allow_for_waves_shorter_than_the_scan_shows(subtests):
     """An octave below the reliable range, and all waves down to 2 nm: the scan cannot tell them apart."""
-    surface = SelfAffine(1e-6, FUNDAMENTAL, math.pi / STEP, hurst, 7 * FUNDAMENTAL)
-    endless = math.pi / 1e-9
-    scaled = SelfAffine(surface.h_rms, surface.q0, endless, hurst, surface.roll_off)
-    truths = [exponential_limit(surface), exponential_limit(scaled)]
-    assert truths[1][1] > 1.05 * truths[0][1]
-    fits = [fitted(surface, (96, 96), seed) for seed in range(530, 538)]
-    inside = [
-        each.low < true < each.high
-        for fit in fits
-        for truth in truths
-        for each, true in zip(fit.exponential_limit(), truth, strict=True)
-    ]
-    assert sum(inside) >= len(inside) - 1
-    said = [note for note in analyse(synthetic_topography(surface, (96, 96), STEP, 530)).notes if "goes on beyond" in note]
-    assert len(said) == 1 and "beta would rise by up to" in said[0] and "hardly" not in said[0]
+    for hurst in [0.6, 0.8]:
+        with subtests.test(hurst=hurst):
+            surface = SelfAffine(1e-6, FUNDAMENTAL, math.pi / STEP, hurst, 7 * FUNDAMENTAL)
+            endless = math.pi / 1e-9
+            scaled = SelfAffine(surface.h_rms, surface.q0, endless, hurst, surface.roll_off)
+            truths = [exponential_limit(surface), exponential_limit(scaled)]
+            assert truths[1][1] > 1.05 * truths[0][1]
+            fits = [fitted(surface, (96, 96), seed) for seed in range(530, 538)]
+            inside = [
+                each.low < true < each.high
+                for fit in fits
+                for truth in truths
+                for each, true in zip(fit.exponential_limit(), truth, strict=True)
+            ]
+            assert sum(inside) >= len(inside) - 1
+            said = [
+                note for note in analyse(synthetic_topography(surface, (96, 96), STEP, 530)).notes if "goes on beyond" in note
+            ]
+            assert len(said) == 1 and "beta would rise by up to" in said[0] and "hardly" not in said[0]
 
 
 def test_without_a_roll_off_beta_is_bounded_from_above_only():
@@ -306,19 +312,17 @@ def test_a_line_and_the_map_that_it_was_cut_from_agree():
 # --- bad arguments ---
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
+def test_an_impossible_argument_is_refused(subtests):
+    for options, words in [
         ({"trend": "cubic"}, "detrend = 'cubic' is not known"),
         ({"window": "kaiser"}, "window = 'kaiser' is not known"),
         ({"gamma": 2.0}, "gamma = 2.0 must be from 0.01 to 1"),
         ({"resolution": "1 kg"}, "a length such as"),
         ({"resolution": 0.0}, "not above zero"),
-    ],
-)
-def test_an_impossible_argument_is_refused(options, words):
-    with pytest.raises(sb.InputError, match=words):
-        analyse(synthetic_topography(ROLLED, (64, 64), STEP, 1), **options)
+    ]:
+        with subtests.test(options=options, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                analyse(synthetic_topography(ROLLED, (64, 64), STEP, 1), **options)
 
 
 def test_a_plane_has_no_roughness():
@@ -368,21 +372,19 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
     assert refused.code == 2 and "--force" in refused.err
 
 
-@pytest.mark.parametrize(
-    ("tokens", "words"),
-    [
+def test_the_command_refuses_nonsense_in_one_line(subtests, capsys, scan):
+    for tokens, words in [
         ((), "FILE is missing"),
         (("none.csv",), "none.csv is not a file"),
         (("SCAN", "--unit", "mm"), "declares its"),
         (("SCAN", "--trend", "cubic"), "detrend = 'cubic'"),
         (("SCAN", "--gamma", "x"), "gamma = 'x' is not a number"),
         (("SCAN", "--out", "a.txt"), "must end in .toml"),
-    ],
-)
-def test_the_command_refuses_nonsense_in_one_line(capsys, scan, tokens, words):
-    answer = call(capsys, "surface", *(scan if token == "SCAN" else token for token in tokens))
-    assert answer.code == 2
-    assert words in answer.err and len(answer.err.splitlines()) == 1
+    ]:
+        with subtests.test(tokens=tokens, words=words):
+            answer = call(capsys, "surface", *(scan if token == "SCAN" else token for token in tokens))
+            assert answer.code == 2
+            assert words in answer.err and len(answer.err.splitlines()) == 1
 
 
 def test_the_table_is_whole_or_not_there(tmp_path):
@@ -393,20 +395,21 @@ def test_the_table_is_whole_or_not_there(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.toml"]
 
 
-@pytest.mark.parametrize("points", [(64, 64), (512,)])
-def test_the_picture_shows_heights_spectrum_and_law(points):
-    surface = analyse(synthetic_topography(ROLLED, points, STEP, 104))
-    figure = plot_surface(surface, title="A surface")
-    heights, spectrum, law = figure.axes[:3]
-    assert heights.images or heights.lines
-    fit = next(line for line in spectrum.lines if line.get_label().startswith("fit"))
-    q, density = fit.get_data()
-    assert density == pytest.approx(surface.fit.at(q, is_line=surface.topography.is_line), rel=1e-9, abs=0)
-    persson, exponential = law.lines[:2]
-    u, p = persson.get_data()
-    expected = surface.law.beta * np.exp(surface.law.log_pressure(surface.law.alpha * u))
-    assert p == pytest.approx(expected, rel=1e-9, abs=0)
-    assert p[0] > exponential.get_data()[1][0]
+def test_the_picture_shows_heights_spectrum_and_law(subtests):
+    for points in [(64, 64), (512,)]:
+        with subtests.test(points=points):
+            surface = analyse(synthetic_topography(ROLLED, points, STEP, 104))
+            figure = plot_surface(surface, title="A surface")
+            heights, spectrum, law = figure.axes[:3]
+            assert heights.images or heights.lines
+            fit = next(line for line in spectrum.lines if line.get_label().startswith("fit"))
+            q, density = fit.get_data()
+            assert density == pytest.approx(surface.fit.at(q, is_line=surface.topography.is_line), rel=1e-9, abs=0)
+            persson, exponential = law.lines[:2]
+            u, p = persson.get_data()
+            expected = surface.law.beta * np.exp(surface.law.log_pressure(surface.law.alpha * u))
+            assert p == pytest.approx(expected, rel=1e-9, abs=0)
+            assert p[0] > exponential.get_data()[1][0]
 
 
 def test_a_steep_line_is_fitted_in_a_bounded_number_of_steps(monkeypatch):

@@ -234,19 +234,17 @@ def test_text_that_is_no_topography_is_refused_by_line(tmp_path, case):
 # --- what a topography is ---
 
 
-@pytest.mark.parametrize(
-    ("z", "spacing", "words"),
-    [
+def test_heights_that_have_no_spectrum_are_refused(subtests):
+    for z, spacing, words in [
         (np.ones(100), (1e-6,), "all heights are the same"),
         (np.arange(20.0), (1e-6,), "too few for a spectrum"),
         (np.where(np.arange(100) % 4, np.arange(100.0), np.nan), (1e-6,), "25 % of the points are missing"),
         (np.arange(100.0), (0.0,), "spacing = 0.0 is not a positive number"),
         (np.arange(100.0), (1e-6, 1e-6), "neither a profile nor a map"),
-    ],
-)
-def test_heights_that_have_no_spectrum_are_refused(z, spacing, words):
-    with pytest.raises(sb.InputError, match=words):
-        Topography(z, spacing)
+    ]:
+        with subtests.test(z=z, spacing=spacing, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                Topography(z, spacing)
 
 
 def test_dead_points_are_filled_by_the_plane_around_them():
@@ -275,12 +273,13 @@ def test_a_saturated_point_counts_as_dead_and_roughness_does_not():
     assert spiked.repaired(keep_spikes=True).heights[30, 31] == 1e-4
 
 
-@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
-@pytest.mark.parametrize("points", [(64, 64), (1024,)])
-def test_rough_surfaces_have_no_spikes(points, hurst):
-    for seed in range(6):
-        for surface in (SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), SelfAffine(1e-6, 1e4, 1e6, hurst)):
-            assert synthetic_topography(surface, points, 1e-6, seed).repaired().notes == ()
+def test_rough_surfaces_have_no_spikes(subtests):
+    for points in [(64, 64), (1024,)]:
+        for hurst in [0.3, 0.8, 1.0]:
+            with subtests.test(points=points, hurst=hurst):
+                for seed in range(6):
+                    for surface in (SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), SelfAffine(1e-6, 1e4, 1e6, hurst)):
+                        assert synthetic_topography(surface, points, 1e-6, seed).repaired().notes == ()
 
 
 def bumps(width, seed):
@@ -293,27 +292,29 @@ def bumps(width, seed):
     return Topography(z * 1e-8, (1e-6, 1e-6))
 
 
-@pytest.mark.parametrize("width", [0.8, 1.5, 3.0])
-def test_summits_on_a_plain_are_no_spikes(width):
-    # Against the scatter of the whole scan, hundreds of their points are outliers.
-    for seed in range(3):
-        scan = bumps(width, seed)
-        assert scan.repaired().notes == ()
-        assert scan.repaired().heights.std() == scan.heights.std()
+def test_summits_on_a_plain_are_no_spikes(subtests):
+    for width in [0.8, 1.5, 3.0]:
+        with subtests.test(width=width):
+            # Against the scatter of the whole scan, hundreds of their points are outliers.
+            for seed in range(3):
+                scan = bumps(width, seed)
+                assert scan.repaired().notes == ()
+                assert scan.repaired().heights.std() == scan.heights.std()
 
 
-@pytest.mark.parametrize("points", [(96, 96), (2048,)])
-@pytest.mark.parametrize("hurst", [0.3, 0.8])
-def test_planted_spikes_are_replaced_and_nothing_else(points, hurst):
-    whole = synthetic_topography(SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), points, 1e-6, 17)
-    z = whole.heights.copy()
-    rms = float(z.std())
-    places = np.random.default_rng(18).choice(z.size // 16, 12, replace=False) * 16 + 3
-    z.ravel()[places] += 12 * rms * np.array([1, -1] * 6)
-    repaired = Topography(z, whole.spacing).repaired()
-    changed = np.flatnonzero((repaired.heights != z).ravel())
-    assert set(changed) <= set(places) and changed.size >= 11
-    assert abs(repaired.heights.std() / rms - 1) < (0.005 if changed.size == 12 else 0.1)
+def test_planted_spikes_are_replaced_and_nothing_else(subtests):
+    for hurst in [0.3, 0.8]:
+        for points in [(96, 96), (2048,)]:
+            with subtests.test(hurst=hurst, points=points):
+                whole = synthetic_topography(SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), points, 1e-6, 17)
+                z = whole.heights.copy()
+                rms = float(z.std())
+                places = np.random.default_rng(18).choice(z.size // 16, 12, replace=False) * 16 + 3
+                z.ravel()[places] += 12 * rms * np.array([1, -1] * 6)
+                repaired = Topography(z, whole.spacing).repaired()
+                changed = np.flatnonzero((repaired.heights != z).ravel())
+                assert set(changed) <= set(places) and changed.size >= 11
+                assert abs(repaired.heights.std() / rms - 1) < (0.005 if changed.size == 12 else 0.1)
 
 
 def test_two_points_beside_each_other_are_an_asperity():

@@ -1,7 +1,6 @@
 """Transitions of many contacts at once on the atlas."""
 
 import numpy as np
-import pytest
 
 import stribeck as sb
 from stribeck.regimes.transition_speeds import transition_speeds
@@ -13,26 +12,29 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("definition", ["published", "balanced"])
-@pytest.mark.parametrize(("load", "boundary_friction", "beta"), [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)])
-def test_they_are_those_of_solved_curves_within_the_stated_error(load, boundary_friction, beta, definition):
-    roughness = load * np.array([1e-3, 0.03, 0.2])
-    found = transition_speeds(sb.Groups(1.0, load, roughness), boundary_friction, beta, definition)
-    for i, h in enumerate(roughness):
-        curve = sb.stribeck_curve(
-            load=load,
-            roughness=h,
-            speed=(1e-8, 1e3),
-            points=45,
-            boundary_friction=boundary_friction,
-            beta=beta,
-            definition=definition,
-            rtol=1e-7,
-        )
-        marks = {mark.name: mark.value for mark in curve.transitions}
-        for row, (name, words) in enumerate(NAMES.items()):
-            value = getattr(found, name)[i]
-            assert np.isnan(value) if words not in marks else abs(np.log(value / marks[words])) < found.error[row, i]
+def test_they_are_those_of_solved_curves_within_the_stated_error(subtests):
+    for load, boundary_friction, beta in [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)]:
+        for definition in ["published", "balanced"]:
+            with subtests.test(load=load, boundary_friction=boundary_friction, beta=beta, definition=definition):
+                roughness = load * np.array([1e-3, 0.03, 0.2])
+                found = transition_speeds(sb.Groups(1.0, load, roughness), boundary_friction, beta, definition)
+                for i, h in enumerate(roughness):
+                    curve = sb.stribeck_curve(
+                        load=load,
+                        roughness=h,
+                        speed=(1e-8, 1e3),
+                        points=45,
+                        boundary_friction=boundary_friction,
+                        beta=beta,
+                        definition=definition,
+                        rtol=1e-7,
+                    )
+                    marks = {mark.name: mark.value for mark in curve.transitions}
+                    for row, (name, words) in enumerate(NAMES.items()):
+                        value = getattr(found, name)[i]
+                        assert (
+                            np.isnan(value) if words not in marks else abs(np.log(value / marks[words])) < found.error[row, i]
+                        )
 
 
 def test_the_stated_error_is_small():

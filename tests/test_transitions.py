@@ -28,28 +28,33 @@ def minimum(kappa, load):
 # --- contact share and friction with a film ---
 
 
-@pytest.mark.parametrize("film_ratio", [3, 5, 8])
-@pytest.mark.parametrize("kappa", [3e-4, 1e-2])
-@pytest.mark.parametrize("load", [2e-3, 0.2])
-def test_our_contact_share_and_friction_know_outlet_and_thickened_film(film_ratio, kappa, load):
-    groups = state(film_ratio, kappa, load)
-    solved = sb.solve(groups)
-    share, friction = solved.contact_load_share, solved.friction(boundary_friction=1, beta=1, definition="published").total
-    ours = mixed.contact_load_share(groups) / share - 1
-    paper = mixed.contact_load_share(groups, "large") / share - 1
-    assert abs(ours) < 0.09
-    assert abs(mixed.friction(groups) / friction - 1) < 0.09
-    if film_ratio == 3:
-        assert paper > 0.2 and abs(ours) < 0.2 * paper
-    # The better central film alone loses what the outlet adds.
-    assert mixed.contact_load_share(groups, "central") < mixed.contact_load_share(groups, "large")
+def test_our_contact_share_and_friction_know_outlet_and_thickened_film(subtests):
+    for load in [2e-3, 0.2]:
+        for kappa in [3e-4, 1e-2]:
+            for film_ratio in [3, 5, 8]:
+                with subtests.test(load=load, kappa=kappa, film_ratio=film_ratio):
+                    groups = state(film_ratio, kappa, load)
+                    solved = sb.solve(groups)
+                    share, friction = (
+                        solved.contact_load_share,
+                        solved.friction(boundary_friction=1, beta=1, definition="published").total,
+                    )
+                    ours = mixed.contact_load_share(groups) / share - 1
+                    paper = mixed.contact_load_share(groups, "large") / share - 1
+                    assert abs(ours) < 0.09
+                    assert abs(mixed.friction(groups) / friction - 1) < 0.09
+                    if film_ratio == 3:
+                        assert paper > 0.2 and abs(ours) < 0.2 * paper
+                    # The better central film alone loses what the outlet adds.
+                    assert mixed.contact_load_share(groups, "central") < mixed.contact_load_share(groups, "large")
 
 
-@pytest.mark.parametrize(("film_ratio", "kappa"), [(10 - 1e-6, 0.035), (C * 2**0.6 / 0.1, 0.1)])
-def test_the_contact_share_is_least_good_where_thick_films_end_its_range(film_ratio, kappa):
-    groups = state(film_ratio, kappa, 1e-3)
-    error = mixed.contact_load_share.function(groups) / sb.solve(groups).contact_load_share - 1
-    assert 0.1 < abs(error) < mixed.contact_load_share.worst
+def test_the_contact_share_is_least_good_where_thick_films_end_its_range(subtests):
+    for film_ratio, kappa in [(10 - 1e-6, 0.035), (C * 2**0.6 / 0.1, 0.1)]:
+        with subtests.test(film_ratio=film_ratio, kappa=kappa):
+            groups = state(film_ratio, kappa, 1e-3)
+            error = mixed.contact_load_share.function(groups) / sb.solve(groups).contact_load_share - 1
+            assert 0.1 < abs(error) < mixed.contact_load_share.worst
 
 
 def test_the_film_with_asperities_is_the_law_of_the_paper_where_both_are_small():
@@ -151,14 +156,15 @@ def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
         assert math.isnan(transitions.speed_at_minimum(sb.Groups(1.0, 0.1, 1.001 * edge), form="exact"))
 
 
-@pytest.mark.parametrize(("load", "kappa"), [(1e-3, 1e-4), (1e-3, 1e-2), (0.1, 1e-3), (0.5, 1e-4), (0.5, 1e-2)])
-def test_our_minimum_is_that_of_the_solver(load, kappa):
-    found = minimum(kappa, load)
-    groups = sb.Groups(1.0, load, kappa * load)
-    assert transitions.friction_at_minimum(groups) == pytest.approx(found.friction, rel=0.0105)
-    assert transitions.speed_at_minimum(groups) == pytest.approx(found.value, rel=0.019)
-    assert transitions.separation_at_minimum(groups) == pytest.approx(found.solution.central_separation, rel=0.022)
-    assert transitions.has_minimum(groups)
+def test_our_minimum_is_that_of_the_solver(subtests):
+    for load, kappa in [(1e-3, 1e-4), (1e-3, 1e-2), (0.1, 1e-3), (0.5, 1e-4), (0.5, 1e-2)]:
+        with subtests.test(load=load, kappa=kappa):
+            found = minimum(kappa, load)
+            groups = sb.Groups(1.0, load, kappa * load)
+            assert transitions.friction_at_minimum(groups) == pytest.approx(found.friction, rel=0.0105)
+            assert transitions.speed_at_minimum(groups) == pytest.approx(found.value, rel=0.019)
+            assert transitions.separation_at_minimum(groups) == pytest.approx(found.solution.central_separation, rel=0.022)
+            assert transitions.has_minimum(groups)
 
 
 def test_our_minimum_is_stationary():

@@ -27,15 +27,16 @@ def solved():
     return groups, solutions
 
 
-@pytest.mark.parametrize("beta", [1.0, 0.03])
-@pytest.mark.parametrize("definition", ["published", "balanced"])
-def test_friction_is_within_three_percent_in_the_median_and_the_stated_worst(solved, beta, definition):
-    groups, solutions = solved
-    right = np.array([s.friction(1.0, beta, definition).total for s in solutions])
-    error = np.abs(uniform.friction(groups, 1.0, beta, definition) / right - 1)
-    assert np.median(error) < 0.003
-    assert np.quantile(error, 0.9) < 0.02
-    assert error.max() < uniform.friction.worst
+def test_friction_is_within_three_percent_in_the_median_and_the_stated_worst(subtests, solved):
+    for definition in ["published", "balanced"]:
+        for beta in [1.0, 0.03]:
+            with subtests.test(definition=definition, beta=beta):
+                groups, solutions = solved
+                right = np.array([s.friction(1.0, beta, definition).total for s in solutions])
+                error = np.abs(uniform.friction(groups, 1.0, beta, definition) / right - 1)
+                assert np.median(error) < 0.003
+                assert np.quantile(error, 0.9) < 0.02
+                assert error.max() < uniform.friction.worst
 
 
 def test_the_contact_share_is_good_to_the_stated_error_down_to_a_millionth(solved):
@@ -62,29 +63,34 @@ FROZEN = {
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("state", "values"), FROZEN.items(), ids=str)
-def test_the_frozen_numbers_of_the_laws_are_close_to_solved_states(state, values):
-    speed, load, kappa = state
-    groups = sb.Groups(speed, load, kappa * load)
-    definitions = ("published", "balanced")
-    found = [load_sharing.contact_load_share(groups), *(uniform.friction(groups, 0.7, 0.3, each) for each in definitions)]
-    assert found == pytest.approx(values, rel=1e-8)
-    solution = sb.solve(groups)
-    right = [solution.contact_load_share, *(solution.friction(0.7, 0.3, each).total for each in definitions)]
-    assert found == pytest.approx(right, rel=0.05)
+def test_the_frozen_numbers_of_the_laws_are_close_to_solved_states(subtests):
+    for state, values in FROZEN.items():
+        with subtests.test(state=state, values=values):
+            speed, load, kappa = state
+            groups = sb.Groups(speed, load, kappa * load)
+            definitions = ("published", "balanced")
+            found = [
+                load_sharing.contact_load_share(groups),
+                *(uniform.friction(groups, 0.7, 0.3, each) for each in definitions),
+            ]
+            assert found == pytest.approx(values, rel=1e-8)
+            solution = sb.solve(groups)
+            right = [solution.contact_load_share, *(solution.friction(0.7, 0.3, each).total for each in definitions)]
+            assert found == pytest.approx(right, rel=0.05)
 
 
-@pytest.mark.parametrize(("load", "kappa"), [(3e-4, 2e-2), (0.02, 3e-4), (0.1, 1e-3), (0.5, 5e-3)])
-def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_solver(load, kappa):
-    groups = sb.Groups(1.0, load, kappa * load)
-    curve = sb.stribeck_curve(load=load, roughness=kappa * load, points=31)
-    marks = {mark.name: mark.value for mark in curve.transitions}
-    for share, name, worst in ((0.5, "50 %", 0.075), (0.05, "5 %", 0.05)):
-        found = load_sharing.speed_at_fluid_share(groups, share)
-        assert abs(found / marks[f"fluid carries {name} of the load"] - 1) < worst
-        # The paper's extrapolation to all of the load misses half of it by far more.
-        paper = kappa**2 * perturbation.phi(load) ** -0.5
-        assert share != 0.5 or abs(found / paper - 1) > 0.3
+def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_solver(subtests):
+    for load, kappa in [(3e-4, 2e-2), (0.02, 3e-4), (0.1, 1e-3), (0.5, 5e-3)]:
+        with subtests.test(load=load, kappa=kappa):
+            groups = sb.Groups(1.0, load, kappa * load)
+            curve = sb.stribeck_curve(load=load, roughness=kappa * load, points=31)
+            marks = {mark.name: mark.value for mark in curve.transitions}
+            for share, name, worst in ((0.5, "50 %", 0.075), (0.05, "5 %", 0.05)):
+                found = load_sharing.speed_at_fluid_share(groups, share)
+                assert abs(found / marks[f"fluid carries {name} of the load"] - 1) < worst
+                # The paper's extrapolation to all of the load misses half of it by far more.
+                paper = kappa**2 * perturbation.phi(load) ** -0.5
+                assert share != 0.5 or abs(found / paper - 1) > 0.3
 
 
 @pytest.mark.quick
@@ -98,16 +104,17 @@ def test_speed_and_share_are_inverse_to_each_other():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("load", [1e-4, 0.1, 0.69])
-def test_slow_contacts_share_the_load_as_the_perturbation_says(load):
-    # The law has phi in closed form, good to 0.33 %, and a correction of order kappa**(2/3).
-    kappa, errors = np.array([1e-6, 1e-9, 1e-12]), []
-    for k in kappa:
-        speed = 1e-3 * k**2 * perturbation.phi(load) ** -0.5
-        odds = load_sharing.log_odds(sb.Groups(speed, load, k * load))
-        errors.append(np.exp(odds) / 1e-6 - 1)
-    assert abs(errors[-1]) < 0.01
-    assert abs(errors[0] - errors[-1]) < 0.02
+def test_slow_contacts_share_the_load_as_the_perturbation_says(subtests):
+    for load in [1e-4, 0.1, 0.69]:
+        with subtests.test(load=load):
+            # The law has phi in closed form, good to 0.33 %, and a correction of order kappa**(2/3).
+            kappa, errors = np.array([1e-6, 1e-9, 1e-12]), []
+            for k in kappa:
+                speed = 1e-3 * k**2 * perturbation.phi(load) ** -0.5
+                odds = load_sharing.log_odds(sb.Groups(speed, load, k * load))
+                errors.append(np.exp(odds) / 1e-6 - 1)
+            assert abs(errors[-1]) < 0.01
+            assert abs(errors[0] - errors[-1]) < 0.02
 
 
 @pytest.mark.quick
@@ -150,16 +157,18 @@ def test_loads_from_one_on_have_no_value_and_say_so():
         assert np.isfinite(found).tolist() == [True, False]
 
 
-@pytest.mark.parametrize("share", [0.0, 1.0, -0.1, float("nan"), [0.5, 2.0]])
-def test_a_share_that_is_none_is_refused(share):
-    with pytest.raises(sb.InputError, match="a fraction of the load lies between 0 and 1"):
-        load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), share)
+def test_a_share_that_is_none_is_refused(subtests):
+    for share in [0.0, 1.0, -0.1, float("nan"), [0.5, 2.0]]:
+        with subtests.test(share=share):
+            with pytest.raises(sb.InputError, match="a fraction of the load lies between 0 and 1"):
+                load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), share)
 
 
-@pytest.mark.parametrize("law", [uniform.friction, uniform.viscous_friction])
-def test_an_unknown_definition_is_refused(law):
-    with pytest.raises(sb.InputError, match="it must be 'balanced' or 'published'"):
-        law(sb.Groups(1e-5, 0.1, 1e-4), definition="printed")
+def test_an_unknown_definition_is_refused(subtests):
+    for law in [uniform.friction, uniform.viscous_friction]:
+        with subtests.test(law=law):
+            with pytest.raises(sb.InputError, match="it must be 'balanced' or 'published'"):
+                law(sb.Groups(1e-5, 0.1, 1e-4), definition="printed")
 
 
 def test_states_broadcast():
@@ -174,28 +183,30 @@ def test_states_broadcast():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("load", "number"), [(1e-4, 300.0), (0.1, 10.0), (0.7, 1.0)])
-def test_the_wedge_obeys_its_equations(load, number):
-    state = wedge.wedge(load, number)
-    x, h = state.x, state.gap
-    contact = load**-0.5 * np.exp(-h)
-    assert contact + state.fluid_pressure == pytest.approx(np.sqrt((1 - x) * (1 + x)), abs=1e-7)
-    inside = np.abs(x) < 0.9
-    slope = np.gradient(state.fluid_pressure[inside], x[inside], edge_order=2)[1:-1]
-    right = (number * (h - state.flux_gap) / h**3)[inside][1:-1]
-    assert np.abs(slope - right).max() < 0.01 * np.abs(right).max()
-    assert np.abs(state.fluid_pressure[[0, -1]]).max() < 1e-9
+def test_the_wedge_obeys_its_equations(subtests):
+    for load, number in [(1e-4, 300.0), (0.1, 10.0), (0.7, 1.0)]:
+        with subtests.test(load=load, number=number):
+            state = wedge.wedge(load, number)
+            x, h = state.x, state.gap
+            contact = load**-0.5 * np.exp(-h)
+            assert contact + state.fluid_pressure == pytest.approx(np.sqrt((1 - x) * (1 + x)), abs=1e-7)
+            inside = np.abs(x) < 0.9
+            slope = np.gradient(state.fluid_pressure[inside], x[inside], edge_order=2)[1:-1]
+            right = (number * (h - state.flux_gap) / h**3)[inside][1:-1]
+            assert np.abs(slope - right).max() < 0.01 * np.abs(right).max()
+            assert np.abs(state.fluid_pressure[[0, -1]]).max() < 1e-9
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("load", [1e-4, 0.1, 0.7])
-def test_a_slow_wedge_carries_what_the_perturbation_says(load):
-    share = np.array([1e-4, 1e-5])
-    numbers = np.sqrt(share / perturbation.phi(load))
-    found = np.array([1 - wedge.wedge(load, float(n)).contact_load_share for n in numbers])
-    error = np.abs(found / share - 1)
-    assert error[1] < 0.2 * error[0] + 1e-6
-    assert error[0] < 0.01
+def test_a_slow_wedge_carries_what_the_perturbation_says(subtests):
+    for load in [1e-4, 0.1, 0.7]:
+        with subtests.test(load=load):
+            share = np.array([1e-4, 1e-5])
+            numbers = np.sqrt(share / perturbation.phi(load))
+            found = np.array([1 - wedge.wedge(load, float(n)).contact_load_share for n in numbers])
+            error = np.abs(found / share - 1)
+            assert error[1] < 0.2 * error[0] + 1e-6
+            assert error[0] < 0.01
 
 
 def test_the_law_of_load_sharing_follows_the_wedge_where_roughness_is_small():
@@ -205,10 +216,13 @@ def test_the_law_of_load_sharing_follows_the_wedge_where_roughness_is_small():
             assert abs(wedge.wedge(load, float(speed) / 1e-24).contact_load_share / share - 1) < 0.06
 
 
-@pytest.mark.parametrize(
-    ("load", "number", "name"),
-    [(1.0, 1.0, "load"), (0.0, 1.0, "load"), (0.1, -1.0, "fluid_number"), (0.1, np.inf, "fluid_number")],
-)
-def test_a_wedge_that_does_not_exist_is_refused(load, number, name):
-    with pytest.raises(sb.InputError, match=f"{name} = "):
-        wedge.wedge(load, number)
+def test_a_wedge_that_does_not_exist_is_refused(subtests):
+    for load, number, name in [
+        (1.0, 1.0, "load"),
+        (0.0, 1.0, "load"),
+        (0.1, -1.0, "fluid_number"),
+        (0.1, np.inf, "fluid_number"),
+    ]:
+        with subtests.test(load=load, number=number, name=name):
+            with pytest.raises(sb.InputError, match=f"{name} = "):
+                wedge.wedge(load, number)

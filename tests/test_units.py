@@ -42,16 +42,18 @@ ACCEPTED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "dimension", "expected"), ACCEPTED)
-def test_text_with_a_unit_becomes_its_si_value(text, dimension, expected):
-    assert to_si(text, dimension, "x") == expected
+def test_text_with_a_unit_becomes_its_si_value(subtests):
+    for text, dimension, expected in ACCEPTED:
+        with subtests.test(text=text, dimension=dimension, expected=expected):
+            assert to_si(text, dimension, "x") == expected
 
 
-@pytest.mark.parametrize("value", [3, 3.0, np.float64(3), np.float32(3), np.int32(3), Fraction(3)])
-def test_a_bare_number_is_taken_as_si(value):
-    result = to_si(value, "load", "load")
-    assert result == 3.0
-    assert type(result) is float
+def test_a_bare_number_is_taken_as_si(subtests):
+    for value in [3, 3.0, np.float64(3), np.float32(3), np.int32(3), Fraction(3)]:
+        with subtests.test(value=value):
+            result = to_si(value, "load", "load")
+            assert result == 3.0
+            assert type(result) is float
 
 
 # What is refused, and the words that tell why or what to try.
@@ -121,14 +123,15 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("value", "dimension", "reason"), REFUSED)
-def test_what_is_no_quantity_is_refused_in_one_sentence_with_name_value_and_reason(value, dimension, reason):
-    with pytest.raises(InputError) as caught:
-        to_si(value, dimension, "quantity")
-    sentence = str(caught.value)
-    assert sentence.startswith(f"quantity = {repr(value)[:50]}")
-    assert reason in sentence
-    assert sentence.endswith(".") and "\n" not in sentence and len(sentence) < 250
+def test_what_is_no_quantity_is_refused_in_one_sentence_with_name_value_and_reason(subtests):
+    for value, dimension, reason in REFUSED:
+        with subtests.test(value=value, dimension=dimension, reason=reason):
+            with pytest.raises(InputError) as caught:
+                to_si(value, dimension, "quantity")
+            sentence = str(caught.value)
+            assert sentence.startswith(f"quantity = {repr(value)[:50]}")
+            assert reason in sentence
+            assert sentence.endswith(".") and "\n" not in sentence and len(sentence) < 250
 
 
 @settings(derandomize=True, deadline=None, max_examples=300)
@@ -152,9 +155,8 @@ def test_short_text_reads_back_within_its_digits(value, sign, dimension, digits)
     assert to_si(text, dimension, "x") == pytest.approx(sign * value, rel=0.501 * 10.0 ** (1 - digits))
 
 
-@pytest.mark.parametrize(
-    ("value", "dimension", "text"),
-    [
+def test_short_text_has_a_fitting_prefix(subtests):
+    for value, dimension, text in [
         (3.1e-4, "speed", "310 µm/s"),
         (9.996e-4, "length", "1 mm"),
         (2.7e6, "pressure", "2.7 MPa"),
@@ -163,15 +165,13 @@ def test_short_text_reads_back_within_its_digits(value, sign, dimension, digits)
         (0.0, "speed", "0 m/s"),
         (math.inf, "speed", "inf m/s"),
         (0.12345, "number", "0.123"),
-    ],
-)
-def test_short_text_has_a_fitting_prefix(value, dimension, text):
-    assert format_si(value, dimension) == text
+    ]:
+        with subtests.test(value=value, dimension=dimension, text=text):
+            assert format_si(value, dimension) == text
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
+def test_numbers_that_people_read_have_no_exponent_without_need(subtests):
+    for text, expected in [
         (format_si(1e12, "pressure"), "1000 GPa"),
         (format_si(2.5e16, "pressure"), "2.5e+07 GPa"),
         (format_percent(0.99996), "100 %"),
@@ -179,10 +179,9 @@ def test_short_text_has_a_fitting_prefix(value, dimension, text):
         (format_factor(3752.6), "3750"),
         (format_factor(999.7), "1000"),
         (format_factor(2e6), "2e+06"),
-    ],
-)
-def test_numbers_that_people_read_have_no_exponent_without_need(text, expected):
-    assert text == expected
+    ]:
+        with subtests.test(text=text, expected=expected):
+            assert text == expected
 
 
 @pytest.mark.quick

@@ -63,15 +63,16 @@ def maps():
     return error_maps([hertz.pressure, hydrodynamic.friction, rest.gap, uniform.friction, boundary.fluid_load_share], **GRID)
 
 
-@pytest.mark.parametrize("formula", [uniform.friction, boundary.fluid_load_share], ids=lambda formula: formula.name)
-def test_a_map_holds_the_signed_error_of_every_state(maps, formula):
-    data = maps[formula.name]
-    assert data["error"].dims == ("load", "relative_roughness", "speed")
-    for i, load in enumerate(GRID["load"]):
-        for j, kappa in enumerate(GRID["relative_roughness"]):
-            for k, speed in enumerate(GRID["speed"]):
-                right = relative_error(formula, sb.Groups(speed, load, kappa * load))
-                assert math.isclose(data["error"].values[i, j, k], right, rel_tol=1e-4, abs_tol=1e-6)
+def test_a_map_holds_the_signed_error_of_every_state(subtests, maps):
+    for formula in [uniform.friction, boundary.fluid_load_share]:
+        with subtests.test(formula=formula):
+            data = maps[formula.name]
+            assert data["error"].dims == ("load", "relative_roughness", "speed")
+            for i, load in enumerate(GRID["load"]):
+                for j, kappa in enumerate(GRID["relative_roughness"]):
+                    for k, speed in enumerate(GRID["speed"]):
+                        right = relative_error(formula, sb.Groups(speed, load, kappa * load))
+                        assert math.isclose(data["error"].values[i, j, k], right, rel_tol=1e-4, abs_tol=1e-6)
 
 
 def test_a_map_of_a_field_holds_its_largest_error(maps):
@@ -130,13 +131,16 @@ def test_a_map_of_coefficients_outside_the_range_has_no_state_in_it():
     assert not error_map(uniform.friction, **grid, boundary_friction=0.1, beta=0.7)["valid"].values.any()
 
 
-@pytest.mark.parametrize("name", ["mixed.friction", "friction_at_minimum"])
-def test_the_errors_over_the_coefficients_are_those_on_the_page(name, script, blocks):
-    limit = next(limit for limit in JUDGED_FORMULAS[name][0].limits if limit.parameter == "beta/mu0")
-    shown = rows(blocks["ratios"])[name]
-    assert [cell.startswith("**") for cell in shown] == [limit.low <= ratio <= limit.high for ratio in COEFFICIENT_RATIOS]
-    found = largest_errors(name, points=script.RATIO_POINTS)[0]
-    assert [float(cell.strip("*").removesuffix(" %")) / 100 for cell in shown] == pytest.approx(found, rel=0.02)
+def test_the_errors_over_the_coefficients_are_those_on_the_page(subtests, script, blocks):
+    for name in ["mixed.friction", "friction_at_minimum"]:
+        with subtests.test(name=name):
+            limit = next(limit for limit in JUDGED_FORMULAS[name][0].limits if limit.parameter == "beta/mu0")
+            shown = rows(blocks["ratios"])[name]
+            assert [cell.startswith("**") for cell in shown] == [
+                limit.low <= ratio <= limit.high for ratio in COEFFICIENT_RATIOS
+            ]
+            found = largest_errors(name, points=script.RATIO_POINTS)[0]
+            assert [float(cell.strip("*").removesuffix(" %")) / 100 for cell in shown] == pytest.approx(found, rel=0.02)
 
 
 def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
@@ -161,13 +165,17 @@ def test_where_a_formula_has_no_value_the_map_has_none():
     assert np.isnan(data["error"].values).ravel().tolist() == [False, True]
 
 
-@pytest.mark.parametrize(
-    ("axis", "value"),
-    [("load", 0.0), ("load", [0.2, 0.1]), ("relative_roughness", math.inf), ("speed", [-1.0, 1.0]), ("speed", [[1.0]])],
-)
-def test_a_grid_that_is_none_is_refused(axis, value):
-    with pytest.raises(sb.InputError, match=f"^{axis} = .*positive increasing numbers"):
-        error_map(uniform.friction, **(GRID | {axis: value}))
+def test_a_grid_that_is_none_is_refused(subtests):
+    for axis, value in [
+        ("load", 0.0),
+        ("load", [0.2, 0.1]),
+        ("relative_roughness", math.inf),
+        ("speed", [-1.0, 1.0]),
+        ("speed", [[1.0]]),
+    ]:
+        with subtests.test(axis=axis, value=value):
+            with pytest.raises(sb.InputError, match=f"^{axis} = .*positive increasing numbers"):
+                error_map(uniform.friction, **(GRID | {axis: value}))
 
 
 def test_an_unknown_quantity_is_refused_with_the_known_ones():

@@ -2,12 +2,11 @@
 
 from collections import Counter
 
-import pytest
 
-
-@pytest.mark.parametrize(("walk", "files"), [("in_python", 9), ("on_the_command_line", 14)])
-def test_a_call_reaches_the_first_residual_through_few_files(load_benchmark, walk, files):
-    found = getattr(load_benchmark("walk"), walk)()
-    assert found[-1] == "equations/line.py"
-    assert len(set(found)) <= files
-    assert max(Counter(found).values()) <= 3  # left and entered again twice
+def test_a_call_reaches_the_first_residual_through_few_files(subtests, load_benchmark):
+    for walk, files in [("in_python", 9), ("on_the_command_line", 14)]:
+        with subtests.test(walk=walk, files=files):
+            found = getattr(load_benchmark("walk"), walk)()
+            assert found[-1] == "equations/line.py"
+            assert len(set(found)) <= files
+            assert max(Counter(found).values()) <= 3  # left and entered again twice
