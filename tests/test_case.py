@@ -105,12 +105,13 @@ def test_every_key_of_a_case_is_read(write):
     assert (case.rtol, case.definition) == (1e-9, "balanced")
 
 
-@pytest.mark.parametrize(("over", "unit"), [("speed", "m/s"), ("load", "N/m"), ("roughness", "m")])
-def test_the_range_is_in_the_unit_of_what_varies(write, problems, over, unit):
-    curve = {"over": f'"{over}"', "range": f'["1 {unit}", "2 {unit}"]'}
-    assert load_case(write(toml(curve=curve))).curve.range == (1.0, 2.0)
-    [problem] = problems(toml(curve=curve | {"range": '["1 kg", "2 kg"]'}))
-    assert problem.startswith(f"[curve] in range, {over} = '1 kg' is a mass")
+def test_the_range_is_in_the_unit_of_what_varies(subtests, write, problems):
+    for over, unit in [("speed", "m/s"), ("load", "N/m"), ("roughness", "m")]:
+        with subtests.test(over=over, unit=unit):
+            curve = {"over": f'"{over}"', "range": f'["1 {unit}", "2 {unit}"]'}
+            assert load_case(write(toml(curve=curve))).curve.range == (1.0, 2.0)
+            [problem] = problems(toml(curve=curve | {"range": '["1 kg", "2 kg"]'}))
+            assert problem.startswith(f"[curve] in range, {over} = '1 kg' is a mass")
 
 
 def test_a_byte_order_mark_is_read_over(write):
@@ -127,9 +128,8 @@ def test_a_case_knows_every_quantity(write):
 # --- one problem, one sentence ---
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
+def test_a_problem_is_told_in_one_sentence_with_table_key_and_value(subtests, problems):
+    for changes, sentence in [
         (
             {"contact": {"load": "2024-01-01"}},
             "[contact] load = datetime.date(2024, 1, 1) is not a single real",
@@ -216,12 +216,11 @@ def test_a_case_knows_every_quantity(write):
             {"top": 'speed = "1 m/s"'},
             "speed = '1 m/s' is not a known key; it belongs in the table [contact].",
         ),
-    ],
-)
-def test_a_problem_is_told_in_one_sentence_with_table_key_and_value(problems, changes, sentence):
-    found = problems(toml(**changes))
-    assert len(found) == 1
-    assert found[0].startswith(sentence)
+    ]:
+        with subtests.test(changes=changes, sentence=sentence):
+            found = problems(toml(**changes))
+            assert len(found) == 1
+            assert found[0].startswith(sentence)
 
 
 def test_all_problems_are_told_at_once(problems):
@@ -246,9 +245,8 @@ def test_all_problems_are_told_at_once(problems):
         assert any(key in sentence for sentence in found)
 
 
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
+def test_a_file_that_is_no_case_is_refused_in_one_sentence(subtests, problems):
+    for content, sentence in [
         (b"", "is empty; a case file needs at least the table [contact]."),
         (b"# only a comment\n", "is empty; a case file needs"),
         (b"\x89PNG\r\n\x1a\n\x00", "is not text (byte 0 is not UTF-8)"),
@@ -266,27 +264,24 @@ def test_all_problems_are_told_at_once(problems):
         (b"[curve]\npoints = 5", "the table [contact] is missing."),
         (b"contact = 3", "contact = 3 must be a table, [contact]."),
         (b"[[contact]]", "contact = [{}] must be a table, [contact]."),
-    ],
-)
-def test_a_file_that_is_no_case_is_refused_in_one_sentence(problems, content, sentence):
-    found = problems(content)
-    assert len(found) == 1
-    assert found[0].startswith(sentence)
+    ]:
+        with subtests.test(content=content, sentence=sentence):
+            found = problems(content)
+            assert len(found) == 1
+            assert found[0].startswith(sentence)
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
+def test_a_path_that_is_no_file_is_refused(subtests, tmp_path):
+    for name, words in [
         ("missing.toml", "cannot be read (No such file"),
         (".", "is a directory"),
         ("a\0b", "cannot be looked up (embedded"),
-    ],
-)
-def test_a_path_that_is_no_file_is_refused(tmp_path, name, words):
-    with pytest.raises(InputError) as caught:
-        load_case(tmp_path / name)
-    assert words in str(caught.value)
-    assert re.search("; give (the path of a TOML case file|another path)[.]$", str(caught.value))
+    ]:
+        with subtests.test(name=name, words=words):
+            with pytest.raises(InputError) as caught:
+                load_case(tmp_path / name)
+            assert words in str(caught.value)
+            assert re.search("; give (the path of a TOML case file|another path)[.]$", str(caught.value))
 
 
 @settings(derandomize=True, deadline=None, max_examples=150)

@@ -300,25 +300,22 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
 # --- inputs, adhesion, pores, the law apart ---
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
+def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path):
+    for changes, said in [
         ({"slide_to_roll": 50.0}, "slide-to-roll ratio 50 (50 % is 0.5)"),
         ({"boundary_friction": 70.0}, "dry friction coefficient 70 (70 % is 0.7)"),
         ({"viscosity": "50 Pa*s"}, "viscosity 50 Pa*s"),
         ({"modulus": "2.7 GPa"}, "effective modulus 2.7 GPa"),
         ({"roughness": "1 mm"}, "roughness 1 mm"),
-    ],
-    ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
-)
-def test_a_slip_of_a_unit_is_said_by_every_command(capsys, tmp_path, changes, said):
-    motion = {"motion": {"slide_to_roll": changes.pop("slide_to_roll")}} if "slide_to_roll" in changes else {}
-    texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
-    path = tmp_path / "case.toml"
-    path.write_text(case_text(texts, **motion))
-    for command in (["solve"], ["curve", *FEW], ["check"]):
-        answer = call(capsys, *command[:1], path, *command[1:])
-        assert said in " ".join((answer.out + answer.err).split()), command
+    ]:
+        with subtests.test(changes=changes, said=said):
+            motion = {"motion": {"slide_to_roll": changes.pop("slide_to_roll")}} if "slide_to_roll" in changes else {}
+            texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
+            path = tmp_path / "case.toml"
+            path.write_text(case_text(texts, **motion))
+            for command in (["solve"], ["curve", *FEW], ["check"]):
+                answer = call(capsys, *command[:1], path, *command[1:])
+                assert said in " ".join((answer.out + answer.err).split()), command
 
 
 def test_unusual_numbers_beside_groups_are_said_too(capsys):

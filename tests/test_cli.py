@@ -422,19 +422,17 @@ def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
     assert found["moves_friction_most"] == "boundary_friction"
 
 
-@pytest.mark.parametrize(
-    ("speed", "roughness", "regime"),
-    [
+def test_regimes_of_resting_and_smooth_contacts_are_told_too(subtests, capsys, tmp_path):
+    for speed, roughness, regime in [
         ("0 m/s", "1 um", "boundary"),
         ("1 m/s", "1 um", "hydrodynamic"),
         ("1 mm/s", "0 m", "hydrodynamic"),
         ("0 m/s", "0 m", "boundary"),
-    ],
-)
-def test_regimes_of_resting_and_smooth_contacts_are_told_too(capsys, tmp_path, speed, roughness, regime):
-    case = tmp_path / "case.toml"
-    case.write_text(case_text({"speed": f'"{speed}"', "roughness": f'"{roughness}"'}))
-    assert f"{regime.capitalize()} lubrication at {speed}: friction" in call(capsys, "regimes", case).out
+    ]:
+        with subtests.test(speed=speed, roughness=roughness, regime=regime):
+            case = tmp_path / "case.toml"
+            case.write_text(case_text({"speed": f'"{speed}"', "roughness": f'"{roughness}"'}))
+            assert f"{regime.capitalize()} lubrication at {speed}: friction" in call(capsys, "regimes", case).out
 
 
 # --- exit codes and errors ---
@@ -603,21 +601,22 @@ assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & s
     assert answer.code == 0, answer.err
 
 
-@pytest.mark.parametrize("arguments", [["solve", *GROUPS], ["solve", str(PDMS)]], ids=["groups", "case file"])
-def test_solve_loads_no_more_than_it_needs(arguments):
-    unneeded = {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "nicegui", "pydantic"}
-    code = f"""
+def test_solve_loads_no_more_than_it_needs(subtests):
+    for tokens in [["solve", *GROUPS], ["solve", str(PDMS)]]:
+        with subtests.test(tokens=tokens):
+            unneeded = {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "nicegui", "pydantic"}
+            code = f"""
 import re
 import sys
 from stribeck.cli import main
-main({arguments!r})
+main({tokens!r})
 assert not {unneeded!r} & set(sys.modules)
 for name in ("special", "interpolate", "optimize", "sparse", "fft", "integrate", "stats"):
     assert f"scipy.{{name}}" not in sys.modules, name
 assert not [name for name in sys.modules if re.match("stribeck.(regimes.margins|uncertainty|sweeps|fits.fit|explorer)", name)]
 """
-    answer = run_python(code)
-    assert answer.code == 0, answer.err
+            answer = run_python(code)
+            assert answer.code == 0, answer.err
 
 
 @pytest.mark.quick

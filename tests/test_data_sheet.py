@@ -85,9 +85,8 @@ def test_python_takes_a_data_sheet_too():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
+def test_what_cannot_be_converted_is_named_alone(subtests, tmp_path):
+    for changes, sentence in [
         ({"width": None}, "width is missing beside force = '15.4 N'; add a length, for example width = "),
         ({"load": '"770 N/m"'}, "load = '770 N/m' and force = '15.4 N' and width = '20 mm' are both given"),
         ({"rotational_speed": '"5 Hz"'}, "may mean turns or radians per second; write it in rpm or rad/s"),
@@ -96,14 +95,13 @@ def test_python_takes_a_data_sheet_too():
         ({"ra": '{ value = "0.4 um" }'}, "must be a table of value and error"),
         ({"rpm": '"3 rpm"'}, "rpm = '3 rpm' is not a known key; give rotational_speed"),
         ({"shore": "70"}, "shore = 70 is not a known key; write shore_a = 70"),
-    ],
-)
-def test_what_cannot_be_converted_is_named_alone(tmp_path, changes, sentence):
-    path = tmp_path / "case.toml"
-    path.write_text(case_text(SHEET | changes))
-    with pytest.raises(sb.InputError) as problem:
-        sb.load_case(path)
-    assert sentence in str(problem.value) and len(str(problem.value).splitlines()) == 1
+    ]:
+        with subtests.test(changes=changes, sentence=sentence):
+            path = tmp_path / "case.toml"
+            path.write_text(case_text(SHEET | changes))
+            with pytest.raises(sb.InputError) as problem:
+                sb.load_case(path)
+            assert sentence in str(problem.value) and len(str(problem.value).splitlines()) == 1
 
 
 @pytest.mark.quick

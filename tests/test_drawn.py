@@ -58,15 +58,16 @@ KINDS = (
 )
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_result_draws_itself_also_into_given_axes(results, kind, tmp_path):
-    found = results[kind]
-    assert found.plot(tmp_path / "one.svg").axes
-    axes = Figure().subplots()
-    assert found.plot(ax=axes) is axes.figure
-    assert axes.has_data() and axes.get_xlabel()
-    with pytest.raises(sb.InputError, match="is no axes of matplotlib"):
-        found.plot(ax="here")
+def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path):
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            found = results[kind]
+            assert found.plot(tmp_path / "one.svg").axes
+            axes = Figure().subplots()
+            assert found.plot(ax=axes) is axes.figure
+            assert axes.has_data() and axes.get_xlabel()
+            with pytest.raises(sb.InputError, match="is no axes of matplotlib"):
+                found.plot(ax="here")
 
 
 @pytest.fixture(scope="module")
@@ -104,17 +105,18 @@ OTHERS = (
 )
 
 
-@pytest.mark.parametrize("kind", (*KINDS, *OTHERS))
-def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(parts, kind, tmp_path):
-    pytest.importorskip("xarray")
-    found = parts[kind].to_dataset()
-    assert found.data_vars and found.attrs["title"]
-    for name, values in found.variables.items():
-        assert values.attrs["units"] and len(values.attrs["long_name"]) > 2, name
-        if name.endswith("_error") and name.removesuffix("_error") in found:
-            assert values.dims == found[name.removesuffix("_error")].dims
-            assert "error" in values.attrs["long_name"]
-    found.to_netcdf(tmp_path / "one.nc")
+def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(subtests, parts, tmp_path):
+    for kind in (*KINDS, *OTHERS):
+        with subtests.test(kind=kind):
+            pytest.importorskip("xarray")
+            found = parts[kind].to_dataset()
+            assert found.data_vars and found.attrs["title"]
+            for name, values in found.variables.items():
+                assert values.attrs["units"] and len(values.attrs["long_name"]) > 2, name
+                if name.endswith("_error") and name.removesuffix("_error") in found:
+                    assert values.dims == found[name.removesuffix("_error")].dims
+                    assert "error" in values.attrs["long_name"]
+            found.to_netcdf(tmp_path / "one.nc")
 
 
 def test_the_results_above_are_all_that_have_numbers(parts):
@@ -123,16 +125,17 @@ def test_the_results_above_are_all_that_have_numbers(parts):
     assert names == {"Explanation", "FitOutcome"}  # which are words
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_result_becomes_a_dataset_that_a_file_keeps(results, kind, tmp_path):
-    xarray = pytest.importorskip("xarray")
-    found = results[kind].to_dataset()
-    assert found.sizes and found.attrs["title"]
-    results[kind].to_netcdf(tmp_path / "one.nc")
-    with xarray.open_dataset(tmp_path / "one.nc") as kept:
-        assert dict(kept.sizes) == dict(found.sizes)
-        for name, values in found.data_vars.items():
-            np.testing.assert_array_equal(kept[name].values, values.values)
+def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp_path):
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            xarray = pytest.importorskip("xarray")
+            found = results[kind].to_dataset()
+            assert found.sizes and found.attrs["title"]
+            results[kind].to_netcdf(tmp_path / "one.nc")
+            with xarray.open_dataset(tmp_path / "one.nc") as kept:
+                assert dict(kept.sizes) == dict(found.sizes)
+                for name, values in found.data_vars.items():
+                    np.testing.assert_array_equal(kept[name].values, values.values)
 
 
 def test_a_field_over_other_points_than_an_even_grid_is_not_drawn_and_keeps_its_places(results):

@@ -270,28 +270,29 @@ def same_contact(one, two):
         assert one.law.parameters | {"title": ""} == two.law.parameters | {"title": ""}
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: f"{kind[0]} {kind[1] or ''}")
-def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
-    random = np.random.default_rng([72, *map(ord, str(kind))])
-    rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
-    (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")
-    (tmp_path / "law.csv").write_text("separation, pressure\n0, 1\n1, 0.4\n2, 0.1\n4.5, 1e-3\n")
-    for _ in range(1 if kind[1] in SURFACES else 12):  # the law of a spectrum takes half a second
-        case = sb.load_case(some_case(random, kind, tmp_path))
-        shown = inputs.from_case(case)
-        same_contact(shown.contact, case.contact)
-        assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
-        pin = replace(START, title="kept ~ once", definition="published"), replace(shown, title="law")
-        assert all(name in shown.tables for name in case.tables if name in MODEL_TABLES)
-        opened = reopened(url.encode(shown, pin))
-        assert opened.problems == {}
-        assert opened.inputs == shown and opened.pins == pin
-        saved = files.read_case("saved.toml", saved_case(opened.inputs))
-        same_contact(saved.contact, case.contact)
-        for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
-            assert getattr(saved, name) == getattr(case, name), name
-        assert saved.facts == case.facts and saved.errors == pytest.approx(case.errors)
-        assert inputs.from_case(saved).tables == shown.tables
+def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_path):
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            random = np.random.default_rng([72, *map(ord, str(kind))])
+            rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
+            (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")
+            (tmp_path / "law.csv").write_text("separation, pressure\n0, 1\n1, 0.4\n2, 0.1\n4.5, 1e-3\n")
+            for _ in range(1 if kind[1] in SURFACES else 12):  # the law of a spectrum takes half a second
+                case = sb.load_case(some_case(random, kind, tmp_path))
+                shown = inputs.from_case(case)
+                same_contact(shown.contact, case.contact)
+                assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
+                pin = replace(START, title="kept ~ once", definition="published"), replace(shown, title="law")
+                assert all(name in shown.tables for name in case.tables if name in MODEL_TABLES)
+                opened = reopened(url.encode(shown, pin))
+                assert opened.problems == {}
+                assert opened.inputs == shown and opened.pins == pin
+                saved = files.read_case("saved.toml", saved_case(opened.inputs))
+                same_contact(saved.contact, case.contact)
+                for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
+                    assert getattr(saved, name) == getattr(case, name), name
+                assert saved.facts == case.facts and saved.errors == pytest.approx(case.errors)
+                assert inputs.from_case(saved).tables == shown.tables
 
 
 def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
@@ -585,29 +586,30 @@ class LeftError(Exception):
     """The page was closed."""
 
 
-@pytest.mark.parametrize("work", ["a solve", "propagated errors"])
-def test_slow_work_of_a_page_ends_between_its_steps(work):
-    ball = sb.PointContact(
-        radius="5 mm", modulus="2 MPa", load="0.1 N", viscosity="0.1 Pa s", speed="20 mm/s", roughness="1 um", alpha=2.0,
-        beta=0.2, boundary_friction=0.7, fluid=sb.fluids.Carreau("1 ms", 0.5), cavitation="exit",
-    )  # fmt: skip
-    functions = {
-        "a solve": lambda: sb.solve(ball),
-        "propagated errors": lambda: sb.propagate(ball, {"load": 0.1, "exponent": 0.1}),
-    }
-    began, pool = time.monotonic(), Threads()
-    ended = []
+def test_slow_work_of_a_page_ends_between_its_steps(subtests):
+    for work in ["a solve", "propagated errors"]:
+        with subtests.test(work=work):
+            ball = sb.PointContact(
+                radius="5 mm", modulus="2 MPa", load="0.1 N", viscosity="0.1 Pa s", speed="20 mm/s", roughness="1 um",
+                alpha=2.0, beta=0.2, boundary_friction=0.7, fluid=sb.fluids.Carreau("1 ms", 0.5), cavitation="exit",
+            )  # fmt: skip
+            functions = {
+                "a solve": lambda: sb.solve(ball),
+                "propagated errors": lambda: sb.propagate(ball, {"load": 0.1, "exponent": 0.1}),
+            }
+            began, pool = time.monotonic(), Threads()
+            ended = []
 
-    def watch():
-        if time.monotonic() - began > 0.3:
-            ended.append(time.monotonic())
-            raise LeftError
+            def watch():
+                if time.monotonic() - began > 0.3:
+                    ended.append(time.monotonic())
+                    raise LeftError
 
-    with pytest.raises(LeftError):
-        asyncio.run(run(pool.slow, functions[work], watch=watch))
-    pool.close()
-    assert len(ended) == 1
-    assert time.monotonic() - began < 2.3
+            with pytest.raises(LeftError):
+                asyncio.run(run(pool.slow, functions[work], watch=watch))
+            pool.close()
+            assert len(ended) == 1
+            assert time.monotonic() - began < 2.3
 
 
 def pinned(name, contact=START.contact, definition="balanced", speeds=(1e-5, 1.0)):

@@ -93,14 +93,15 @@ def test_the_data_of_each_figure_are_described_and_converged(subtests):
                     assert np.isfinite(variable.values).any()
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_each_figure_comes_back_from_its_file_as_it_was(name, tmp_path):
-    from stribeck.files.datasets import write_netcdf
+def test_each_figure_comes_back_from_its_file_as_it_was(subtests, tmp_path):
+    for name in FIGURES:
+        with subtests.test(name=name):
+            from stribeck.files.datasets import write_netcdf
 
-    write_netcdf(data_of(name), tmp_path / "data.nc")
-    found = opened(tmp_path / "data.nc")
-    xr.testing.assert_identical(found, data_of(name))
-    assert found.attrs == data_of(name).attrs
+            write_netcdf(data_of(name), tmp_path / "data.nc")
+            found = opened(tmp_path / "data.nc")
+            xr.testing.assert_identical(found, data_of(name))
+            assert found.attrs == data_of(name).attrs
 
 
 def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance(subtests):

@@ -41,9 +41,8 @@ def test_a_file_that_leaves_the_hersey_number_of_a_ball_open_is_asked_about(caps
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    "header, factor, units, expected",
-    [
+def test_the_unit_says_which_hersey_number_of_a_ball_a_column_holds(subtests, written):
+    for header, factor, units, expected in [
         ("Hersey number [1/m]", 1.0, {}, "hersey_per_length"),
         ("Hersey number (m^-1)", 1.0, {}, "hersey_per_length"),
         ("Hersey number [1/mm]", 1e-3, {}, "hersey_per_length"),
@@ -52,12 +51,11 @@ def test_a_file_that_leaves_the_hersey_number_of_a_ball_open_is_asked_about(caps
         ("Hersey number [-]", 1.0, {}, "hersey_number"),
         ("eta U R/F_N [-]", 1.0, {}, "hersey_number"),
         ("Hersey", 1.0, {"hersey_number": "1"}, "hersey_number"),
-    ],
-)
-def test_the_unit_says_which_hersey_number_of_a_ball_a_column_holds(written, header, factor, units, expected):
-    found = read(written(header, factor), **units)
-    assert found.abscissa == expected
-    assert found.values[[0, -1]] == pytest.approx([1e-3, 3.0])
+    ]:
+        with subtests.test(header=header, factor=factor, units=units, expected=expected):
+            found = read(written(header, factor), **units)
+            assert found.abscissa == expected
+            assert found.values[[0, -1]] == pytest.approx([1e-3, 3.0])
 
 
 @pytest.mark.quick
@@ -66,11 +64,12 @@ def test_the_hersey_number_of_a_cylinder_has_no_unit(written):
         read(written("Hersey number [1/m]"), "line")
 
 
-@pytest.mark.parametrize("header, factor", [("Hersey number [1/m]", 1.0), ("Hersey number [-]", BALL.radius)])
-def test_the_roughness_of_a_ball_is_recovered_from_friction_over_either_number(written, header, factor):
-    start = BALL.replace(roughness="15 um")
-    found = sb.fit(read(written(header, factor)), start, free=["roughness"], intervals=False)
-    assert found.converged and found["roughness"].value == pytest.approx(20e-6, rel=1e-3)
+def test_the_roughness_of_a_ball_is_recovered_from_friction_over_either_number(subtests, written):
+    for header, factor in [("Hersey number [1/m]", 1.0), ("Hersey number [-]", BALL.radius)]:
+        with subtests.test(header=header, factor=factor):
+            start = BALL.replace(roughness="15 um")
+            found = sb.fit(read(written(header, factor)), start, free=["roughness"], intervals=False)
+            assert found.converged and found["roughness"].value == pytest.approx(20e-6, rel=1e-3)
 
 
 @pytest.mark.quick

@@ -456,9 +456,8 @@ def test_a_law_that_a_user_calls_exponential_is_solved_as_it_is():
     assert gap == pytest.approx(sb.solve(sb.Groups(1e-4, 0.1, 0.5e-2)).minimum_gap, rel=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
+def test_a_file_that_is_no_table_is_refused_with_its_line(subtests, tmp_path):
+    for text, sentence in [
         ("", "holds no data; the first line must be 'separation, pressure'"),
         ("0, 1\n1, 0.5\n", "row 1 holds numbers, not names of columns; the first line must be"),
         ("Abstand, Druck\n0, 1\n", "the header is 'Abstand, Druck'"),
@@ -471,12 +470,11 @@ def test_a_law_that_a_user_calls_exponential_is_solved_as_it_is():
         ("gap [um], pressure [m]\n0, 1\n", "^pressure = '1 m' is a length"),
         ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),
         ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "row 2 of the contact law's table: pressure 2 must be below"),
-    ],
-)
-def test_a_file_that_is_no_table_is_refused_with_its_line(tmp_path, text, sentence):
-    (tmp_path / "law.csv").write_text(text)
-    with pytest.raises(sb.InputError, match=sentence):
-        TableLaw.read(tmp_path / "law.csv", alpha=1, beta=1, roughness=1, modulus=1)
+    ]:
+        with subtests.test(text=text, sentence=sentence):
+            (tmp_path / "law.csv").write_text(text)
+            with pytest.raises(sb.InputError, match=sentence):
+                TableLaw.read(tmp_path / "law.csv", alpha=1, beta=1, roughness=1, modulus=1)
 
 
 def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):

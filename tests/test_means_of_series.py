@@ -52,17 +52,18 @@ def test_a_series_of_steps_becomes_means_without_its_rows_of_starting(subtests):
             assert np.all((0.01 < found.error / found.friction) & (found.error / found.friction < 0.03))
 
 
-@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
-def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(read, memory):
-    rng = np.random.default_rng(7)
-    misses = []
-    for _ in range(25):  # of 8 steps each
-        found = read(series(rng, memory))
-        assert len(found) == 8
-        misses += ((found.friction - curve(1e3 * found.values)) / found.error).tolist()
-    # The rms of 200 normal numbers is within 0.85 and 1.15 by three of its standard deviations; errors that are estimated
-    # from 38 samples of memory 0.9 widen that by a third.
-    assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
+def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(subtests, read):
+    for memory in [0.0, 0.5, 0.9]:
+        with subtests.test(memory=memory):
+            rng = np.random.default_rng(7)
+            misses = []
+            for _ in range(25):  # of 8 steps each
+                found = read(series(rng, memory))
+                assert len(found) == 8
+                misses += ((found.friction - curve(1e3 * found.values)) / found.error).tolist()
+            # The rms of 200 normal numbers is within 0.85 and 1.15 by three of its standard deviations; errors that are
+            # estimated from 38 samples of memory 0.9 widen that by a third.
+            assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
 
 
 def test_steps_shorter_than_the_memory_of_their_noise_share_what_they_show_of_it(read):
@@ -89,9 +90,10 @@ def test_friction_that_drifts_in_a_step_has_no_narrow_error(read):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("in_speed", [0.0, 0.002, 0.01])
-def test_noise_of_a_speed_splits_no_step(read, in_speed):
-    assert len(read(series(np.random.default_rng(3), 0.5, in_speed=in_speed))) == 8
+def test_noise_of_a_speed_splits_no_step(subtests, read):
+    for in_speed in [0.0, 0.002, 0.01]:
+        with subtests.test(in_speed=in_speed):
+            assert len(read(series(np.random.default_rng(3), 0.5, in_speed=in_speed))) == 8
 
 
 @pytest.mark.quick
@@ -138,27 +140,28 @@ def test_errors_that_are_too_small_do_not_make_intervals_narrow(read):
     assert width(0.001) == pytest.approx(width(None), rel=0.2)
 
 
-@pytest.mark.parametrize("memory", [0.5, 0.9])
-def test_intervals_of_two_inputs_hold_the_truth_in_19_of_20_files_of_a_rig(read, memory):
-    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
-    speeds = np.geomspace(1e-3, 0.3, 5)
+def test_intervals_of_two_inputs_hold_the_truth_in_19_of_20_files_of_a_rig(subtests, read):
+    for memory in [0.5, 0.9]:
+        with subtests.test(memory=memory):
+            contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+            speeds = np.geomspace(1e-3, 0.3, 5)
 
-    def friction(**factors):
-        scaled = {name: factor * getattr(contact, name) for name, factor in factors.items()}
-        states = [contact.replace(speed=speed, **scaled) for speed in speeds]
-        return np.array([sb.atlas.friction(each.groups, each.boundary_friction, each.beta) for each in states])
+            def friction(**factors):
+                scaled = {name: factor * getattr(contact, name) for name, factor in factors.items()}
+                states = [contact.replace(speed=speed, **scaled) for speed in speeds]
+                return np.array([sb.atlas.friction(each.groups, each.boundary_friction, each.beta) for each in states])
 
-    truth = friction()
-    pairs = [(friction(**{name: 1.01}), friction(**{name: 1 / 1.01})) for name in ("boundary_friction", "roughness")]
-    slopes = np.array([np.log(up / down) / np.log(1.01**2) for up, down in pairs]).T
-    rng, inside = np.random.default_rng(13), np.zeros(2)
-    for _ in range(60):
-        frictions = [mu * (1 + 0.02 * noise(rng, 40, memory)) for mu in truth]
-        rows = [(k, speeds[k], mu) for k, step in enumerate(frictions) for mu in step]
-        data = read(rows, header="step,speed [m/s],COF")
-        # Errors of two per cent: the first step of least squares from the truth is the fit of the logarithms.
-        weights = truth / data.error
-        covariance = np.linalg.inv((slopes * weights[:, None] ** 2).T @ slopes)
-        misses = covariance @ slopes.T @ (weights**2 * np.log(data.friction / truth))
-        inside += np.abs(misses) < 1.96 * np.sqrt(np.diag(covariance))
-    assert np.all((0.88 <= inside / 60) & (inside / 60 <= 1.0)), inside
+            truth = friction()
+            pairs = [(friction(**{name: 1.01}), friction(**{name: 1 / 1.01})) for name in ("boundary_friction", "roughness")]
+            slopes = np.array([np.log(up / down) / np.log(1.01**2) for up, down in pairs]).T
+            rng, inside = np.random.default_rng(13), np.zeros(2)
+            for _ in range(60):
+                frictions = [mu * (1 + 0.02 * noise(rng, 40, memory)) for mu in truth]
+                rows = [(k, speeds[k], mu) for k, step in enumerate(frictions) for mu in step]
+                data = read(rows, header="step,speed [m/s],COF")
+                # Errors of two per cent: the first step of least squares from the truth is the fit of the logarithms.
+                weights = truth / data.error
+                covariance = np.linalg.inv((slopes * weights[:, None] ** 2).T @ slopes)
+                misses = covariance @ slopes.T @ (weights**2 * np.log(data.friction / truth))
+                inside += np.abs(misses) < 1.96 * np.sqrt(np.diag(covariance))
+            assert np.all((0.88 <= inside / 60) & (inside / 60 <= 1.0)), inside

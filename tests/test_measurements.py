@@ -60,22 +60,22 @@ SAME = {
 }
 
 
-@pytest.mark.parametrize("text", SAME.values(), ids=SAME.keys())
-def test_the_form_of_the_file_does_not_matter(read, text):
-    found = read(text)
-    assert found.abscissa == "speed"
-    assert found.values == pytest.approx(SPEEDS, rel=1e-15)
-    assert found.friction == pytest.approx(FRICTIONS, rel=1e-15)
-    assert found.error is None
+def test_the_form_of_the_file_does_not_matter(subtests, read):
+    for text in SAME.values():
+        with subtests.test(text=text):
+            found = read(text)
+            assert found.abscissa == "speed"
+            assert found.values == pytest.approx(SPEEDS, rel=1e-15)
+            assert found.friction == pytest.approx(FRICTIONS, rel=1e-15)
+            assert found.error is None
 
 
-@pytest.mark.parametrize(
-    "header", ["mean speed [m/s]", "Entrainment speed (m/s)", "entraining velocity [m/s]", "Rolling speed [m/s]"]
-)
-def test_a_mean_speed_is_not_taken_for_the_sum_of_the_surface_speeds(read, header):
-    found = read(PLAIN.replace("speed [m/s]", header))
-    assert found.values == pytest.approx(2 * np.array(SPEEDS))
-    assert "a mean of two surface speeds; the speed of a case is their sum" in found.taken
+def test_a_mean_speed_is_not_taken_for_the_sum_of_the_surface_speeds(subtests, read):
+    for header in ["mean speed [m/s]", "Entrainment speed (m/s)", "entraining velocity [m/s]", "Rolling speed [m/s]"]:
+        with subtests.test(header=header):
+            found = read(PLAIN.replace("speed [m/s]", header))
+            assert found.values == pytest.approx(2 * np.array(SPEEDS))
+            assert "a mean of two surface speeds; the speed of a case is their sum" in found.taken
 
 
 def test_what_was_left_out_or_assumed_is_said(read):
@@ -119,13 +119,14 @@ def test_a_header_may_stand_below_other_text(read):
 PREAMBLE = "Tribometer 7\nOperator; N.N.\nSample;PDMS\nLoad;30;N\nDate;2024-01-05;12:30\n\n"
 
 
-@pytest.mark.parametrize("units", ["", "\nm/s;-"])
-def test_the_only_header_below_a_preamble_is_found(read, units):
-    header, rows = PLAIN.split("\n", 1)
-    found = read(PREAMBLE + header + units + "\n" + rows)
-    assert found.values == pytest.approx(SPEEDS) and found.friction == pytest.approx(FRICTIONS)
-    assert found.notes[0] == "5 rows of other text above the header skipped."
-    assert found.rows.min() == 8 + bool(units)
+def test_the_only_header_below_a_preamble_is_found(subtests, read):
+    for units in ["", "\nm/s;-"]:
+        with subtests.test(units=units):
+            header, rows = PLAIN.split("\n", 1)
+            found = read(PREAMBLE + header + units + "\n" + rows)
+            assert found.values == pytest.approx(SPEEDS) and found.friction == pytest.approx(FRICTIONS)
+            assert found.notes[0] == "5 rows of other text above the header skipped."
+            assert found.rows.min() == 8 + bool(units)
 
 
 def test_where_two_rows_may_be_the_header_the_error_names_header_row(read):
@@ -232,12 +233,13 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("text", "where", "what"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_cannot_be_used_is_refused_with_one_sentence_that_says_where(read, text, where, what):
-    sentence = refused(read, text)
-    assert where in sentence and what in sentence
-    assert sentence.startswith(("/", str(read))) or "lab.csv" in sentence
-    assert "\n" not in sentence
+def test_what_cannot_be_used_is_refused_with_one_sentence_that_says_where(subtests, read):
+    for text, where, what in REFUSED.values():
+        with subtests.test(text=text, where=where, what=what):
+            sentence = refused(read, text)
+            assert where in sentence and what in sentence
+            assert sentence.startswith(("/", str(read))) or "lab.csv" in sentence
+            assert "\n" not in sentence
 
 
 def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
@@ -281,11 +283,12 @@ TABLES = {
 }
 
 
-@pytest.mark.parametrize(("table", "where", "what"), TABLES.values(), ids=TABLES.keys())
-def test_a_wrong_fit_table_is_refused_by_the_case_file(tmp_path, table, where, what):
-    with pytest.raises(sb.InputError) as caught:
-        check_fit_table(table)
-    assert where in str(caught.value) and what in str(caught.value)
+def test_a_wrong_fit_table_is_refused_by_the_case_file(subtests, tmp_path):
+    for table, where, what in TABLES.values():
+        with subtests.test(table=table, where=where, what=what):
+            with pytest.raises(sb.InputError) as caught:
+                check_fit_table(table)
+            assert where in str(caught.value) and what in str(caught.value)
 
 
 def test_all_problems_of_a_fit_table_are_told_at_once(tmp_path):
@@ -302,13 +305,12 @@ def test_a_curve_that_is_not_there_is_refused(read):
     assert "no curve is called 'b'" in refused(read, PLAIN, curves={"b": {"roughness": 1e-6}})
 
 
-@pytest.mark.parametrize(
-    "text", [",".join(f"c{i}" for i in range(60_000)), "a,b\n" + 60_000 * "1" + "x,2\n"], ids=["columns", "digits"]
-)
-def test_a_hostile_file_is_read_in_time_that_grows_with_its_length(text, tmp_path):
-    path = tmp_path / "hostile.csv"
-    path.write_text(text + "\n")
-    began = time.process_time()
-    with pytest.raises(sb.InputError):
-        sb.read_measurements(path)
-    assert time.process_time() - began < 3  # a tenth of a second; with the square of the length, half a minute
+def test_a_hostile_file_is_read_in_time_that_grows_with_its_length(subtests, tmp_path):
+    for text in [",".join(f"c{i}" for i in range(60_000)), "a,b\n" + 60_000 * "1" + "x,2\n"]:
+        with subtests.test(text=text):
+            path = tmp_path / "hostile.csv"
+            path.write_text(text + "\n")
+            began = time.process_time()
+            with pytest.raises(sb.InputError):
+                sb.read_measurements(path)
+            assert time.process_time() - began < 3  # a tenth of a second; with the square of the length, half a minute

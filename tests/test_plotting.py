@@ -306,10 +306,11 @@ def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests):
                 assert min(overlap) < 1.0, (text, other)
 
 
-@pytest.mark.parametrize("groups", [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)])
-def test_a_profile_of_any_state_can_be_drawn(solved, groups, tmp_path):
-    solved(*groups).plot(tmp_path / "profile.png")
-    assert (tmp_path / "profile.png").stat().st_size > 10_000
+def test_a_profile_of_any_state_can_be_drawn(subtests, solved, tmp_path):
+    for groups in [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)]:
+        with subtests.test(groups=groups):
+            solved(*groups).plot(tmp_path / "profile.png")
+            assert (tmp_path / "profile.png").stat().st_size > 10_000
 
 
 def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
@@ -321,12 +322,13 @@ def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
 # --- files ---
 
 
-@pytest.mark.parametrize("ending", SIGNATURES)
-def test_the_ending_chooses_the_format(curve, tmp_path, ending):
-    path = tmp_path / f"curve{ending}"
-    curve.plot(path)
-    assert path.read_bytes().startswith(SIGNATURES[ending])
-    assert os.listdir(tmp_path) == [path.name]
+def test_the_ending_chooses_the_format(subtests, curve, tmp_path):
+    for ending in SIGNATURES:
+        with subtests.test(ending=ending):
+            path = tmp_path / f"curve{ending}"
+            curve.plot(path)
+            assert path.read_bytes().startswith(SIGNATURES[ending])
+            assert os.listdir(tmp_path) == [path.name]
 
 
 def test_an_unknown_ending_is_one_sentence(curve, tmp_path):
@@ -370,10 +372,11 @@ def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
     assert answer.code == 0, answer.err
 
 
-@pytest.mark.parametrize("title", ["costs $5", r"$\frac{1$", "a # b % c & d"])
-def test_a_title_is_taken_by_the_letter(curve, tmp_path, title):
-    figure = curve.plot(tmp_path / "curve.png", title=title)
-    assert title in words(figure)
+def test_a_title_is_taken_by_the_letter(subtests, curve, tmp_path):
+    for title in ["costs $5", r"$\frac{1$", "a # b % c & d"]:
+        with subtests.test(title=title):
+            figure = curve.plot(tmp_path / "curve.png", title=title)
+            assert title in words(figure)
 
 
 def test_a_long_title_is_cut_to_the_width_of_the_picture(curve, solution):

@@ -99,13 +99,14 @@ def test_at_rest_asperities_carry_all_and_the_film_is_the_solved_one():
 # --- against the solver ---
 
 
-@pytest.mark.parametrize("row", [BALL, EXIT], ids=lambda row: row.name)
-def test_it_is_within_its_stated_error_of_states_it_was_not_made_from(row):
-    speed, load, kappa = random_states(row, 3, 20, mixed=True)
-    observed = np.array([solved(row.name, state) for state in zip(speed, load, kappa, strict=True)])
-    found = compare(speed, load, kappa, observed, row)
-    assert found.errors.shape == (3, len(quantities(row)))
-    assert found.friction.max() < row.error
+def test_it_is_within_its_stated_error_of_states_it_was_not_made_from(subtests):
+    for row in [BALL, EXIT]:
+        with subtests.test(row=row):
+            speed, load, kappa = random_states(row, 3, 20, mixed=True)
+            observed = np.array([solved(row.name, state) for state in zip(speed, load, kappa, strict=True)])
+            found = compare(speed, load, kappa, observed, row)
+            assert found.errors.shape == (3, len(quantities(row)))
+            assert found.friction.max() < row.error
 
 
 def test_nearly_smooth_balls_are_as_good():
@@ -123,15 +124,16 @@ def test_regions_of_balls_meet_within_the_stated_error():
     assert np.abs(below / above - 1).max() < 0.2 * BALL.error
 
 
-@pytest.mark.parametrize("changes", [{}, {"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}])
-def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(changes):
-    contact = ball(**changes)
-    state, rule = sb.solve(contact, rtol=1e-5), RULES["point"]
-    for definition in ("balanced", "published"):
-        right = state.friction(definition=definition)
-        settings = {"boundary_friction": 0.7, "beta": contact.beta, "definition": definition}
-        found = sb.atlas.friction(contact.groups, **settings, **rule.motion(contact))
-        assert found == pytest.approx(right.total, rel=BALL.error)
+def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(subtests):
+    for changes in [{}, {"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}]:
+        with subtests.test(changes=changes):
+            contact = ball(**changes)
+            state, rule = sb.solve(contact, rtol=1e-5), RULES["point"]
+            for definition in ("balanced", "published"):
+                right = state.friction(definition=definition)
+                settings = {"boundary_friction": 0.7, "beta": contact.beta, "definition": definition}
+                found = sb.atlas.friction(contact.groups, **settings, **rule.motion(contact))
+                assert found == pytest.approx(right.total, rel=BALL.error)
 
 
 def test_a_curve_read_off_it_is_the_solved_one():
@@ -146,14 +148,15 @@ def test_a_curve_read_off_it_is_the_solved_one():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("over", ["speed", "load", "roughness"])
-def test_the_slope_of_a_curve_is_that_of_its_friction(over):
-    contact = ball(wetted_radius=3e-3)
-    here = getattr(contact, over)
-    curve = sb.stribeck_curve(contact, **{over: (0.3 * here, 3 * here)}, points=9, method="atlas")
-    step, inside = 1e-5, curve.values[1:-1]
-    ahead, behind = (curve.at(inside * math.exp(sign * step)).friction for sign in (1, -1))
-    assert np.allclose(path_of(curve).slopes(np.log(inside)), (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-8)
+def test_the_slope_of_a_curve_is_that_of_its_friction(subtests):
+    for over in ["speed", "load", "roughness"]:
+        with subtests.test(over=over):
+            contact = ball(wetted_radius=3e-3)
+            here = getattr(contact, over)
+            curve = sb.stribeck_curve(contact, **{over: (0.3 * here, 3 * here)}, points=9, method="atlas")
+            step, inside = 1e-5, curve.values[1:-1]
+            ahead, behind = (curve.at(inside * math.exp(sign * step)).friction for sign in (1, -1))
+            assert np.allclose(path_of(curve).slopes(np.log(inside)), (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-8)
 
 
 def test_sensitivities_read_off_it_are_the_solved_ones():
@@ -273,17 +276,18 @@ def test_parts_for_fits_have_the_derivatives_of_their_values():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("cavitation", ["none", "exit"])
-def test_fits_begin_on_it_where_it_holds(cavitation):
-    contact = ball(wetted_radius=3e-3, cavitation=cavitation)
-    curve = sb.stribeck_curve(contact, speed=(contact.speed / 30, contact.speed * 30), points=9, method="atlas")
-    data = sb.results.Measurements(
-        "speed", curve.values, curve.friction, None, np.zeros(9, dtype=int), ("a",), ({},), np.arange(2, 11)
-    )
-    names = ("boundary_friction", "roughness", "wetted_radius")
-    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
-    ways = ways_of(model, "balanced", 1e-5, lambda: None)
-    assert np.allclose(model.predict(np.zeros(3), ways.quick).friction, curve.friction, rtol=1e-12)
+def test_fits_begin_on_it_where_it_holds(subtests):
+    for cavitation in ["none", "exit"]:
+        with subtests.test(cavitation=cavitation):
+            contact = ball(wetted_radius=3e-3, cavitation=cavitation)
+            curve = sb.stribeck_curve(contact, speed=(contact.speed / 30, contact.speed * 30), points=9, method="atlas")
+            data = sb.results.Measurements(
+                "speed", curve.values, curve.friction, None, np.zeros(9, dtype=int), ("a",), ({},), np.arange(2, 11)
+            )
+            names = ("boundary_friction", "roughness", "wetted_radius")
+            model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
+            ways = ways_of(model, "balanced", 1e-5, lambda: None)
+            assert np.allclose(model.predict(np.zeros(3), ways.quick).friction, curve.friction, rtol=1e-12)
 
 
 @pytest.mark.quick

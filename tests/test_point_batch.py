@@ -33,15 +33,16 @@ def test_a_batch_of_balls_has_the_states_of_its_contacts(found):
     )
 
 
-@pytest.mark.parametrize("arguments", [{}, {"definition": "published"}, {"boundary_friction": 0.1, "beta": 0.05}])
-def test_the_friction_of_a_batch_of_balls_is_that_of_the_states(found, arguments):
-    many = found.friction(**arguments)
-    one = sb.solve(found.contacts[0, 0], rtol=RTOL).friction(**arguments)
-    for part in ("asperities", "fluid", "error"):
-        assert getattr(many, part)[0, 0] == pytest.approx(getattr(one, part), rel=2 * RTOL), part
-    # A smaller disc of liquid drags less; asperities do not know it.
-    assert (many.fluid[0] < many.fluid[1]).all()
-    np.testing.assert_allclose(many.asperities[0], many.asperities[1], rtol=RTOL)
+def test_the_friction_of_a_batch_of_balls_is_that_of_the_states(subtests, found):
+    for arguments in [{}, {"definition": "published"}, {"boundary_friction": 0.1, "beta": 0.05}]:
+        with subtests.test(arguments=arguments):
+            many = found.friction(**arguments)
+            one = sb.solve(found.contacts[0, 0], rtol=RTOL).friction(**arguments)
+            for part in ("asperities", "fluid", "error"):
+                assert getattr(many, part)[0, 0] == pytest.approx(getattr(one, part), rel=2 * RTOL), part
+            # A smaller disc of liquid drags less; asperities do not know it.
+            assert (many.fluid[0] < many.fluid[1]).all()
+            np.testing.assert_allclose(many.asperities[0], many.asperities[1], rtol=RTOL)
 
 
 def test_a_batch_of_balls_becomes_a_dataset_and_a_pickle(found):

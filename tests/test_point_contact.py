@@ -70,14 +70,16 @@ def test_units_do_not_change_the_groups_of_a_ball():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", [name for name in POINT.exponents if name != "wetted_radius"])
-def test_each_input_enters_the_groups_with_its_exponents(name):
-    c, factor = ball(), 1.2
-    moved = c.replace(**{name: getattr(c, name) * factor}).groups
-    found = [
-        math.log(getattr(moved, each) / getattr(c.groups, each)) / math.log(factor) for each in ("speed", "load", "roughness")
-    ]
-    np.testing.assert_allclose(found, POINT.exponents[name], atol=1e-12)
+def test_each_input_enters_the_groups_with_its_exponents(subtests):
+    for name in [name for name in POINT.exponents if name != "wetted_radius"]:
+        with subtests.test(name=name):
+            c, factor = ball(), 1.2
+            moved = c.replace(**{name: getattr(c, name) * factor}).groups
+            found = [
+                math.log(getattr(moved, each) / getattr(c.groups, each)) / math.log(factor)
+                for each in ("speed", "load", "roughness")
+            ]
+            np.testing.assert_allclose(found, POINT.exponents[name], atol=1e-12)
 
 
 @pytest.mark.quick
@@ -98,15 +100,16 @@ def test_a_ball_comes_back_from_its_groups():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("contact", [sb.PointContact, sb.LineContact])
-def test_two_bodies_are_soft_in_series_and_curved_in_parallel(contact):
-    moduli = {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5, "youngs_modulus_2": "6 MPa", "poisson_ratio_2": 0.4}
-    both = ball(contact, load=1.3, modulus=None, radius_2="20 mm", **moduli)
-    assert 1 / both.modulus == pytest.approx(0.75 / 2e6 + 0.84 / 6e6, rel=1e-13)
-    assert 1 / both.radius == pytest.approx(1 / 9.5e-3 + 1 / 20e-3, rel=1e-13)
-    assert ball(contact, load=1.3, modulus=None, youngs_modulus="2 MPa", poisson_ratio=0.5).modulus == pytest.approx(
-        2e6 / 0.75, rel=1e-13
-    )
+def test_two_bodies_are_soft_in_series_and_curved_in_parallel(subtests):
+    for contact in [sb.PointContact, sb.LineContact]:
+        with subtests.test(contact=contact):
+            moduli = {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5, "youngs_modulus_2": "6 MPa", "poisson_ratio_2": 0.4}
+            both = ball(contact, load=1.3, modulus=None, radius_2="20 mm", **moduli)
+            assert 1 / both.modulus == pytest.approx(0.75 / 2e6 + 0.84 / 6e6, rel=1e-13)
+            assert 1 / both.radius == pytest.approx(1 / 9.5e-3 + 1 / 20e-3, rel=1e-13)
+            assert ball(contact, load=1.3, modulus=None, youngs_modulus="2 MPa", poisson_ratio=0.5).modulus == pytest.approx(
+                2e6 / 0.75, rel=1e-13
+            )
 
 
 @pytest.mark.quick
@@ -136,10 +139,11 @@ REFUSED = {
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(("changes", "sentence"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_a_ball_is_refused_with_a_sentence(changes, sentence):
-    with pytest.raises(sb.InputError, match=sentence):
-        ball(**changes)
+def test_what_cannot_be_a_ball_is_refused_with_a_sentence(subtests):
+    for changes, sentence in REFUSED.values():
+        with subtests.test(changes=changes, sentence=sentence):
+            with pytest.raises(sb.InputError, match=sentence):
+                ball(**changes)
 
 
 @pytest.mark.quick
@@ -195,9 +199,8 @@ def test_a_case_file_holds_a_ball(tmp_path):
     assert sb.load_case(path).contact == ball()
 
 
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
+def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_path):
+    for text, sentence in [
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
         (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
         (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball' must be 'line' or 'point'"),
@@ -206,13 +209,12 @@ def test_a_case_file_holds_a_ball(tmp_path):
             r"load is missing; add a force, for example load = \"1.3 N\"",
         ),
         (CASE.format(load="1.3 N") + 'wetted_radius = "1 mm"', "lies inside the contact"),
-    ],
-)
-def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(tmp_path, text, sentence):
-    path = tmp_path / "ball.toml"
-    path.write_text(text)
-    with pytest.raises(sb.InputError, match=sentence):
-        sb.load_case(path)
+    ]:
+        with subtests.test(text=text, sentence=sentence):
+            path = tmp_path / "ball.toml"
+            path.write_text(text)
+            with pytest.raises(sb.InputError, match=sentence):
+                sb.load_case(path)
 
 
 def test_a_sweep_file_holds_balls(tmp_path):

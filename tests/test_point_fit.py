@@ -49,31 +49,37 @@ def made_up(definition):
     return parts
 
 
-@pytest.mark.parametrize("definition", ["balanced", "published"])
-@pytest.mark.parametrize("edge", [None, "3 mm"])
-@pytest.mark.parametrize("abscissa", ["speed", "hersey_number"])
-def test_the_derivatives_of_the_friction_of_a_ball_are_its_differences(definition, edge, abscissa):
-    contact = TRUE.replace(wetted_radius=edge)
-    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
-    data = measured(np.ones(5), SPEEDS if abscissa == "speed" else SPEEDS * TRUE.hersey_number / TRUE.speed, abscissa)
-    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
-    parts, step = made_up(definition), 1e-4
-    found = model.predict(np.zeros(len(names)), parts)
-    for i, name in enumerate(names):
-        move = step * np.eye(len(names))[i]
-        slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
-        np.testing.assert_allclose(found.jacobian[:, i], slope, atol=1e-7, err_msg=name)
+def test_the_derivatives_of_the_friction_of_a_ball_are_its_differences(subtests):
+    for abscissa in ["speed", "hersey_number"]:
+        for edge in [None, "3 mm"]:
+            for definition in ["balanced", "published"]:
+                with subtests.test(abscissa=abscissa, edge=edge, definition=definition):
+                    contact = TRUE.replace(wetted_radius=edge)
+                    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+                    data = measured(
+                        np.ones(5), SPEEDS if abscissa == "speed" else SPEEDS * TRUE.hersey_number / TRUE.speed, abscissa
+                    )
+                    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
+                    parts, step = made_up(definition), 1e-4
+                    found = model.predict(np.zeros(len(names)), parts)
+                    for i, name in enumerate(names):
+                        move = step * np.eye(len(names))[i]
+                        slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
+                        np.testing.assert_allclose(found.jacobian[:, i], slope, atol=1e-7, err_msg=name)
 
 
-@pytest.mark.parametrize("abscissa", ["speed", "hersey_number"])
-def test_free_inputs_of_a_ball_act_as_those_of_its_contact(abscissa):
-    contact = TRUE.replace(wetted_radius="3 mm")
-    data = measured(np.ones(5), SPEEDS if abscissa == "speed" else SPEEDS * TRUE.hersey_number / TRUE.speed, abscissa)
-    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
-    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
-    theta, parts = np.linspace(-0.2, 0.3, len(names)), made_up("published")
-    moved = FrictionModel(model.contact_of(0, theta), data, ())
-    np.testing.assert_allclose(model.predict(theta, parts).friction, moved.predict(np.zeros(0), parts).friction, rtol=1e-12)
+def test_free_inputs_of_a_ball_act_as_those_of_its_contact(subtests):
+    for abscissa in ["speed", "hersey_number"]:
+        with subtests.test(abscissa=abscissa):
+            contact = TRUE.replace(wetted_radius="3 mm")
+            data = measured(np.ones(5), SPEEDS if abscissa == "speed" else SPEEDS * TRUE.hersey_number / TRUE.speed, abscissa)
+            names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+            model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
+            theta, parts = np.linspace(-0.2, 0.3, len(names)), made_up("published")
+            moved = FrictionModel(model.contact_of(0, theta), data, ())
+            np.testing.assert_allclose(
+                model.predict(theta, parts).friction, moved.predict(np.zeros(0), parts).friction, rtol=1e-12
+            )
 
 
 def test_a_prediction_from_solved_curves_is_the_friction_of_the_contacts():

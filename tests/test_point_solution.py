@@ -92,14 +92,15 @@ def test_a_whole_ball_at_a_small_gap_has_the_friction_of_stokes_flow():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("ratio", [0.0, 0.5, 1.3])
-def test_a_ball_that_rolls_has_the_force_of_its_two_motions(ratio):
-    s = solved(slide_to_roll=ratio)
-    c = s.contact
-    log = math.log(c.radius / (H0 * c.hertz.indentation))
-    first, second = 0.5 * c.speed + 0.5 * c.sliding_speed, 0.5 * c.speed - 0.5 * c.sliding_speed
-    drag = first * (8 / 15 * log + 0.954293) - second * (2 / 15 * log - 0.257268)
-    assert s.friction(0.0).total == pytest.approx(6 * math.pi * c.viscosity * c.radius * drag / c.load, rel=1e-5)
+def test_a_ball_that_rolls_has_the_force_of_its_two_motions(subtests):
+    for ratio in [0.0, 0.5, 1.3]:
+        with subtests.test(ratio=ratio):
+            s = solved(slide_to_roll=ratio)
+            c = s.contact
+            log = math.log(c.radius / (H0 * c.hertz.indentation))
+            first, second = 0.5 * c.speed + 0.5 * c.sliding_speed, 0.5 * c.speed - 0.5 * c.sliding_speed
+            drag = first * (8 / 15 * log + 0.954293) - second * (2 / 15 * log - 0.257268)
+            assert s.friction(0.0).total == pytest.approx(6 * math.pi * c.viscosity * c.radius * drag / c.load, rel=1e-5)
 
 
 @pytest.mark.quick
@@ -159,9 +160,8 @@ def test_fields_are_given_anywhere_and_in_si():
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize(
-    ("call", "sentence"),
-    [
+def test_what_cannot_be_asked_of_a_solution_is_refused_with_a_sentence(subtests):
+    for call, sentence in [
         (lambda s: s.field(np.nan, 0.0), "x = nan; positions must be finite"),
         (lambda s: s.field(np.zeros(2), np.zeros(3)), "do not broadcast"),
         (lambda s: s.profile(np.zeros((2, 2))), "one dimension"),
@@ -169,11 +169,10 @@ def test_fields_are_given_anywhere_and_in_si():
         (lambda s: s.to_dataset(points=1), "points = 1; it must be a whole number from 2"),
         (lambda s: s.to_dataset(reach=-1.0), "reach = -1.0; it must be a positive number"),
         (lambda s: solution_of(s.state, None).to_si(), "solve a PointContact instead of Groups"),
-    ],
-)
-def test_what_cannot_be_asked_of_a_solution_is_refused_with_a_sentence(call, sentence):
-    with pytest.raises(sb.InputError, match=sentence):
-        call(solved())
+    ]:
+        with subtests.test(call=call, sentence=sentence):
+            with pytest.raises(sb.InputError, match=sentence):
+                call(solved())
 
 
 @pytest.mark.quick
@@ -220,15 +219,16 @@ def test_a_state_that_failed_is_raised_with_its_sentence_or_returned():
         finish_point(rigid(groups, Outcome.PATH_LOST, central_gap=math.nan), None, "return")
 
 
-@pytest.mark.parametrize("outcome", [Outcome.CONVERGED, Outcome.REFINEMENT_LIMIT])
-def test_a_picture_says_across_it_that_a_state_is_no_result(outcome):
-    pyplot = pytest.importorskip("matplotlib.pyplot")
-    state = finish_point(rigid(Groups(SPEED, 1e-3, 1e-5, geometry="point"), outcome), None, "return")
-    _, own = pyplot.subplots()
-    for figure in (state.plot(), state.plot(ax=own)):
-        written = [text.get_text() for axes in figure.axes for text in axes.texts]
-        assert ("not converged" in written) == (not outcome.ok)
-        pyplot.close(figure)
+def test_a_picture_says_across_it_that_a_state_is_no_result(subtests):
+    for outcome in [Outcome.CONVERGED, Outcome.REFINEMENT_LIMIT]:
+        with subtests.test(outcome=outcome):
+            pyplot = pytest.importorskip("matplotlib.pyplot")
+            state = finish_point(rigid(Groups(SPEED, 1e-3, 1e-5, geometry="point"), outcome), None, "return")
+            _, own = pyplot.subplots()
+            for figure in (state.plot(), state.plot(ax=own)):
+                written = [text.get_text() for axes in figure.axes for text in axes.texts]
+                assert ("not converged" in written) == (not outcome.ok)
+                pyplot.close(figure)
 
 
 @pytest.mark.quick

@@ -82,13 +82,14 @@ def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", ["pdms_ball", "tongue_model", "contact_lens", "rubber_ball"])
-def test_the_examples_are_balls_with_a_law_that_holds_at_their_load(name):
-    contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
-    assert isinstance(contact, sb.PointContact)
-    assert contact.groups.load > 1
-    assert contact.law.name == "persson"
-    assert contact.slope < 0.35
+def test_the_examples_are_balls_with_a_law_that_holds_at_their_load(subtests):
+    for name in ["pdms_ball", "tongue_model", "contact_lens", "rubber_ball"]:
+        with subtests.test(name=name):
+            contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
+            assert isinstance(contact, sb.PointContact)
+            assert contact.groups.load > 1
+            assert contact.law.name == "persson"
+            assert contact.slope < 0.35
 
 
 def test_the_command_solves_a_ball(capsys):

@@ -21,15 +21,16 @@ def read(tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("geometry", ["line", "point"])
-def test_rows_of_pure_rolling_are_a_curve(read, geometry):
-    found = read(ROLLING, geometry)
-    assert len(found) == 8 and len(found.curves) == 2
-    assert not any("left out" in note for note in found.notes)
-    if geometry == "point":
-        assert [each["slide_to_roll"] for each in found.inputs] == [0.0, 0.5]
-    for curve in (0, 1):
-        assert found.values[found.curve == curve] == pytest.approx(SPEEDS)
+def test_rows_of_pure_rolling_are_a_curve(subtests, read):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            found = read(ROLLING, geometry)
+            assert len(found) == 8 and len(found.curves) == 2
+            assert not any("left out" in note for note in found.notes)
+            if geometry == "point":
+                assert [each["slide_to_roll"] for each in found.inputs] == [0.0, 0.5]
+            for curve in (0, 1):
+                assert found.values[found.curve == curve] == pytest.approx(SPEEDS)
 
 
 @pytest.mark.quick
@@ -94,10 +95,11 @@ def test_a_unit_of_a_column_that_is_not_there_is_said_to_be_idle(read):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", ["run", "curve"])
-def test_what_has_no_unit_is_given_none(tmp_path, name):
-    case = tmp_path / "case.toml"
-    example = (Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").read_text()
-    case.write_text(f'{example}\n[fit.units]\n{name} = "s"\n')
-    with pytest.raises(sb.InputError, match=f"{name} = 's' is not a known key"):
-        sb.load_case(case)
+def test_what_has_no_unit_is_given_none(subtests, tmp_path):
+    for name in ["run", "curve"]:
+        with subtests.test(name=name):
+            case = tmp_path / "case.toml"
+            example = (Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").read_text()
+            case.write_text(f'{example}\n[fit.units]\n{name} = "s"\n')
+            with pytest.raises(sb.InputError, match=f"{name} = 's' is not a known key"):
+                sb.load_case(case)

@@ -366,9 +366,8 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
     assert found["viscosity"]["unit"] == "Pa s"
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
+def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path):
+    for changes, sentence in [
         (
             {"speed": 0.0},
             "To reach mixed lubrication: speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity.",
@@ -382,12 +381,11 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
             {"boundary_friction": 0.0},
             "To reach mixed lubrication: not reachable by changing speed, load, roughness, viscosity.",
         ),
-    ],
-)
-def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):
-    text = command(capsys, tmp_path, "-v", **changes)
-    assert sentence in text
-    assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
+    ]:
+        with subtests.test(changes=changes, sentence=sentence):
+            text = command(capsys, tmp_path, "-v", **changes)
+            assert sentence in text
+            assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
 
 
 def crossing_along(name, contact, regime, value):

@@ -56,14 +56,15 @@ PIN_ON_DISC = "\n".join(
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("comma", [False, True])
-def test_the_export_of_a_ball_on_disc_rig_is_read_as_it_is(read, comma):
-    found = read(ball_on_disc(comma=comma), columns={"friction": "Traction Coeff"})
-    assert found.values == pytest.approx(SPEEDS)
-    assert found.friction == pytest.approx(FRICTIONS, rel=0.011)
-    assert "speed = 2 x 'Rolling Speed (mm/s)', a mean of two surface speeds" in found.taken
-    assert "[fit.columns]" in found.taken
-    assert any("Pot Temp" in note for note in found.notes)
+def test_the_export_of_a_ball_on_disc_rig_is_read_as_it_is(subtests, read):
+    for comma in [False, True]:
+        with subtests.test(comma=comma):
+            found = read(ball_on_disc(comma=comma), columns={"friction": "Traction Coeff"})
+            assert found.values == pytest.approx(SPEEDS)
+            assert found.friction == pytest.approx(FRICTIONS, rel=0.011)
+            assert "speed = 2 x 'Rolling Speed (mm/s)', a mean of two surface speeds" in found.taken
+            assert "[fit.columns]" in found.taken
+            assert any("Pot Temp" in note for note in found.notes)
 
 
 @pytest.mark.quick

@@ -285,20 +285,22 @@ VARIATIONS = {
 }
 
 
-@pytest.mark.parametrize("name", VARIATIONS)
-def test_a_layout_of_another_program_is_read_as_it_is(written, name):
-    found = read(written(VARIATIONS[name]))
-    assert found.abscissa == "speed" and found.error is None
-    assert set(found.inputs[0]) <= {"load"}
-    assert_on_curve(found)
-    assert not any("decimal comma" in note for note in found.notes) or "Reibwert" in VARIATIONS[name]
+def test_a_layout_of_another_program_is_read_as_it_is(subtests, written):
+    for name in VARIATIONS:
+        with subtests.test(name=name):
+            found = read(written(VARIATIONS[name]))
+            assert found.abscissa == "speed" and found.error is None
+            assert set(found.inputs[0]) <= {"load"}
+            assert_on_curve(found)
+            assert not any("decimal comma" in note for note in found.notes) or "Reibwert" in VARIATIONS[name]
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig", "cp1252"])
-def test_text_of_any_encoding_of_windows_is_read(written, encoding):
-    text = PLAIN.replace("COF", "µ").replace("speed [mm/s]", "speed [µm/s]").replace("\n", "\r\n")
-    found = read(written(text.encode(encoding)))
-    assert 1e6 * found.values == pytest.approx(SPEEDS)
+def test_text_of_any_encoding_of_windows_is_read(subtests, written):
+    for encoding in ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig", "cp1252"]:
+        with subtests.test(encoding=encoding):
+            text = PLAIN.replace("COF", "µ").replace("speed [mm/s]", "speed [µm/s]").replace("\n", "\r\n")
+            found = read(written(text.encode(encoding)))
+            assert 1e6 * found.values == pytest.approx(SPEEDS)
 
 
 ROTATION = {
@@ -325,13 +327,14 @@ ROTATION = {
 }
 
 
-@pytest.mark.parametrize("name", ROTATION)
-def test_a_rotation_is_a_speed_by_the_radius_of_its_track(written, name):
-    text, settings = ROTATION[name]
-    found = read(written(text), **settings)
-    assert found.values == pytest.approx(SPEEDS * 2 * np.pi / 60 * 9e-3, rel=1e-8)
-    assert "x the radius of the track" in found.taken
-    assert found.inputs == ({},)  # it is not the radius of the ball
+def test_a_rotation_is_a_speed_by_the_radius_of_its_track(subtests, written):
+    for name in ROTATION:
+        with subtests.test(name=name):
+            text, settings = ROTATION[name]
+            found = read(written(text), **settings)
+            assert found.values == pytest.approx(SPEEDS * 2 * np.pi / 60 * 9e-3, rel=1e-8)
+            assert "x the radius of the track" in found.taken
+            assert found.inputs == ({},)  # it is not the radius of the ball
 
 
 def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
@@ -383,13 +386,14 @@ def test_advice_is_true_or_absent(written):
     assert "speed =" not in several and "'A [mm/s]', 'B [mm/s]', 'COF'" in several
 
 
-@pytest.mark.parametrize("magnitudes", [False, True])
-def test_a_code_of_missing_friction_leaves_its_row_out_and_is_counted(written, magnitudes):
-    found = read(written(PLAIN + "400;-9999\n500;-9999.0\n"), magnitudes=magnitudes)
-    assert found.friction.tolist() == read(written(PLAIN)).friction.tolist()
-    assert "2 rows with '-9999' in 'COF', a missing value, left out: 10, 11." in found.notes
-    speed = refusal(written(PLAIN + "-9999;0.1\n"), magnitudes=magnitudes)
-    assert "has '-9999' in row 10, which programs write where a value is missing" in speed
+def test_a_code_of_missing_friction_leaves_its_row_out_and_is_counted(subtests, written):
+    for magnitudes in [False, True]:
+        with subtests.test(magnitudes=magnitudes):
+            found = read(written(PLAIN + "400;-9999\n500;-9999.0\n"), magnitudes=magnitudes)
+            assert found.friction.tolist() == read(written(PLAIN)).friction.tolist()
+            assert "2 rows with '-9999' in 'COF', a missing value, left out: 10, 11." in found.notes
+            speed = refusal(written(PLAIN + "-9999;0.1\n"), magnitudes=magnitudes)
+            assert "has '-9999' in row 10, which programs write where a value is missing" in speed
 
 
 def test_a_name_twice_stops_the_reading_only_where_it_is_needed(written):

@@ -86,11 +86,12 @@ SIZES = {
 }
 
 
-@pytest.mark.parametrize("case", SIZES)
-def test_sizes_above_a_matrix_give_the_spacing_along_each_axis(tmp_path, case):
-    scan = read(tmp_path, SIZES[case] + matrix())
-    assert scan.spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
-    assert scan.heights == pytest.approx(MAP.T * 1e-6, abs=6e-12)
+def test_sizes_above_a_matrix_give_the_spacing_along_each_axis(subtests, tmp_path):
+    for case in SIZES:
+        with subtests.test(case=case):
+            scan = read(tmp_path, SIZES[case] + matrix())
+            assert scan.spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
+            assert scan.heights == pytest.approx(MAP.T * 1e-6, abs=6e-12)
 
 
 def test_lines_that_contradict_each_other_are_refused(tmp_path):
@@ -114,11 +115,12 @@ PROFILES = {
 }
 
 
-@pytest.mark.parametrize("case", PROFILES)
-def test_a_profile_in_any_layout_is_the_same_profile(tmp_path, case):
-    scan = read(tmp_path, PROFILES[case])
-    assert scan.spacing == pytest.approx((0.156e-6,), rel=1e-3)
-    assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11)
+def test_a_profile_in_any_layout_is_the_same_profile(subtests, tmp_path):
+    for case in PROFILES:
+        with subtests.test(case=case):
+            scan = read(tmp_path, PROFILES[case])
+            assert scan.spacing == pytest.approx((0.156e-6,), rel=1e-3)
+            assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11)
 
 
 def test_a_map_with_an_index_or_rounded_positions_is_that_map(tmp_path):
@@ -135,9 +137,8 @@ def test_a_map_with_an_index_or_rounded_positions_is_that_map(tmp_path):
     assert counted.heights.shape == (48, 48) and "numbers the points" in counted.notes[0]
 
 
-@pytest.mark.parametrize(
-    "mark",
-    [
+def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_path):
+    for mark in [
         "-9999",
         "-9999.0",
         "-32768",
@@ -150,18 +151,19 @@ def test_a_map_with_an_index_or_rounded_positions_is_that_map(tmp_path):
         "-nan(ind)",
         "***",
         "*****",
-    ],
-)
-def test_marks_of_instruments_for_no_height_are_missing_and_named(tmp_path, mark):
-    cells = [f"{v:.4f}" for v in LINE]
-    cells[50] = cells[51] = cells[200] = mark
-    line = read(tmp_path, "x (um),z (um)\n" + rows(X, cells, form=("{:.3f}", "{}")))
-    table = [[f"{v:.4f}" for v in row] for row in MAP]
-    table[0][0] = table[3][4] = table[3][5] = mark
-    whole = read(tmp_path, "# Width: 48 um\n# Height: 24 um\n# Value units: um\n" + "\n".join("\t".join(row) for row in table))
-    for scan in (line, whole):
-        assert scan.missing == 3
-        assert scan.notes[0].startswith("3 points ") and "as missing" in scan.notes[0]
+    ]:
+        with subtests.test(mark=mark):
+            cells = [f"{v:.4f}" for v in LINE]
+            cells[50] = cells[51] = cells[200] = mark
+            line = read(tmp_path, "x (um),z (um)\n" + rows(X, cells, form=("{:.3f}", "{}")))
+            table = [[f"{v:.4f}" for v in row] for row in MAP]
+            table[0][0] = table[3][4] = table[3][5] = mark
+            whole = read(
+                tmp_path, "# Width: 48 um\n# Height: 24 um\n# Value units: um\n" + "\n".join("\t".join(row) for row in table)
+            )
+            for scan in (line, whole):
+                assert scan.missing == 3
+                assert scan.notes[0].startswith("3 points ") and "as missing" in scan.notes[0]
 
 
 def test_heights_that_reach_to_a_code_are_heights(tmp_path):

@@ -22,23 +22,24 @@ from stribeck.quantities.units import to_si
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("geometry", ["line", "point"])
-def test_a_new_case_has_every_key_and_is_read_as_it_stands(tmp_path, capsys, geometry):
-    path = tmp_path / "new.toml"
-    answer = call(capsys, "new", path, "--geometry", geometry)
-    assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())
-    case = sb.load_case(path)
-    contact, table = case.contact, INPUT_TABLES[geometry]
-    assert case.rtol == {"line": 1e-6, "point": 1e-4}[geometry]
-    assert contact.INPUTS is table
-    text = path.read_text()
-    for name in {*table.quantities, *FACTS}:
-        assert re.search(rf"\b{name} = ", text), name
-    for row in table.kept.values():
-        assert re.search(rf"# {row.label[0].upper()}{re.escape(row.label[1:])} \[", text), row.name
-    assert text.count("slide_to_roll = ") == 1
-    assert call(capsys, "new", path).code == 2  # kept
-    assert call(capsys, "new", "--geometry", geometry).out == text
+def test_a_new_case_has_every_key_and_is_read_as_it_stands(subtests, tmp_path, capsys):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            path = tmp_path / "new.toml"
+            answer = call(capsys, "new", path, "--geometry", geometry)
+            assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())
+            case = sb.load_case(path)
+            contact, table = case.contact, INPUT_TABLES[geometry]
+            assert case.rtol == {"line": 1e-6, "point": 1e-4}[geometry]
+            assert contact.INPUTS is table
+            text = path.read_text()
+            for name in {*table.quantities, *FACTS}:
+                assert re.search(rf"\b{name} = ", text), name
+            for row in table.kept.values():
+                assert re.search(rf"# {row.label[0].upper()}{re.escape(row.label[1:])} \[", text), row.name
+            assert text.count("slide_to_roll = ") == 1
+            assert call(capsys, "new", path).code == 2  # kept
+            assert call(capsys, "new", "--geometry", geometry).out == text
 
 
 @pytest.mark.quick

@@ -262,9 +262,13 @@ def test_an_existing_file_is_kept_unless_forced(dataset, tmp_path, ending):
     assert os.listdir(tmp_path) == [path.name]
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
+def test_a_place_that_cannot_be_written_is_refused_beforehand(subtests, tmp_path):
+    (tmp_path / "folder.nc").mkdir()
+    (tmp_path / "file.nc").touch()
+    os.mkfifo(tmp_path / "pipe.nc")
+    (tmp_path / "loop.nc").symlink_to(tmp_path / "loop.nc")
+    before = sorted(os.listdir(tmp_path))
+    for name, words in [
         ("folder.nc", "is a directory"),
         ("missing/curve.nc", "does not exist"),
         ("curve.txt", r"has the ending '\.txt'; the name of this file must end in \.nc or \.csv"),
@@ -273,17 +277,11 @@ def test_an_existing_file_is_kept_unless_forced(dataset, tmp_path, ending):
         ("pipe.nc", "is not an ordinary file"),
         ("file.nc/curve.nc", "does not exist"),
         ("loop.nc", "cannot be looked up|is not an ordinary file"),
-    ],
-)
-def test_a_place_that_cannot_be_written_is_refused_beforehand(tmp_path, name, words):
-    (tmp_path / "folder.nc").mkdir()
-    (tmp_path / "file.nc").touch()
-    os.mkfifo(tmp_path / "pipe.nc")
-    (tmp_path / "loop.nc").symlink_to(tmp_path / "loop.nc")
-    before = sorted(os.listdir(tmp_path))
-    with pytest.raises(sb.InputError, match=words):
-        check_writable(tmp_path / name, (".nc", ".csv"), force=True)
-    assert sorted(os.listdir(tmp_path)) == before
+    ]:
+        with subtests.test(name=name, words=words):
+            with pytest.raises(sb.InputError, match=words):
+                check_writable(tmp_path / name, (".nc", ".csv"), force=True)
+            assert sorted(os.listdir(tmp_path)) == before
 
 
 def test_a_folder_without_permission_is_refused(tmp_path, monkeypatch):
@@ -311,20 +309,21 @@ def test_through_a_link_its_target_is_written_and_the_link_kept(dataset, tmp_pat
     assert (tmp_path / "data" / "curve.csv").stat().st_size > 1000
 
 
-@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, failure):
-    path = tmp_path / "curve.csv"
-    path.write_text("precious")
-    with (
-        pytest.raises((sb.InputError, KeyboardInterrupt)) as caught,
-        atomic_write(path, (".csv",), force=True) as temporary,
-    ):
-        temporary.write_text("half")
-        raise failure
-    if isinstance(failure, OSError):
-        assert "could not be written (No space left on device); it is unchanged" in str(caught.value)
-    assert path.read_text() == "precious"
-    assert os.listdir(tmp_path) == ["curve.csv"]
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(subtests, tmp_path):
+    for failure in [OSError(28, "No space left on device"), KeyboardInterrupt()]:
+        with subtests.test(failure=failure):
+            path = tmp_path / "curve.csv"
+            path.write_text("precious")
+            with (
+                pytest.raises((sb.InputError, KeyboardInterrupt)) as caught,
+                atomic_write(path, (".csv",), force=True) as temporary,
+            ):
+                temporary.write_text("half")
+                raise failure
+            if isinstance(failure, OSError):
+                assert "could not be written (No space left on device); it is unchanged" in str(caught.value)
+            assert path.read_text() == "precious"
+            assert os.listdir(tmp_path) == ["curve.csv"]
 
 
 def test_a_file_that_appears_meanwhile_is_kept(tmp_path):

@@ -65,23 +65,24 @@ def test_a_list_takes_the_lists_together(tmp_path):
     assert design.groups.tolist() == [[1e-4, 0.1, 1e-3], [2e-4, 0.1, 0.0]]
 
 
-@pytest.mark.parametrize("kind", ["random", "latin-hypercube", "sobol"])
-def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(tmp_path, kind):
-    text = RANDOM.format(kind=kind, points=64)
-    design, again = load(tmp_path, text), load(tmp_path, text)
-    other = load(tmp_path, text.replace("20261", "20262"))
-    assert np.array_equal(design.groups, again.groups)
-    assert not np.array_equal(design.groups, other.groups)
-    assert design.fingerprint == again.fingerprint != other.fingerprint
-    for column, low, high in zip(design.groups.T, (1e-6, 0.01, 1e-4), (1.0, 0.5, 1e-2), strict=True):
-        parts = np.log(column / low) / np.log(high / low)
-        assert parts.min() >= 0 and parts.max() <= 1
-        halves = np.histogram(parts, bins=2, range=(0, 1))[0]
-        slots = np.histogram(parts, bins=64, range=(0, 1))[0]
-        if kind == "random":
-            assert halves.min() > 16
-        else:  # what these designs promise: each of n slots of an axis holds one point
-            assert slots.tolist() == [1] * 64
+def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(subtests, tmp_path):
+    for kind in ["random", "latin-hypercube", "sobol"]:
+        with subtests.test(kind=kind):
+            text = RANDOM.format(kind=kind, points=64)
+            design, again = load(tmp_path, text), load(tmp_path, text)
+            other = load(tmp_path, text.replace("20261", "20262"))
+            assert np.array_equal(design.groups, again.groups)
+            assert not np.array_equal(design.groups, other.groups)
+            assert design.fingerprint == again.fingerprint != other.fingerprint
+            for column, low, high in zip(design.groups.T, (1e-6, 0.01, 1e-4), (1.0, 0.5, 1e-2), strict=True):
+                parts = np.log(column / low) / np.log(high / low)
+                assert parts.min() >= 0 and parts.max() <= 1
+                halves = np.histogram(parts, bins=2, range=(0, 1))[0]
+                slots = np.histogram(parts, bins=64, range=(0, 1))[0]
+                if kind == "random":
+                    assert halves.min() > 16
+                else:  # what these designs promise: each of n slots of an axis holds one point
+                    assert slots.tolist() == [1] * 64
 
 
 def test_a_random_design_draws_from_a_list_in_equal_parts(tmp_path):
@@ -104,9 +105,8 @@ def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path)
 GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
 
 
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
+def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_path):
+    for text, sentence in [
         ("", "is empty; a sweep file needs at least the table [vary]."),
         (GROUPS, "the table [vary] is missing."),
         (GROUPS + "[vary]\n", "[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m']."),
@@ -174,14 +174,13 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
             "[vary] makes 4000000 states; at most 1000000 are possible in one sweep.",
         ),
         (GROUPS + "[vary]\nspeed = [1]\n[solver]\nrtol = 1\n", "[solver] rtol = 1 must be a number from 1e-11 to 1e-2"),
-    ],
-)
-def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(tmp_path, text, sentence):
-    with pytest.raises(sb.InputError) as caught:
-        load(tmp_path, text)
-    lines = str(caught.value).splitlines()
-    assert any(sentence in line for line in lines), lines
-    assert all(line.startswith(str(tmp_path / "sweep.toml")) and line.endswith(".") for line in lines)
+    ]:
+        with subtests.test(text=text, sentence=sentence):
+            with pytest.raises(sb.InputError) as caught:
+                load(tmp_path, text)
+            lines = str(caught.value).splitlines()
+            assert any(sentence in line for line in lines), lines
+            assert all(line.startswith(str(tmp_path / "sweep.toml")) and line.endswith(".") for line in lines)
 
 
 def test_all_problems_are_told_in_one_go(tmp_path):
@@ -193,28 +192,30 @@ def test_all_problems_are_told_in_one_go(tmp_path):
 # --- the order ---
 
 
-@pytest.mark.parametrize("kind", ["random", "latin-hypercube", "sobol"])
-def test_every_state_is_in_one_chain_and_neighbours_follow_one_another(tmp_path, kind):
-    design = load(tmp_path, RANDOM.format(kind=kind, points=512))
-    chains = chains_of(design.groups)
-    assert sorted(np.concatenate(chains)) == list(range(512))
-    assert max(map(len, chains)) <= MAX_CHAIN
-    z = coordinates(design.groups)
-    steps = [np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains]
-    unordered = np.abs(np.diff(z, axis=0)).max(axis=1)
-    assert np.mean(np.concatenate(steps)) < 0.35 * np.mean(unordered)
+def test_every_state_is_in_one_chain_and_neighbours_follow_one_another(subtests, tmp_path):
+    for kind in ["random", "latin-hypercube", "sobol"]:
+        with subtests.test(kind=kind):
+            design = load(tmp_path, RANDOM.format(kind=kind, points=512))
+            chains = chains_of(design.groups)
+            assert sorted(np.concatenate(chains)) == list(range(512))
+            assert max(map(len, chains)) <= MAX_CHAIN
+            z = coordinates(design.groups)
+            steps = [np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains]
+            unordered = np.abs(np.diff(z, axis=0)).max(axis=1)
+            assert np.mean(np.concatenate(steps)) < 0.35 * np.mean(unordered)
 
 
-@pytest.mark.parametrize("points", [5, 17, 60])
-def test_a_grid_is_followed_along_the_speed_in_equal_chains(tmp_path, points):
-    design = load(tmp_path, GRID.replace("17", str(points)))
-    chains = chains_of(design.groups)
-    assert sorted(np.concatenate(chains)) == list(range(4 * points))
-    lengths = [len(chain) for chain in chains]
-    assert len(chains) == -(-4 * points // MAX_CHAIN) and max(lengths) - min(lengths) <= 1
-    z = coordinates(design.groups)
-    steps = np.concatenate([np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains])
-    assert np.median(steps) < 2.5 * np.log(1e4) / (points - 1)
+def test_a_grid_is_followed_along_the_speed_in_equal_chains(subtests, tmp_path):
+    for points in [5, 17, 60]:
+        with subtests.test(points=points):
+            design = load(tmp_path, GRID.replace("17", str(points)))
+            chains = chains_of(design.groups)
+            assert sorted(np.concatenate(chains)) == list(range(4 * points))
+            lengths = [len(chain) for chain in chains]
+            assert len(chains) == -(-4 * points // MAX_CHAIN) and max(lengths) - min(lengths) <= 1
+            z = coordinates(design.groups)
+            steps = np.concatenate([np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains])
+            assert np.median(steps) < 2.5 * np.log(1e4) / (points - 1)
 
 
 def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):

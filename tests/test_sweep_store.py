@@ -153,14 +153,15 @@ def test_the_command_exports_every_number_text_and_unit(copy, filled, tmp_path, 
     assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
 
 
-@pytest.mark.parametrize("ending", [".csv", ".parquet"])
-def test_a_table_has_a_row_for_each_state_of_a_grid(filled, tmp_path, ending):
-    write_it = filled.to_csv if ending == ".csv" else filled.to_parquet
-    write_it(tmp_path / f"sweep{ending}")
-    table = read(tmp_path / f"sweep{ending}")
-    assert table.columns[:3].tolist() == list(DIMS)
-    assert table.speed_group.tolist() == filled.columns["speed_group"].tolist()
-    assert table.load_group.tolist() == filled.columns["load_group"].tolist()
+def test_a_table_has_a_row_for_each_state_of_a_grid(subtests, filled, tmp_path):
+    for ending in [".csv", ".parquet"]:
+        with subtests.test(ending=ending):
+            write_it = filled.to_csv if ending == ".csv" else filled.to_parquet
+            write_it(tmp_path / f"sweep{ending}")
+            table = read(tmp_path / f"sweep{ending}")
+            assert table.columns[:3].tolist() == list(DIMS)
+            assert table.speed_group.tolist() == filled.columns["speed_group"].tolist()
+            assert table.load_group.tolist() == filled.columns["load_group"].tolist()
 
 
 @pytest.mark.quick
@@ -265,32 +266,35 @@ def test_a_store_of_the_former_format_is_refused_and_kept(tmp_path):
     assert os.listdir(store) == ["zarr.json"]
 
 
-@pytest.mark.parametrize("taken", ["file", "folder", "database", "pipe", "nowhere"])
-def test_a_place_that_is_no_store_is_refused_and_kept(tmp_path, taken):
-    out = tmp_path / "out"
-    if taken == "file":
-        out.write_text("mine")
-    elif taken == "folder":
-        out.mkdir()
-    elif taken == "database":
-        with closing(sqlite3.connect(out)) as db:
-            db.execute("CREATE TABLE mine (mine)")
-    elif taken == "pipe":
-        os.mkfifo(out)
-    else:
-        out = tmp_path / "no" / "out"
-    before = out.read_bytes() if out.is_file() else None
-    what = {
-        "file": "is a file of something else",
-        "folder": "is a folder",
-        "database": "is a database of something else",
-        "pipe": "is no ordinary file",
-        "nowhere": "does not exist",
-    }[taken]
-    file = write(tmp_path, SMALL)
-    assert what in sentence_of(sb.sweep, file, out) and what in sentence_of(sb.open_sweep, out)
-    assert before is None or out.read_bytes() == before
-    assert sorted(os.listdir(tmp_path)) == sorted(["sweep.toml", *(["out"] if taken != "nowhere" else [])])
+def test_a_place_that_is_no_store_is_refused_and_kept(subtests, tmp_path):
+    for taken in ["file", "folder", "database", "pipe", "nowhere"]:
+        with subtests.test(taken=taken):
+            folder = tmp_path / taken
+            folder.mkdir()
+            out = folder / "out"
+            if taken == "file":
+                out.write_text("mine")
+            elif taken == "folder":
+                out.mkdir()
+            elif taken == "database":
+                with closing(sqlite3.connect(out)) as db:
+                    db.execute("CREATE TABLE mine (mine)")
+            elif taken == "pipe":
+                os.mkfifo(out)
+            else:
+                out = folder / "no" / "out"
+            before = out.read_bytes() if out.is_file() else None
+            what = {
+                "file": "is a file of something else",
+                "folder": "is a folder",
+                "database": "is a database of something else",
+                "pipe": "is no ordinary file",
+                "nowhere": "does not exist",
+            }[taken]
+            file = write(folder, SMALL)
+            assert what in sentence_of(sb.sweep, file, out) and what in sentence_of(sb.open_sweep, out)
+            assert before is None or out.read_bytes() == before
+            assert sorted(os.listdir(folder)) == sorted(["sweep.toml", *(["out"] if taken != "nowhere" else [])])
 
 
 def test_an_empty_file_becomes_the_store(tmp_path):
@@ -322,12 +326,13 @@ def test_a_missing_extra_is_one_sentence(tmp_path, monkeypatch, filled, library,
             sb.sweep(write(tmp_path, SMALL), tmp_path / "store", scheduler="tcp://127.0.0.1:1")
 
 
-@pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2", 100_000])
-def test_a_number_of_workers_that_is_none_is_refused(tmp_path, workers):
-    with pytest.raises(sb.InputError, match=r"workers = .*; it must be a whole number from 1 to 1024\."):
-        sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=workers)
-    with pytest.raises(sb.InputError, match=r"workers = 2 and scheduler = 'tcp://x:1' are both given"):
-        sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=2, scheduler="tcp://x:1")
+def test_a_number_of_workers_that_is_none_is_refused(subtests, tmp_path):
+    for workers in [0, -1, 1.5, True, "2", 100_000]:
+        with subtests.test(workers=workers):
+            with pytest.raises(sb.InputError, match=r"workers = .*; it must be a whole number from 1 to 1024\."):
+                sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=workers)
+            with pytest.raises(sb.InputError, match=r"workers = 2 and scheduler = 'tcp://x:1' are both given"):
+                sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=2, scheduler="tcp://x:1")
 
 
 # --- one writer ---

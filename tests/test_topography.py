@@ -20,17 +20,18 @@ def heights():
 # --- the formats of instruments ---
 
 
-@pytest.mark.parametrize(("name", "write"), [("a.x3p", write_x3p), ("a.sdf", write_sdf), ("a.gwy", write_gwy)])
-def test_a_map_in_a_real_format_is_read_back(tmp_path, heights, name, write):
-    z = heights.copy()
-    if name != "a.gwy":  # which has no mark for a missing point
-        z[3, 4] = np.nan
-    write(tmp_path / name, z, 1e-6, 2e-6)
-    read = read_topography(tmp_path / name)
-    assert read.spacing == pytest.approx((1e-6, 2e-6), rel=1e-12, abs=0)
-    assert np.nanmax(np.abs(read.heights - z)) < 1e-15
-    assert np.array_equal(np.isnan(read.heights), np.isnan(z))
-    assert read.source == f"{name} ({name[2:]})"
+def test_a_map_in_a_real_format_is_read_back(subtests, tmp_path, heights):
+    for name, write in [("a.x3p", write_x3p), ("a.sdf", write_sdf), ("a.gwy", write_gwy)]:
+        with subtests.test(name=name, write=write):
+            z = heights.copy()
+            if name != "a.gwy":  # which has no mark for a missing point
+                z[3, 4] = np.nan
+            write(tmp_path / name, z, 1e-6, 2e-6)
+            read = read_topography(tmp_path / name)
+            assert read.spacing == pytest.approx((1e-6, 2e-6), rel=1e-12, abs=0)
+            assert np.nanmax(np.abs(read.heights - z)) < 1e-15
+            assert np.array_equal(np.isnan(read.heights), np.isnan(z))
+            assert read.source == f"{name} ({name[2:]})"
 
 
 def test_a_format_without_units_is_refused_until_they_are_given(tmp_path, heights):
@@ -54,13 +55,14 @@ def test_what_a_file_declares_cannot_be_overruled(tmp_path, heights):
         read_topography(tmp_path / "a.x3p", channel="Phase")
 
 
-@pytest.mark.parametrize("name", ["a.x3p", "a.sur"])
-def test_a_damaged_file_is_refused_in_one_sentence(tmp_path, name):
-    (tmp_path / name).write_bytes(b"\x00\xff\x03\x04 not heights")
-    with pytest.raises(sb.InputError, match="is damaged or in a format that SurfaceTopography does not know"):
-        read_topography(tmp_path / name)
-    with pytest.raises(sb.InputError, match="not a file"):
-        read_topography(tmp_path / "b.x3p")
+def test_a_damaged_file_is_refused_in_one_sentence(subtests, tmp_path):
+    for name in ["a.x3p", "a.sur"]:
+        with subtests.test(name=name):
+            (tmp_path / name).write_bytes(b"\x00\xff\x03\x04 not heights")
+            with pytest.raises(sb.InputError, match="is damaged or in a format that SurfaceTopography does not know"):
+                read_topography(tmp_path / name)
+            with pytest.raises(sb.InputError, match="not a file"):
+                read_topography(tmp_path / "b.x3p")
 
 
 def test_a_file_that_was_cut_off_is_not_said_to_lack_its_unit(tmp_path, heights):
@@ -106,13 +108,14 @@ def test_a_scan_of_too_many_points_is_refused_before_they_are_read(tmp_path, hei
         read_topography(tmp_path / "a.x3p")
 
 
-@pytest.mark.parametrize("name", ["a.x3p", "a.sdf", "a.OPD"])
-@pytest.mark.parametrize("content", [b"1 2 3\n4 5 6\n", b"hello world\n1 2 3\n", bytes(5000)])
-def test_what_is_not_of_the_format_of_its_ending_is_told(tmp_path, name, content):
-    (tmp_path / name).write_bytes(content)
-    for given in ({}, {"unit": "um", "spacing": "1 um"}):
-        with pytest.raises(sb.InputError, match=f"does not start like a {name[1:].lower()} file"):
-            read_topography(tmp_path / name, **given)
+def test_what_is_not_of_the_format_of_its_ending_is_told(subtests, tmp_path):
+    for content in [b"1 2 3\n4 5 6\n", b"hello world\n1 2 3\n", bytes(5000)]:
+        for name in ["a.x3p", "a.sdf", "a.OPD"]:
+            with subtests.test(content=content, name=name):
+                (tmp_path / name).write_bytes(content)
+                for given in ({}, {"unit": "um", "spacing": "1 um"}):
+                    with pytest.raises(sb.InputError, match=f"does not start like a {name[1:].lower()} file"):
+                        read_topography(tmp_path / name, **given)
 
 
 def test_a_binary_file_under_an_ending_of_text_is_read_as_that_of_an_instrument(tmp_path, heights):
@@ -149,16 +152,17 @@ DIALECTS = {
 }
 
 
-@pytest.mark.parametrize("dialect", DIALECTS)
-def test_a_map_in_any_dialect_of_text_is_read_back(tmp_path, heights, dialect):
-    header, separator, point = DIALECTS[dialect]
-    rows = grid_rows(heights, 2.5)
-    np.random.default_rng(84).shuffle(rows)
-    lines = [separator.join(f"{v:.9g}" for v in (x, y, z * 1e9)).replace(".", point) for x, y, z in rows]
-    (tmp_path / "map.csv").write_text("\n".join(["Profilometer 7", header, *lines]), encoding="latin-1")
-    read = read_topography(tmp_path / "map.csv")
-    assert read.spacing == pytest.approx((2.5e-6, 2.5e-6))
-    assert np.abs(read.heights - heights).max() < 1e-15
+def test_a_map_in_any_dialect_of_text_is_read_back(subtests, tmp_path, heights):
+    for dialect in DIALECTS:
+        with subtests.test(dialect=dialect):
+            header, separator, point = DIALECTS[dialect]
+            rows = grid_rows(heights, 2.5)
+            np.random.default_rng(84).shuffle(rows)
+            lines = [separator.join(f"{v:.9g}" for v in (x, y, z * 1e9)).replace(".", point) for x, y, z in rows]
+            (tmp_path / "map.csv").write_text("\n".join(["Profilometer 7", header, *lines]), encoding="latin-1")
+            read = read_topography(tmp_path / "map.csv")
+            assert read.spacing == pytest.approx((2.5e-6, 2.5e-6))
+            assert np.abs(read.heights - heights).max() < 1e-15
 
 
 def test_points_that_are_absent_or_empty_are_missing(tmp_path, heights):
@@ -222,13 +226,14 @@ TEXTS = {
 }
 
 
-@pytest.mark.parametrize("case", TEXTS)
-def test_text_that_is_no_topography_is_refused_by_line(tmp_path, case):
-    text, options, words = TEXTS[case]
-    (tmp_path / "scan.csv").write_text(text)
-    with pytest.raises(sb.InputError, match=words) as caught:
-        read_topography(tmp_path / "scan.csv", **options)
-    assert "\n" not in str(caught.value)
+def test_text_that_is_no_topography_is_refused_by_line(subtests, tmp_path):
+    for case in TEXTS:
+        with subtests.test(case=case):
+            text, options, words = TEXTS[case]
+            (tmp_path / "scan.csv").write_text(text)
+            with pytest.raises(sb.InputError, match=words) as caught:
+                read_topography(tmp_path / "scan.csv", **options)
+            assert "\n" not in str(caught.value)
 
 
 # --- what a topography is ---

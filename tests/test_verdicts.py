@@ -27,10 +27,13 @@ def gel_case(folder, **changes):
     return path
 
 
-@pytest.mark.parametrize(("load", "law"), [("1 mN", ""), ("20 mN", ", with another law and")])
-def test_commands_begin_with_what_must_hold_for_a_gel(capsys, tmp_path, load, law):
-    said = call(capsys, "solve", str(gel_case(tmp_path, load=load))).out
-    assert said.replace("\n", " ").startswith(f"The model applies{law} if adhesion is small and no liquid flows in pores")
+def test_commands_begin_with_what_must_hold_for_a_gel(subtests, capsys, tmp_path):
+    for load, law in [("1 mN", ""), ("20 mN", ", with another law and")]:
+        with subtests.test(load=load, law=law):
+            said = call(capsys, "solve", str(gel_case(tmp_path, load=load))).out
+            assert said.replace("\n", " ").startswith(
+                f"The model applies{law} if adhesion is small and no liquid flows in pores"
+            )
 
 
 def test_diffusivity_and_permeability_are_one_fact(tmp_path):
@@ -48,20 +51,19 @@ def test_per_cent_is_advised_only_where_it_is_used(capsys, tmp_path):
     assert "alpha 20, usually" in said.replace("\n", " ") and "70 % is 0.7" in said.replace("\n", " ")
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
+def test_a_sweep_says_unusual_inputs(subtests, capsys, tmp_path):
+    for old, new, said in [
         ("boundary_friction = 0.7", "boundary_friction = 70", "70 % is 0.7"),
         ("boundary_friction = 0.7", "boundary_friction = 0.7\nslide_to_roll = 50", "50 % is 0.5"),
         ('viscosity = "50 mPa*s"', 'viscosity = "50 Pa*s"', "viscosity 50 Pa*s"),
         ('load = ["15 N/m", "30 N/m"]', 'load = ["1 mN/m", "30 N/m"]', "load 1 mN/m"),
-    ],
-    ids=["friction", "slide to roll", "viscosity", "what varies"],
-)
-def test_a_sweep_says_unusual_inputs(capsys, tmp_path, old, new, said):
-    text = (EXAMPLES / "sweep.toml").read_text().replace("points = 26", "points = 2").replace("points = 3", "points = 2")
-    assert old in text
-    path = tmp_path / "sweep.toml"
-    path.write_text(text.replace(old, new))
-    errors = call(capsys, "sweep", str(path), "--out", str(tmp_path / "s.sqlite")).err
-    assert "Unusual: " in errors and said in errors.replace("\n", " ")
+    ]:
+        with subtests.test(old=old, new=new, said=said):
+            text = (
+                (EXAMPLES / "sweep.toml").read_text().replace("points = 26", "points = 2").replace("points = 3", "points = 2")
+            )
+            assert old in text
+            path = tmp_path / "sweep.toml"
+            path.write_text(text.replace(old, new))
+            errors = call(capsys, "sweep", str(path), "--out", str(tmp_path / "s.sqlite")).err
+            assert "Unusual: " in errors and said in errors.replace("\n", " ")
