@@ -5,8 +5,8 @@ import pytest
 from command_line import EXAMPLES, PDMS, call
 
 import stribeck as sb
+from stribeck.contacts.notes import ATMOSPHERE
 from stribeck.solver.neighbours import Neighbours
-from stribeck.solver.notes import ATMOSPHERE
 
 pytestmark = pytest.mark.quick
 

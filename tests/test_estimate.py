@@ -229,6 +229,6 @@ def test_meshes_grow_no_more_where_only_noise_of_the_gaps_is_left(monkeypatch):
     groups = sb.Groups(*STATES["mixed"])
     start = cold_start(groups).states[-1]
     monkeypatch.setattr(refinement, "error_estimates", noisy)
-    monkeypatch.setattr(refinement, "NODAL_ROUNDING", 1e-6 * start.gap.min())
+    monkeypatch.setattr(refinement, "ROUNDING", 1e-6 * start.gap.min())
     assert converge(start, groups, 1e-6).outcome is Outcome.ROUNDING
     assert len(sizes) <= 3

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference, ungraded
+from stribeck.numerics.panels import Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference, ungraded
 from stribeck.numerics.panels import graded as halved_towards
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.settings import MAX_PANELS
 
 pytestmark = pytest.mark.quick
 

@@ -9,9 +9,9 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE, exact
 
 import stribeck as sb
+from stribeck.contacts.notes import HARD_PREFIX, LAW_RANGE, MAX_HERTZ_PRESSURE, pressure_notes
 from stribeck.regimes.margin_limits import physical_bounds
 from stribeck.regimes.margins import RegimeMargins, regime_margins
-from stribeck.solver.notes import HARD_PREFIX, LAW_RANGE, MAX_HERTZ_PRESSURE, pressure_notes
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none")
 """A contact in a full film under Persson's law at load group 5.5."""

@@ -9,8 +9,7 @@ from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_again
 from stribeck.checks.subject import Subject
 from stribeck.contacts.geometries import POINT
 from stribeck.contacts.inputs import InputTable
-from stribeck.quantities.formats import format_percent, format_si
-from stribeck.solver.notes import (
+from stribeck.contacts.notes import (
     HARD_PREFIX,
     MAX_CONTACT_SLOPE,
     MAX_PRESSURE_EXPONENT,
@@ -18,6 +17,7 @@ from stribeck.solver.notes import (
     pressure_notes,
     width_notes,
 )
+from stribeck.quantities.formats import format_percent, format_si
 
 STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
 

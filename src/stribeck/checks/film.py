@@ -8,8 +8,7 @@ from stribeck.checks.check import Check, Verdict, check_against_limits, number_t
 from stribeck.checks.subject import Subject
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction_rules import slide_to_roll
-from stribeck.quantities.formats import format_percent
-from stribeck.solver.notes import (
+from stribeck.contacts.notes import (
     ATMOSPHERE,
     FLUID_PREFIX,
     MAX_FILM_SLOPE,
@@ -17,6 +16,7 @@ from stribeck.solver.notes import (
     THICK_PREFIX,
     WETTED_PREFIX,
 )
+from stribeck.quantities.formats import format_percent
 
 OIL_THINNING_RATE = 1e6  # Shear rate up to which oils without improvers keep their viscosity [1/s]
 WATER_THINNING_RATE = 1e9  # Shear rate up to which liquids as thin as water keep their viscosity [1/s]

@@ -13,10 +13,10 @@ from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.notes import LAW_RANGE, TAIL_ADVICE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.curves.regime import Transition
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
-from stribeck.solver.notes import LAW_RANGE, TAIL_ADVICE, USUAL_ALPHA, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
 # Change of minimum and transitions by the tail of the law up to which the change is stated as their error: without a scan

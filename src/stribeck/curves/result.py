@@ -18,6 +18,7 @@ from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.notes import HARD_PREFIX, law_notes, minimum_note
 from stribeck.curves.coordinate import Over, check_points, given_values
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.landmarks import Landmark
@@ -29,7 +30,6 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.notes import HARD_PREFIX, law_notes, minimum_note
 from stribeck.solver.numbers import si_films
 
 __all__ = ["StribeckCurve", "path_of", "with_contact"]

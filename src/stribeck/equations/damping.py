@@ -6,8 +6,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-
-MAX_HALVINGS = 20  # Halvings of a step whose contact pressure grows too much: one of 1e-6 makes no progress
+from stribeck.numerics.settings import HALF_DIGITS
 
 
 def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) -> float:
@@ -27,7 +26,7 @@ def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) 
 
 def _held_by_law(law: ContactLaw, gap: Array, change: Array, part: float, log_p: Array, allowed: Array) -> float:
     """Return the part, halved until the pressure of a law that stiffens grows by at most 50 %."""
-    for _ in range(MAX_HALVINGS):
+    while part >= HALF_DIGITS:
         with np.errstate(all="ignore"):
             growth = law.log_pressure(gap + part * change) - log_p
         if (growth <= 1.5 * allowed).all():

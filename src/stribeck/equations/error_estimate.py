@@ -36,13 +36,13 @@ from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.settings import EPSILON, FLOOR, SAFETY
 from stribeck.numerics.trace import Matrix, Trace
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
 
 __all__ = [
     "GAP_ROWS",
-    "GAP_FLOOR",
     "ErrorEstimate",
     "FineOperators",
     "error_estimates",
@@ -50,24 +50,13 @@ __all__ = [
     "perturbations",
 ]
 
-SAFETY = 2.0  # Factor from the estimated to the stated error
-
 DEFECT_SAFETY = 3.0  # Safety factor of the defect: finer nodes see only a part of it if the pressures need many more nodes
 
 # If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is interpolated
 # itself: its formula is there the difference of nearly equal numbers.
 CANCELLATION_BELOW = 0.2
 
-# Units in the last place by which the residual may be wrong on a whole panel; checked against meshes that should agree.
-ROUNDING_UNITS = 2.0
-
 SIGN_PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
-
-ROUNDING_DEVIATIONS = 2.0  # Stated error by rounding over the standard deviation of the changes by SIGN_PATTERNS
-
-OFFSET_FLOOR = 1e-3  # The error of the offset is relative to it where it exceeds this; it crosses zero
-
-GAP_FLOOR = 1e-3  # At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa
 
 SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
 GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
@@ -189,7 +178,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     residual[0, :, at.gap] = h - z0 - parabola - deflection
     residual[0, :, balance] = load - LOAD
     residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ integral.weights)
-    size = np.finfo(float).eps * ROUNDING_UNITS
+    size = SAFETY * EPSILON
     residual[1:, :, at.gap] = size * (np.abs(z0) + parabola + np.abs(deflection))
     residual[1:, :, balance] = size * LOAD
     residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ integral.weights)
@@ -306,11 +295,11 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     scales[:, POSITION_ROWS] = np.maximum(1.0, scales[:, POSITION_ROWS])
     scales[:, DRAG_ROWS] = drag_scales(values)
     scales[:, SHARE_ROWS] = 1.0
-    scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
+    scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], FLOOR)
     if not states.equations.is_sliding:
-        scales[:, GAP_ROWS] = np.maximum(scales[:, GAP_ROWS], GAP_FLOOR * states.equations.law.decay_length)
+        scales[:, GAP_ROWS] = np.maximum(scales[:, GAP_ROWS], FLOOR * states.equations.law.decay_length)
     scales[scales == 0] = 1.0
-    rounding = ROUNDING_DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
+    rounding = SAFETY * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
     gap = states.y[:, states.equations.layout.gap]
     minimum = ROW["minimum_gap"]
     depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)

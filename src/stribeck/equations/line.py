@@ -41,14 +41,15 @@ from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import Volterra
+from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.numerics.trace import Matrix, Term, Trace, act, matrix_of, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Coupled", "Eliminated", "Equations", "Operators"]
 
 # Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
-# there is taken.
-MAX_LOG_GROWTH = 10.0
+# there is taken: half of the digits are lost.
+MAX_LOG_GROWTH = -np.log(HALF_DIGITS)
 
 
 class Fields(NamedTuple):

@@ -16,11 +16,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
-
-SAFETY = 2.0  # Factor from the estimated to the stated error; checked against finer meshes
-
-# Rounding of a nodal gap, a difference of terms of order one; it differs from node to node and so changes the slope.
-NODAL_ROUNDING = 16 * 2.0**-52
+from stribeck.numerics.settings import ROUNDING, SAFETY
 
 
 def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, depth: Array) -> Array:
@@ -44,7 +40,7 @@ def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, de
     moved = np.abs((slope_of * at_nodes).sum(axis=2))
     inside = np.maximum(1 - s**2, 1e-300)
     steepest = np.minimum(order * (order + 1) / 2, np.sqrt(2 * order / np.pi) / inside**0.75)
-    missed = steepest * (interpolation_error(logarithm) + NODAL_ROUNDING / own.min(axis=1))
+    missed = steepest * (interpolation_error(logarithm) + ROUNDING / own.min(axis=1))
     wrong = np.abs(slope) + moved[0] + 2 * np.sqrt((moved[1:] ** 2).mean(axis=0)) + missed
     found = SAFETY * width * wrong / np.maximum(np.abs(curvature), 1e-300)
 

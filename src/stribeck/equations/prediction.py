@@ -15,11 +15,9 @@ from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.panels import Mesh
+from stribeck.numerics.settings import MAX_AMPLIFICATION
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.solid import lengths_of
-
-# Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors.
-MAX_AMPLIFICATION = 40.0
 
 # Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
 # frame: the edge of a contact of asperities stays where it is while the exit moves through it.

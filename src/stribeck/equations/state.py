@@ -21,8 +21,9 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Decay, Film
-from stribeck.numerics.newton import ROUNDING_STEP, Inverse, Root, StepControl, root_find
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
+from stribeck.numerics.settings import COARSE_RTOL, COARSE_STEP, EPSILON, HALF_DIGITS, NEGLIGIBLE, ROUNDING, SAFETY
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
@@ -33,8 +34,6 @@ RETRY_MONOTONE_AFTER = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, O
 MONOTONE_AFTER_STEPS = 25  # Newton steps after which steps are monotone: most films take less than 20, others oscillate
 
 CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
-
-ROUNDING_RTOL = 1e-9  # Relative rounding in the position of a panel
 
 # Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
 LONG_REACH_ORDER = 14
@@ -62,26 +61,14 @@ MINIMUM_ZONE = 0.05  # Distance from a moving minimum of the gap within which th
 
 MOVING_MINIMUM_FACTOR = 30.0  # Extra resolution near a moving minimum, where the gap's change along the path is steep
 
-NODAL_NOISE = 2.0**-48  # Rounding of a nodal gap, over that gap: no mesh resolves less
-
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
-MIN_GAP = NODAL_NOISE / ROUNDING_STEP
-
-MAX_NODAL_NOISE = 0.01  # Relative rounding of a gap beyond which it counts as lost
+MIN_GAP = ROUNDING / COARSE_STEP
 
 MAX_FAR_PANEL = 0.5  # Largest half-width over distance of panels that resolve a non-integer decay
 
 KINK_SEARCHES = 2  # Scans of the bracket of a kink, before linear interpolation
 
 KINK_SCAN_POINTS = 17  # Points of one scan of the bracket
-
-# Length of a panel over that of the panels by which the guess is known, from which a mesh that only serves to find a state
-# asks for no shorter ones.
-MIN_PANEL_RATIO_OF_GUESS = 0.1
-
-COARSE_RTOL = 1e-3  # Tolerance from which a mesh serves to find a state, not to read off drag
-
-MEMORY_DECAY = 30.0  # Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure
 
 TAIL_RTOL_FRACTION = 0.2  # Tolerance of a mesh for an error of one
 
@@ -96,8 +83,6 @@ SCAN_REFINEMENTS = 3  # Places over nodes at which the lowest pressure is sought
 
 # Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike.
 MAX_SUCTION_RATIO = 0.5
-
-PREDICTION_RTOL_FRACTION = 0.5  # Relative error of the predicted gap at which the step of a path is kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +183,7 @@ class State:
     @property
     def effort(self) -> float:
         """Measure of the work by which :func:`continuation.march` steers; 4 for a cubic prediction as good as wanted."""
-        return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_RTOL_FRACTION)
+        return 4.0 + 0.5 * math.log2(max(SAFETY * self.prediction_error, HALF_DIGITS))
 
     @cached_property
     def _log_gap(self) -> Array:
@@ -336,7 +321,7 @@ def mesh_for(
     minimum_position = guess.minimum_position / to_guess
     strict = gap_tolerance
     if spread > 0:
-        strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
+        strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, ROUNDING / float(central_gap.min())))
     pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
@@ -374,7 +359,7 @@ def mesh_for(
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        at_centre = np.abs(centres - centre) <= (1 + ROUNDING_RTOL) * half_widths
+        at_centre = np.abs(centres - centre) <= (1 + HALF_DIGITS) * half_widths
         read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
         read_off &= stretch[:, 0] == 1.0
         moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, MINIMUM_ZONE))
@@ -421,7 +406,7 @@ def mesh_for(
     if tolerance < COARSE_RTOL:
         reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if fractional else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
-        reach = max(reach, MEMORY_DECAY * max(memories))
+        reach = max(reach, -math.log(EPSILON) * max(memories))
     places: list[float] = []
     start = guess.mesh if anew and isinstance(guess, State) else None
     if ends:
@@ -438,7 +423,7 @@ def mesh_for(
         kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
     # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
     known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
-    shortest = None if known_on is None else lambda x: MIN_PANEL_RATIO_OF_GUESS * known_on(x * to_guess) / to_guess
+    shortest = None if known_on is None else lambda x: NEGLIGIBLE * known_on(x * to_guess) / to_guess
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
@@ -484,7 +469,7 @@ def solve_state(
     start = unknowns_of(equations, guess)
     thinnest = float(start[equations.layout.gap].min())
     if thinnest < MIN_GAP:  # steps of that size are rounding
-        tolerance = max(tolerance, min(NODAL_NOISE / thinnest, MAX_NODAL_NOISE))
+        tolerance = max(tolerance, min(ROUNDING / thinnest, NEGLIGIBLE))
     thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD_CONTRACTION)
     full = replace(control, max_steps=min(max_steps, MONOTONE_AFTER_STEPS)) if thins else control
     root = root_find(equations, start, full, kept)

@@ -10,12 +10,12 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.newton import root_between
+from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["Event", "first_zero", "least_by_slope", "rising_zeros", "zero_of_growing"]
 
-SLOPE_STEP = 1e-3  # Largest step in the slope of a function at its event
-TINY = 1e-300  # Keeps a distance of zero from dividing by zero
+SLOPE_STEP: float = HALF_DIGITS ** (1 / 3)  # Largest step in the slope of a function at its event, known to half of the digits
 
 Function = Callable[[float], float]
 
@@ -34,7 +34,7 @@ class Event:
     def slope(self) -> float:
         """The slope of the function there."""
         step = min(SLOPE_STEP, 0.1 * (self.high - self.low))
-        return (self.function(self.place + step) - self.function(self.place - step)) / (2 * step)
+        return float((self.function(self.place + step) - self.function(self.place - step)) / (2 * step))
 
 
 def _between(function: Function, ends: Array, tolerance: float, is_least: bool = False) -> Event | None:
@@ -96,5 +96,5 @@ def rising_zeros(
         last = np.argmax((heights[:-1] < 0) & (heights[1:] >= 0), axis=0)
         low, high = places[last, one], places[last + 1, one]
         below, above = heights[last, one], heights[last + 1, one]
-    slopes = (above - below) / np.maximum(high - low, TINY)
+    slopes = (above - below) / np.maximum(high - low, np.finfo(float).tiny)
     return low + (high - low) * below / (below - above), slopes, high - low

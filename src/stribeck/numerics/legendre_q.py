@@ -14,12 +14,11 @@ import numpy as np
 import scipy
 
 from stribeck._types import Array
+from stribeck.numerics.settings import HALF_DIGITS
 
-UPWARD_RECURRENCE_BELOW = 1.5  # Product of the highest degree and ln(r/s) above which the upward recurrence loses digits
-
-# Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
-# which is 1e-4 or less.
-HALF_DECAY_LOG = 14.0
+# Product of the ln(r/s) and the degrees by which Miller's start lies above the highest one wanted: its error is then below
+# rounding.
+HALF_DECAY_LOG = -np.log(HALF_DIGITS)
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
@@ -37,7 +36,7 @@ def ring_functions(radius: Array, source: Array, difference: Array, count: int) 
     if count == 1:
         return found
     by_distance = np.argsort(xi)
-    upward = int(np.searchsorted(xi[by_distance], UPWARD_RECURRENCE_BELOW / count))
+    upward = int(np.searchsorted(xi[by_distance], 1.0 / count))  # beyond, this recurrence loses digits
     near = by_distance[:upward]
     found[:, near] = _upward(chi[near], first[near], second[near], count)
     start = upward

@@ -27,20 +27,15 @@ from scipy.linalg import lapack
 
 from stribeck._types import Array
 from stribeck.numerics.ending import go_on
+from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS_NEW_MESH
 from stribeck.quantities.outcome import Outcome
 
-MIN_STEP_FRACTION = 1e-8  # a step damped below this part of Newton's makes no progress
-MAX_HALVINGS = 12  # trials to get back to where the residual is finite
 MAX_CHORD_CONTRACTION = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
 CHORD_BELOW_STEP = 0.02  # the caller's inverse is taken to be good for a first step of this size
-ROUNDING_STEP = 1e-5  # steps that stop contracting below this size are rounding, above it they wander
 STEP_REDUCTION = 0.25  # a part t of a monotone step must leave a step shorter by this part of t
-MIN_MONOTONE_FRACTION = 2.0**-11  # the least part of a monotone step
 STEP_RECOVERY = 4.0  # growth of the part of a monotone step, from one to the next
 MAX_STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
-
-MAX_EVALUATIONS = 100  # Places at which a function of one unknown is evaluated in search of its root
 
 INVERSE_POINTS = 4  # Last places through which the next one is interpolated
 
@@ -229,14 +224,14 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             if not math.isfinite(s_new):
                 return root(Outcome.NOT_FINITE)
 
-            if not t >= MIN_STEP_FRACTION:
+            if not t >= HALF_DIGITS:
                 return root(Outcome.STALLED)
             trial = _finite_trial(problem.residual, x, dx, min(t, longest, 1.0))
-            if control.monotone and inverse is not None and not chord_step and s_new > ROUNDING_STEP:
+            if control.monotone and inverse is not None and not chord_step and s_new > COARSE_STEP:
                 units = problem.units(x)
                 wanted = _mean(dx / units)
                 while trial is not None and not _mean(inverse(trial[1])) <= (1 - STEP_REDUCTION * trial[2]) * wanted:
-                    if not trial[2] >= 2 * MIN_MONOTONE_FRACTION:
+                    if not trial[2] >= 2 * HALF_DIGITS:
                         return root(Outcome.STALLED)
                     trial = _finite_trial(problem.residual, x, dx, 0.5 * trial[2])
                 longest = 1.0 if trial is None else STEP_RECOVERY * trial[2]
@@ -254,7 +249,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
                 if not chord_step:
                     stale = 0 if s <= 0.5 * smallest else stale + 1
                     smallest = min(smallest, s)
-                    if stale >= MAX_STALE_STEPS and smallest <= ROUNDING_STEP:
+                    if stale >= MAX_STALE_STEPS and smallest <= COARSE_STEP:
                         return root(Outcome.ROUNDING)
         return root(Outcome.STEP_LIMIT)
 
@@ -266,7 +261,7 @@ def _mean(step: Array) -> float:
 
 def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: float) -> tuple[Array, Array, float] | None:
     """Return x + t dx, its residual and t, this halved until the residual is finite; None if it never is."""
-    for _ in range(MAX_HALVINGS + 1):
+    while t >= HALF_DIGITS:
         x_new = x + dx if t == 1.0 else x + t * dx
         r_new = residual(x_new)
         if np.isfinite(r_new).all():
@@ -283,7 +278,7 @@ def root_between(function: Callable[[float], float], low: float, high: float, to
     if not values[0] * values[1] < 0:
         return None
     falls = True
-    while high - low > tolerance and len(places) < MAX_EVALUATIONS:
+    while high - low > tolerance and len(places) < MAX_STEPS_NEW_MESH:
         c = _where_zero(places[-INVERSE_POINTS:], values[-INVERSE_POINTS:]) if falls else math.nan
         if abs(c - places[-1]) <= tolerance:
             return min(max(c, low), high)

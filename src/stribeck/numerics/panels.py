@@ -20,28 +20,19 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
-
-MAX_PANELS = 128  # Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator
-
-# Distance over the scale of a mesh below which an edge gives way to a kink: nodes between them are the same to rounding.
-PLACE_RTOL = 2.0**-34
-
-TAIL_HALVINGS = 12  # Panels on each side of infinity on which integrands that hold a logarithm there are summed
 
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields
 
 MIN_SPLIT_FRACTION = 0.25  # Least length of a panel that is longer than the fields need, over that length
 
-# Distance from a place, over it, up to which panels halve: nodes nearer to each other are the same to rounding.
-MIN_DISTANCE_RATIO = 2.0**-40
-
 NO_PLACES = np.empty(0)
 
 
 class MeshTooLargeError(Exception):
-    """The fields need more than :data:`MAX_PANELS` panels."""
+    """The fields need more panels than a mesh may have."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +99,7 @@ def between_orders(order: int, other: int) -> Array:
 @lru_cache(maxsize=32)
 def towards_infinity(order: int) -> tuple[Array, Array, Array]:
     """Nodes and weights on [-1, 1] on panels that halve towards zero, and the interpolation to them."""
-    edges = np.append(0.0, 2.0 ** -np.arange(TAIL_HALVINGS, -1, -1.0))
+    edges = np.append(0.0, 2.0 ** -np.arange(order, -1, -1.0))
     half = 0.5 * np.diff(edges)
     rule = reference(order)
     t = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * rule.nodes).ravel()
@@ -338,7 +329,7 @@ def adapt(
         reach = float(edges[-1])
         inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
-    near = PLACE_RTOL * scale
+    near = SAME_PLACE * scale
     places = np.sort(places[(np.abs(places) > near) & (np.abs(places) < edges[-1] - near)])
     places = places[np.diff(places, prepend=-np.inf) > near]
     apart = (np.abs(edges[:, None] - places) > near).all(axis=1)
@@ -346,7 +337,7 @@ def adapt(
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done, sizes = [], []
     count = 0
-    smallest = 2.0**-44 * scale
+    smallest = SAME_PLACE * scale
     while len(open_panels):
         size = tails(open_panels)
         least = smallest if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), smallest)
@@ -381,7 +372,7 @@ def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
 def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
     """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides."""
     # Edges that only rounding keeps apart from a place go: nodes between the two would be the same.
-    apart = [np.abs(mesh.edges - place) > MIN_DISTANCE_RATIO * abs(place) for place in places]
+    apart = [np.abs(mesh.edges - place) > SAME_PLACE * abs(place) for place in places]
     edges = np.unique(np.concatenate([mesh.edges[np.all(apart, axis=0)], places]))
     halvings = 0.5 ** np.arange(1, levels + 1)
     added = [edges]
@@ -389,7 +380,7 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         at = int(np.searchsorted(edges, place))
         for side in (-1, 1):
             steps = (edges[at + side] - place) * halvings
-            added.append(place + steps[np.abs(steps) > MIN_DISTANCE_RATIO * abs(place)])
+            added.append(place + steps[np.abs(steps) > SAME_PLACE * abs(place)])
     return replace(mesh, edges=np.unique(np.concatenate(added)))
 
 

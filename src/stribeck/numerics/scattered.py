@@ -15,10 +15,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.numerics.settings import HALF_DIGITS
 
 __all__ = ["Scattered"]
-
-NUGGET = 1e-8  # Variance of what the data err by, in that of the functions: between places that are close this is smoothed
 
 
 @dataclass(eq=False)
@@ -35,7 +34,8 @@ class Scattered:
         self._places.append(place / self.lengths)
         self._data.append(np.concatenate([values[None], slopes * self.lengths[:, None]]))
         K = np.concatenate([self._rows(each) for each in self._places])
-        self._inverse = np.asarray(np.linalg.inv(K + NUGGET * np.eye(len(K))))
+        # What the data err by is smoothed between places that are close.
+        self._inverse = np.asarray(np.linalg.inv(K + HALF_DIGITS * np.eye(len(K))))
 
     def doubt(self, place: Array) -> float:
         """Return how uncertain the functions are at a place: 0 at a known one, 1 far from all."""

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
-from stribeck.numerics.settings import EPSILON
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, ROUNDING
 
 __all__ = [
     "Samples",
@@ -39,15 +39,12 @@ __all__ = [
 
 MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
 
-COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
+# Rounding of sampled values over the unknowns, magnified by solving for the coefficients.
+COEFFICIENT_NOISE = EPSILON**0.75
 
-CIRCLE_NOISE = 16 * EPSILON  # Rounding of coefficients from values on a circle, over the largest times powers of its radius
+CIRCLE_NOISE = ROUNDING  # Rounding of coefficients from values on a circle, over the largest times powers of its radius
 
 REFINED_ORDERS = 2  # Orders that are refined with their residual: rounding of thin films shows in the first ones
-
-# If refining the first order changes it by more than this fraction, the kept factors are too old and every order is refined:
-# the published drag of thin films errs by up to a hundred times as much.
-OLD_INVERSE = 1e-8
 
 INTERVAL_ORDER = 12  # Values on an interval, unless more are asked for
 
@@ -123,7 +120,8 @@ def implicit_series(
         found[k] = inverse(coefficient(k))
         if refines and (k <= REFINED_ORDERS or is_old):
             change = inverse(coefficient(k))
-            is_old = is_old or (k == 1 and np.abs(change).max() > OLD_INVERSE * np.abs(found[1]).max())
+            # Factors that change the first order too much are too old: every order is refined.
+            is_old = is_old or (k == 1 and np.abs(change).max() > HALF_DIGITS * np.abs(found[1]).max())
             found[k] += change
 
 

@@ -7,6 +7,11 @@ one name for the core, whoever reads it: two places that need the same kind of n
 EPSILON = 2.0**-52  # Machine precision; what rounds away is a small multiple of it
 SAFETY = 2.0  # Stated over estimated error where the estimate is of leading order
 NEGLIGIBLE = 0.1  # Share of a tolerance, an error or a step that does not count beside the whole
+ROUNDING = (
+    16 * EPSILON
+)  # Rounding of a nodal gap, a difference of terms of order one; with less, noise counts as error of the mesh
+HALF_DIGITS = EPSILON**0.5  # What is smaller beside one is known to no digit in a difference quotient, or is no progress
+SAME_PLACE = EPSILON**0.75  # Distance over the scale of a mesh below which two places are one: nodes between are the same
 
 # Safety factors of what is stated of balls, by tests/test_ball_errors.py: with less, true errors exceed stated ones.
 # Each pair is the stated error over the difference of two meshes, and the least such difference over the largest of all.
@@ -30,6 +35,14 @@ SMOOTH_BELOW_PRESSURE = 1e-3  # Largest contact pressure of a film whose angles 
 SMALL_TAIL = 0.1  # Last coefficients of the gap in one direction over the other's below which that is not refined
 RIGID_START_SPEED = 2.0  # Speed above which a film that ends starts from that of a rigid ball
 
+# Of the line: states that only start others, and limits on work.
+COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
+COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration towards such a state; smaller ones may be rounding
+COARSE_ORDER = 10  # Nodes per panel of such a state
+MAX_PANELS = 128  # Panels of a mesh of the line
+MAX_AMPLIFICATION = 40.0  # Sum of absolute weights of a prediction above which it uses fewer states, whose errors it amplifies
+
 # Tolerances of the promise.
+FLOOR = 1e-3  # Value below which the error of what crosses zero, the offset or a gap at rest, is not relative to it
 MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film over rtol
 ROUNDING_RTOL_FRACTION = 0.03  # Rounding of friction over rtol from which a missed tolerance is put down to it

@@ -13,9 +13,10 @@ from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.numerics.series import along
+from stribeck.numerics.settings import NEGLIGIBLE
 
-STATIC_LOAD = 0.01  # Load at which heavier contacts at rest are solved: all gaps are positive there
-SAFE_SEPARATION = 2.3  # Separation at the largest pressure at rest for which all gaps are positive
+# Separation at the largest pressure of the smooth contact at rest: a tenfold pressure leaves the gap positive.
+SAFE_SEPARATION = -math.log(NEGLIGIBLE)
 
 
 def separation_at_pressure(shape: AsperityLaw, log_pressure: float) -> float:
@@ -38,7 +39,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
         \Delta h = -\kappa \max(0, s_0 - \Phi^{-1}(\bar F_N^e))
 
     A sliding contact is solved as it is.  At rest the load only shifts gap and offset: a heavy contact of the exponential law
-    is solved at :data:`STATIC_LOAD`, one of another law at separations so much larger that at the pressure of the smooth
+    is solved at the load of one, and one of another law at separations so much larger, that at the pressure of the smooth
     contact they are s_0, :data:`SAFE_SEPARATION`.  Laws that diverge at zero need no shift.
     """
     if groups.speed > 0:
@@ -47,11 +48,12 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
         groups = replace(groups, model=Model(solid=groups.model.solid))
     shape = groups.law
     if shape is None or is_exponential(shape):
-        if groups.load <= STATIC_LOAD:
-            return groups, 0.0
         exponents = groups.scaling
-        roughness = STATIC_LOAD**exponents.roughness_exponent * groups.relative_roughness
-        lighter = replace(groups, load=STATIC_LOAD, roughness=roughness)
+        load = math.exp(-SAFE_SEPARATION / exponents.pressure_exponent)
+        if groups.load <= load:
+            return groups, 0.0
+        roughness = load**exponents.roughness_exponent * groups.relative_roughness
+        lighter = replace(groups, load=load, roughness=roughness)
         heavier = exponents.pressure_exponent * math.log(float(groups.load / lighter.load))
         return lighter, -float(groups.relative_roughness) * heavier
     if shape.lowest > -np.inf or isinstance(shape, ShiftedLaw):

@@ -15,6 +15,7 @@ from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact, HertzScales, model_words
 from stribeck.contacts.friction import Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.notes import law_notes
 from stribeck.contacts.regime import Regime, regime_of
 from stribeck.files.datasets import Column, new_dataset, number_columns
 from stribeck.files.results import Exported
@@ -25,7 +26,6 @@ from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
 from stribeck.solver.about import about_problem, constant_groups, problem_attributes
-from stribeck.solver.notes import law_notes
 from stribeck.solver.numbers import main_rows, numbers_of
 
 if TYPE_CHECKING:

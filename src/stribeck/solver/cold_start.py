@@ -25,6 +25,7 @@ from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.solver.cavities.cavity_length import paths_to_cavity
@@ -38,9 +39,6 @@ MAX_RIGID_LOG_FACTOR = 0.7  # Logarithm of the factor of the load within which t
 MIN_SATURATED_LOAD = 0.5
 MAX_LOG_HEIGHT = 400.0  # Logarithm of the largest height of a rigid film, and of 1 over the smallest, in double precision
 MAX_NEWTON_STEPS = 600  # Newton steps after which a path is given up; none of 200 random states takes more than 300
-ORDER = 10  # Nodes per panel of a coarse state, less one
-MESH_TOLERANCE = 1e-3  # Tolerance of the mesh of a coarse state
-NEWTON_TOLERANCE = 1e-5  # Relative error of the gap that Newton's iteration leaves in a coarse state
 
 
 @dataclass(frozen=True)
@@ -129,10 +127,10 @@ def cold_start(groups: Groups) -> Path[State]:
         if guess is None:
             return None
         try:
-            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+            mesh = mesh_for(guess, here, contact_law(here), COARSE_ORDER, COARSE_RTOL)
         except MeshTooLargeError:
             return None
-        state = solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
+        state = solve_state(here, Operators(mesh, here.model), guess, COARSE_STEP)
         steps += state.root.steps
         return state
 

@@ -32,13 +32,11 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
 from stribeck.quantities.outcome import Outcome
 
 __all__ = ["coarse_state", "with_final_state", "paths_to_model"]
 
-ORDER = 10  # Nodes per panel of a coarse state, less one
-MESH_TOLERANCE = 1e-3  # Tolerance of the mesh of a coarse state
-NEWTON_TOLERANCE = 1e-5  # Relative error of the gap that Newton's iteration leaves in a coarse state
 MAX_STEPS_FULL_FILM = 100  # Newton steps after which a full film is given up
 # Newton steps with a free exit after which films with a fixed exit are solved instead: more steps oscillate.
 MAX_STEPS_FREE_BOUNDARY = 15
@@ -98,8 +96,8 @@ def coarse_state(groups: Groups, guess: Guess) -> State | None:
     if operators is None:
         return None
     if not ends:
-        return solve_state(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FULL_FILM)
-    state = solve_state(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FREE_BOUNDARY)
+        return solve_state(groups, operators, guess, COARSE_STEP, MAX_STEPS_FULL_FILM)
+    state = solve_state(groups, operators, guess, COARSE_STEP, MAX_STEPS_FREE_BOUNDARY)
     return state if state.outcome.ok else _search_exit(groups, guess, state)
 
 
@@ -116,7 +114,7 @@ def _operators(groups: Groups, guess: Guess) -> Operators | None:
     shapes: tuple[Guess, ...] = (guess, guess.states[-1]) if isinstance(guess, Extrapolation) else (guess,)
     for shape in shapes:
         try:
-            mesh = mesh_for(shape, groups, contact_law(groups), ORDER, MESH_TOLERANCE, anew=False)
+            mesh = mesh_for(shape, groups, contact_law(groups), COARSE_ORDER, COARSE_RTOL, anew=False)
         except MeshTooLargeError:
             continue
         return Operators(mesh, groups.model)
@@ -130,12 +128,12 @@ def _search_exit(groups: Groups, guess: Guess, failed: State) -> State:
         operators = _operators(groups, guess)
         if operators is None:
             break
-        held, free = solve_at_fixed_exit(groups, operators, guess, NEWTON_TOLERANCE, MAX_STEPS_FIXED_BOUNDARY)
+        held, free = solve_at_fixed_exit(groups, operators, guess, COARSE_STEP, MAX_STEPS_FIXED_BOUNDARY)
         spent += held.root.steps
         if held.root.outcome.ok:
             last, missed, step = held, 0, float(free[held.equations.layout.exit.start])
             if held.equations.admissible(held.y, free) == 1.0:
-                found = solve_state(groups, operators, held, NEWTON_TOLERANCE, MAX_STEPS_FREE_BOUNDARY)
+                found = solve_state(groups, operators, held, COARSE_STEP, MAX_STEPS_FREE_BOUNDARY)
                 spent += found.root.steps
                 if found.outcome.ok:
                     failed = found

@@ -16,6 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.equations.prediction import extrapolate
 from stribeck.numerics.continuation import steady_weights
+from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
 from stribeck.solver.point.estimate import Pair
@@ -30,8 +31,6 @@ __all__ = ["Neighbours"]
 
 MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
 MAX_STATES = 120  # States that are kept
-STRAIGHT_RTOL = 1e-6  # Distance from a line over its length up to which states lie on it, so that a polynomial predicts
-MAX_WEIGHT_SUM = 8.0  # Sum of the absolute weights of a prediction of a ball above which it uses fewer states
 
 Line = Sequence[tuple[float, Any]]
 """States along a line through the one that is wanted, which lies at zero; the nearest last."""
@@ -96,11 +95,11 @@ class Neighbours:
             return [(0.0, states[0])]
         direction = away[0] / length
         along = away @ direction / float(direction @ direction)
-        straight = np.abs(away - along[:, None] * direction).max(axis=1) <= STRAIGHT_RTOL * length
+        straight = np.abs(away - along[:, None] * direction).max(axis=1) <= HALF_DIGITS * length
         line = [(length, states[0])]
         for i in np.flatnonzero(straight).tolist():
             s = float(along[i])
-            if len(line) <= order and min(abs(s - other) for other, _ in line) > STRAIGHT_RTOL * length:
+            if len(line) <= order and min(abs(s - other) for other, _ in line) > HALF_DIGITS * length:
                 line.append((s, states[i]))
         return line[::-1]
 
@@ -201,7 +200,7 @@ class _BallSteps:
     def follow(self, line: Line, groups: Groups) -> PointState:
         """Return a state from those along a line, from cold where that fails."""
         moving = [(s, each) for s, each in line if isinstance(each.work, Pair)]
-        weights = steady_weights([s for s, _ in moving], 0.0, MAX_WEIGHT_SUM)
+        weights = steady_weights([s for s, _ in moving], 0.0, MAX_AMPLIFICATION)
         states = [each for _, each in moving[len(moving) - len(weights) :]]
         several = list(zip(weights.tolist(), states, strict=True)) if len(states) > 1 else []
         return solve_from(line[-1][1], groups, self.rtol, several)

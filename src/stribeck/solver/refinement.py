@@ -17,11 +17,10 @@ from stribeck.equations.observables import Observables, observables
 from stribeck.equations.state import END_RESOLUTION_GAIN, State, decay_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.numerics.settings import MAX_REFINEMENTS, ROUNDING
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 
-MAX_REFINEMENTS = 12
-NODAL_ROUNDING = 16 * 2.0**-52  # Rounding of a nodal gap, a difference of terms of order one, between the nodes
 MIN_GAP_TAIL_RTOL_FRACTION = 0.02  # Tail of the gap over rtol below which refining where it is read does not help
 ROUNDING_ERROR_RATIO = 0.5  # Error over that on the last mesh above which what is left may be noise of the nodal gaps
 MAX_NOISE_RATIO = 4.0  # Error over that noise up to which it may be
@@ -134,7 +133,7 @@ def converge(
 
 def _noise(point: RefinedState) -> float:
     """Return the relative error that rounding of nodal gaps on small panels may cause in the read gap."""
-    return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
+    return 0.0 if point.state is None else ROUNDING / float(point.state.gap.min())
 
 
 def tolerance_factor(excess: float) -> float:

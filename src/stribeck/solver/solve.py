@@ -18,12 +18,13 @@ from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.error_estimate import SAFETY
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
+from stribeck.numerics.settings import SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
@@ -34,7 +35,6 @@ from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cavities.cavity_length import cavitated_start
 from stribeck.solver.cold_start import first_paths
 from stribeck.solver.homotopy import is_lost_to_rounding
-from stribeck.solver.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError, describe

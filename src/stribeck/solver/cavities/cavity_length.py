@@ -23,15 +23,9 @@ from stribeck.equations.state import State, mesh_for
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.homotopy import (
-    MESH_TOLERANCE,
-    NEWTON_TOLERANCE,
-    ORDER,
-    coarse_state,
-    paths_to_model,
-    with_final_state,
-)
+from stribeck.solver.homotopy import coarse_state, paths_to_model, with_final_state
 
 __all__ = ["paths_to_cavity", "cavitated_start"]
 
@@ -161,8 +155,8 @@ def _solve_at_length(groups: Groups, guess: SeenFrom) -> State | None:
     """Return a coarse state whose cavity has the length of the guess, or None."""
     here = replace(groups, model=replace(groups.model, cavity_pressure=guess.cavity_pressure))
     try:
-        mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE, anew=False)
+        mesh = mesh_for(guess, here, contact_law(here), COARSE_ORDER, COARSE_RTOL, anew=False)
     except MeshTooLargeError:
         return None
-    state = solve_of_length(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE, MAX_STEPS_FIXED_LENGTH)
+    state = solve_of_length(here, Operators(mesh, here.model), guess, COARSE_STEP, MAX_STEPS_FIXED_LENGTH)
     return state if state.outcome.ok else None

@@ -12,7 +12,7 @@ from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.error_estimate import GAP_FLOOR, GAP_ROWS, FineOperators
+from stribeck.equations.error_estimate import GAP_ROWS, FineOperators
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
 from stribeck.equations.state import State, decay_of, is_thinning, solve_state
@@ -21,6 +21,7 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.series import COEFFICIENT_NOISE, beyond, interval, radius
+from stribeck.numerics.settings import FLOOR
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
@@ -129,7 +130,7 @@ class LineProblem:
         found[:, DRAG_ROWS] = drag_scales(values)
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
-            found[:, GAP_ROWS] = np.maximum(found[:, GAP_ROWS], GAP_FLOOR * kappa[:, None])
+            found[:, GAP_ROWS] = np.maximum(found[:, GAP_ROWS], FLOOR * kappa[:, None])
         found[found == 0] = 1.0
         return found
 

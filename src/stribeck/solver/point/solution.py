@@ -13,6 +13,15 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.notes import (
+    MAX_FILM_SLOPE,
+    THICK_PREFIX,
+    WETTED_PREFIX,
+    cavitation_notes,
+    fluid_notes,
+    law_notes,
+    shape_notes,
+)
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
@@ -23,15 +32,6 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
-from stribeck.solver.notes import (
-    MAX_FILM_SLOPE,
-    THICK_PREFIX,
-    WETTED_PREFIX,
-    cavitation_notes,
-    fluid_notes,
-    law_notes,
-    shape_notes,
-)
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve_error import SolveError, describe
 
