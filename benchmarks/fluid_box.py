@@ -137,7 +137,8 @@ def thinning(
         lambda: sb.fluids.Eyring(1 / time),
         lambda: sb.fluids.PowerLaw(time, float(rng.uniform(0.65, 0.98))),
     )
-    return {"fluid": laws[rng.integers(4)](), **motion_alone(rng)}
+    number = 4 if groups.geometry == "line" else 3  # a power law has no ball
+    return {"fluid": laws[rng.integers(number)](), **motion_alone(rng)}
 
 
 def flow(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:

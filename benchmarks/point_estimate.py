@@ -5,7 +5,7 @@ Usage::
     python benchmarks/point_estimate.py --solve KIND [--number 60] [--rtols 1e-3 1e-4] [--seed 35] [--out PAIRS.jsonl]
     python benchmarks/point_estimate.py --judge [--out PAIRS.jsonl]
 
-KIND is full, thinning, power, exit, reform, layer, flow, rolling or closing, the last films that roughness closes.  Groups are
+KIND is full, thinning, exit, reform, layer, flow, rolling or closing, the last films that roughness closes.  Groups are
 even in the logarithm: speed 10**-5.5 to 10**0.5, load 1e-5 to 1, kappa 1e-3 to 1, one state in six smooth.  Each state is
 solved from cold at each tolerance, and every pair of meshes on the way counts.  The true error is that against a finer state:
 panels near the contact halved, three degrees and 1.4 times the modes more, or twice the angles where the film breaks.
@@ -53,7 +53,7 @@ from stribeck.solver.point.state import PointState
 ANGLES = (45, 65, 95, 130)
 """Angles of the judge of a film that breaks."""
 
-KINDS = ("full", "thinning", "power", "exit", "reform", "layer", "flow", "rolling", "closing")
+KINDS = ("full", "thinning", "exit", "reform", "layer", "flow", "rolling", "closing")
 
 
 RULES = [(safety, floor) for safety in (0.35, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0) for floor in (0.1, 0.3, 1.0)]
@@ -84,7 +84,6 @@ def draw(kind: str, number: int, seed: int) -> tuple[sb.Groups, dict[str, Any]]:
     parts: dict[str, dict[str, Any]] = {
         "full": {},
         "thinning": {"fluid": thinning},
-        "power": {"fluid": sb.fluids.PowerLaw(rate * film, float(rng.uniform(0.65, 0.98)))},
         "exit": {"cavitation": "exit"},
         "reform": {"cavitation": "reform", "cavity_pressure": -float(10 ** rng.uniform(-3, -0.5))},
         "layer": {"solid": sb.solids.Layer(float(10 ** rng.uniform(-0.5, 1.5)), float(rng.choice([0.3, 0.45, 0.5])))},

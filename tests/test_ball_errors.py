@@ -44,9 +44,9 @@ KINDS = {
     "smooth": (fast(1.23107e-3, 1.55281e-3), {}, 1e-3, 1e-5),
     "thinning": (
         sb.Groups(1.416265, 5.286749e-2, 2.493576e-4, geometry="point"),
-        {"fluid": sb.fluids.PowerLaw(3.313543, 0.926216)},
-        1e-4,
-        1e-6,
+        {"fluid": sb.fluids.Carreau(3.313543, 0.926216)},
+        1e-3,
+        1e-5,
     ),
 }
 

@@ -23,12 +23,14 @@ NEAR_MINIMUM = 1.3  # Gap over its minimum up to which the difference of two gap
 
 # Limits on work: with more, memory and time; with less, states that miss their tolerance or fail, and say so.
 MAX_REFINEMENTS = 8  # Pairs of meshes tried for a state of a ball
+MAX_ROUNDS = 40  # Rounds of a fixed-point iteration
 MAX_DEGREE = 18  # Degree of panels
 MAX_STEPS_NEW_MESH = 80  # Newton steps on a mesh other than the neighbour's, or from cold
 MAX_STEPS_FROM_NEIGHBOUR = 15  # Newton steps on the mesh of a neighbour, before a cold start is cheaper
 DROP_FACTORS_ABOVE_BYTES = 200_000_000  # Memory of a mesh above which factors of coarser ones are dropped
 
 # First meshes and starts of balls, limits on work too: with others a state takes another refinement or more steps.
+LEAST_DEGREE = 7  # Degree of panels of first meshes, and of the far film
 FIRST_DEGREES, FIRST_MODES = (7, 8), (8, 10)  # Least degree and number of modes, of a full film and one that ends
 DEGREE_LOG_GAIN, FIRST_ERROR = 1.49, 5.0  # ln of the error reduction by one degree, and the error without any
 SMOOTH_BELOW_PRESSURE = 1e-3  # Largest contact pressure of a film whose angles are those of a smooth contact [p_Hz]

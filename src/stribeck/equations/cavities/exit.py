@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.system import Unknowns
+from stribeck.numerics.trace import Value
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
@@ -43,7 +44,7 @@ class CavitatedEquations(CavitatedSystem):
     def friction_error_outside(self, y: Unknowns) -> float:
         """Return an estimate of the friction that is lost there."""
         del y
-        lost = self.film.outside_film(self.speed, self.operators.mesh.rim)
+        lost = self.film.outside_film(self.speed, self.operators.mesh)
         return 0.0 if lost is None else lost.drag
 
     @property
@@ -60,15 +61,14 @@ class CavitatedEquations(CavitatedSystem):
         beyond[1] = 0.0  # the operator holds that of mode one
         return np.asarray(found + beyond)
 
-    def rim_slope(self, p: Array, offset: float) -> Array:
+    def rim_slope(self, p: Array, offset: Value) -> Any:
         """Return the radial derivative of the film pressure at the rim: it falls as that of the full film."""
-        return self.rim_rates(offset) @ p
+        first, slope = particular(np.array([self.operators.mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
+        return p * (slope / first)
 
     def rim_rates(self, offset: float) -> Array:
         """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
-        mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
-        return np.eye(mesh.modes) * float(slope[0] / first[0])
+        return np.diag(self.rim_slope(np.ones(self.operators.mesh.modes), offset))
 
     def shear_missing(self, y: Unknowns) -> Array:
         """Return the shear over h that is missing on each ring in the dry streaks of the wake, shape (rings,)."""

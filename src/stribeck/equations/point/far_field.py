@@ -16,12 +16,14 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
+from stribeck.numerics.trace import Value
 
 DEFLECTION_COEFFICIENT = 4.0 / (3.0 * math.pi)  # b: the deflection under the load, far away, times the distance
 
@@ -29,14 +31,14 @@ GAUSS_POINTS = 40  # Gauss points of the integrals from the rim to infinity
 
 
 def particular(
-    r: Array, offset: float, speed: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION_COEFFICIENT
-) -> tuple[Array, Array]:
-    """Return the factor of cos(theta) in the first part, and its derivative in r."""
+    r: Array, offset: Value, speed: float, far: FarFilm = FULL_FAR_FILM, bulge: float = DEFLECTION_COEFFICIENT
+) -> tuple[Any, Any]:
+    """Return the factor of cos(theta) in the first part, and its derivative in r, of an offset or of its trace."""
     rigid = offset + 0.5 * r * r
     bent = 1.0 - 16.0 * bulge / r**3
-    base = -0.25 * far.pressure * speed * r / rigid**2
-    slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * 48.0 * bulge / r**4
-    return np.asarray(base * bent), np.asarray(slope)
+    base = -0.25 * far.pressure * speed * r / (rigid * rigid)
+    slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * (48.0 * bulge / r**4)
+    return base * bent, slope
 
 
 def rates(modes: int) -> Array:
@@ -49,12 +51,6 @@ def _rule() -> tuple[Array, Array]:
     """Return the Gauss rule of the integrals, on 0 to 1."""
     t, w = legendre.leggauss(GAUSS_POINTS)
     return 0.5 * (t + 1.0), 0.5 * w
-
-
-def logarithms(rim: float, speed: float, far: FarFilm = FULL_FAR_FILM) -> tuple[float, float, float]:
-    """Return minus the logarithms of shear, pressure flow and moment at the rim."""
-    log = speed * math.log(rim)
-    return -far.couette * log, -far.poiseuille * log, 2.0 * far.poiseuille * log
 
 
 def tails(

@@ -11,7 +11,7 @@ the fluxes and their derivatives only, whatever the law.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -45,9 +45,6 @@ class FluxSlopes(NamedTuple):
 class OutsideFilm(Protocol):
     """The film outside the rim, less a film of constant viscosity."""
 
-    is_all: ClassVar[bool]
-    """Whether it is the whole film, but for the logarithms of friction."""
-
     @property
     def drag(self) -> float:
         """Estimate of the drag of the film outside the rim."""
@@ -55,24 +52,26 @@ class OutsideFilm(Protocol):
     def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of its friction integrals, with an offset."""
 
-    def first(self, offset: float) -> float:
-        """Return the factor of cos(theta) in the pressure at the rim."""
+    @property
+    def first(self) -> float:
+        """The factor of cos(theta) in the pressure at the rim."""
 
-    def tails(self, offset: float) -> tuple[float, float, float]:
-        """Return the parts of shear, pressure flow and moment."""
+    @property
+    def tails(self) -> tuple[float, float, float]:
+        """The parts of shear, pressure flow and moment."""
 
     def at_radius(self, radius: float) -> OutsideFilm:
         """Return the film outside another radius."""
 
-    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
-        """Return pressure, its radial derivative and lost radial flux at angles of the rim, and their offset derivatives."""
+    def at_rim(self, angles: Array, modes: int) -> Array:
+        """Return pressure, its radial derivative and lost radial flux at angles of the rim, shape (3, angles)."""
 
 
 class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
-    def outside_film(self, speed: float, rim: float) -> OutsideFilm | None:
-        """Return the film outside a rim less a film of constant viscosity; None where it is that film."""
+    def outside_film(self, speed: float, mesh: PolarMesh) -> OutsideFilm | None:
+        """Return the film outside the rim of a mesh less a film of constant viscosity; None where it is that film."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
@@ -105,7 +104,7 @@ class NewtonianPlane:
 
     film: Newtonian = Newtonian()  # That of the line
 
-    def outside_film(self, speed: float, rim: float) -> None:
+    def outside_film(self, speed: float, mesh: PolarMesh) -> None:
         """Return nothing: the film is that at ambient pressure."""
 
     def flow(self, gap: Any, pressure: Any) -> tuple[Any, Any]:
@@ -175,7 +174,7 @@ class BlendedPlane:
     film: PlaneFilm
     newtonian: float  # Part of the Newtonian fluid
 
-    def outside_film(self, speed: float, rim: float) -> None:
+    def outside_film(self, speed: float, mesh: PolarMesh) -> None:
         """Return nothing: states on the way to a film are coarse."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:

@@ -41,10 +41,6 @@ GMRES_RTOL = 3e-2  # Relative error of a Newton step that GMRES may leave
 
 ACCEPTED_RESIDUAL = 0.1  # Error above which a kept preconditioner is given up
 
-# Change of the rim pressure by the last step over the tolerance, where the film outside the rim is shear-thinning; steps leave
-# a few hundredths of it.
-MAX_RIM_CHANGE_RATIO = 100.0
-
 MIN_CURVATURE = 3.0  # Factor from the square of a step to the error after it, if no two steps are known to measure it
 
 
@@ -68,11 +64,6 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
         weight = np.minimum(1.0, law.pressure(h) / load_scale)
         size = np.maximum(size, weight * np.abs(dh) / law.local_decay_length(h))
     return float(size.max())
-
-
-def rim_change(y: Unknowns, step: Unknowns) -> float:
-    """Return the change of the film pressure at the rim by a step, over that pressure: no gap feels it, but friction does."""
-    return float(np.abs(step.fluid[:, -1]).max() / max(np.abs(y.fluid[:, -1]).max(), np.finfo(float).tiny))
 
 
 def iterate(
@@ -134,9 +125,7 @@ def iterate(
                 continue
             bending = max(MIN_CURVATURE, min(100.0, size / before**2)) if math.isfinite(before) else MIN_CURVATURE
             left = bending * size * size + solved.missed
-            if left <= tolerance and (
-                equations.outside_film is None or rim_change(y, step) <= MAX_RIM_CHANGE_RATIO * tolerance
-            ):
+            if left <= tolerance:
                 return ended(Outcome.CONVERGED)
             if solved.steps > (REBUILD_AT_NEAR_SOLUTION if size < NEAR_SOLUTION_STEP else REBUILD_AT):
                 preconditioner = None

@@ -19,11 +19,11 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
-from stribeck.equations.thinning.column import has_viscosity_at_rest
-from stribeck.equations.thinning.far_field import ROLLING_SHEAR_RATE, far_rate, lost
+from stribeck.equations.thinning.far_field import FarThinned, usual_rate
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.settings import MAX_ROUNDS
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.plane import BODIES
 
@@ -33,21 +33,13 @@ PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
 
 RIM_RADIUS = 50.0  # Radius of the rim over the scale of the contact
 
-# Largest fraction of the viscosity lost to shear-thinning at RIM_RADIUS; farther out it grows with the square of the radius,
-# as the far film solves for a gap of r**2/2.
-THINNING_AT_RIM = 1e-3
-
-THINNING_AT_RIM_CAVITATED = 1e-7  # Largest lost fraction at the rim of a cavitated film, whose far film is Newtonian
+FAR_FRICTION_ERROR = 5e-6  # Error of the friction over the speed by what thins beyond the rim, at most
 
 MAX_EXTRA_FAR_PANELS = 6  # Most panels between RIM_RADIUS and the rim
 
 # Smallest pressure at the rim of a cavitated shear-thinning film [p_Hz]: below it rounding would decide which nodes cavitate.
 # The friction that a nearer rim leaves out is stated.
 MIN_RIM_PRESSURE = 1e-9
-
-POWER_LAW_FAR_PANELS = 1  # Panels between RIM_RADIUS and the rim for a power law
-
-FILM_ROUNDS = 20  # Iterations for a film that is thinned by its own shear rate
 
 FAR_PANELS = 2  # Panels in ln r beyond twice the scale
 
@@ -175,8 +167,8 @@ def film_speed(speed: float, model: Model) -> float:
     if not isinstance(film, ShearThinning) or not speed > 0.0:
         return speed
     found = speed
-    for _ in range(FILM_ROUNDS):  # a thinner film is sheared faster
-        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING_SHEAR_RATE) / film_scale(found)])
+    for _ in range(MAX_ROUNDS):  # a thinner film is sheared faster
+        rate = np.array([usual_rate(film.law, film.slide, speed, film_scale(found))])
         found = math.sqrt(found * speed * float(film.law.stress(rate)[0][0] / rate[0]))
     return found
 
@@ -247,18 +239,17 @@ def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Mo
 
 def farther_panels(speed: float, model: Model) -> int:
     """Return the number of panels outside RIM_RADIUS until the film is Newtonian and its suction far from that of a cavity."""
-    # Far out the shear rate is 2/r**2 and the suction 0.8 speed/r**3.
+    # Far out the suction is 0.8 speed/r**3.
     film, needed = model.film, 0.0
     if not speed > 0.0:
         return 0
-    ratio = RIM_RADIUS / 2.0
     if isinstance(film, ShearThinning):
-        # A film that ends has no far film that thins.
-        per_panel = 1.0 if model.cavitation is Cavitation.EXIT else ratio ** (2.0 / FAR_PANELS)
-        most = THINNING_AT_RIM_CAVITATED if model.cavitation is Cavitation.EXIT else THINNING_AT_RIM
-        for needed in range(MAX_EXTRA_FAR_PANELS if has_viscosity_at_rest(film.law) else POWER_LAW_FAR_PANELS + 1):
-            part = lost(film.law, far_rate(film.law, film.slide, speed, RIM_RADIUS * ratio ** (needed / FAR_PANELS)))
-            if part <= most * per_panel**needed:
+        for needed in range(MAX_EXTRA_FAR_PANELS):
+            rim = RIM_RADIUS * (RIM_RADIUS / 2.0) ** (needed / FAR_PANELS)
+            far = FarThinned(film.law, film.slide, speed, rim, 1)
+            # A film that ends has no far film that thins.
+            left = far.drag if model.cavitation is Cavitation.EXIT else far.friction_error(0.0)
+            if left <= FAR_FRICTION_ERROR * speed:
                 break
     if model.cavitation is Cavitation.EXIT:
         needed = min(needed, math.floor(_panels_to((speed / MIN_RIM_PRESSURE) ** (1 / 3))))

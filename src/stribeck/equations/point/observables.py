@@ -23,7 +23,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
-from stribeck.equations.point.far_field import logarithms, tails
+from stribeck.equations.point.far_field import tails
 from stribeck.equations.point.films import OutsideFilm
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
@@ -113,13 +113,12 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    more, first, plain = equations.outside_film, 0.0, speed
+    more, first = equations.outside_film, 0.0
     if more is not None:
-        first, plain = more.first(y.offset), 0.0 if more.is_all else speed
-        couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails(y.offset)).tolist()
-    far = logarithms(mesh.rim, speed - plain, equations.far)
-    rest = tails(mesh.rim, y.offset, plain, at_rim - first, equations.far, equations.operators.bulge)
-    couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), np.add(far, rest)).tolist()
+        first = more.first
+        couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails).tolist()
+    rest = tails(mesh.rim, y.offset, speed, at_rim - first, equations.far, equations.operators.bulge)
+    couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), rest).tolist()
     return {
         "J_couette": couette,
         "J_poiseuille": poiseuille,
@@ -165,9 +164,8 @@ class FrictionWithin:
                 return 0.0
             more = self.outside_film.at_radius(radius)
             if which < 2:
-                return -more.tails(self.offset)[which]
-            edge = -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first(self.offset)
-            return edge - self.far.poiseuille * self.speed if more.is_all else edge
+                return -more.tails[which]
+            return -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first
         panel, row = self.mesh.radial_interpolation(np.array([radius]))
         far = self.finite[which] + (self.far.couette, self.far.poiseuille, 0.0)[which] * self.speed * log_radius
         return float(row[0] @ self.running[which, panel[0]]) - far

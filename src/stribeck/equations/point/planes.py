@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from stribeck.contacts.model import Model
 from stribeck.equations.point.films import BlendedPlane, NewtonianPlane, PlaneFilm
-from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.plane import ThinningPlane
 from stribeck.fluids.blend import Blend
-from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -26,10 +23,3 @@ PLANES: dict[type, Callable[[Any], PlaneFilm]] = {
 def plane_of(film: Film) -> PlaneFilm:
     """Return the flow in the plane of a film; a KeyError for one that has none."""
     return PLANES[type(film)](film)
-
-
-def has_far_film(model: Model) -> bool:
-    """Return whether the film of a model is known beyond the rim."""
-    film = model.film
-    is_power = isinstance(film, ShearThinning) and not has_viscosity_at_rest(film.law)
-    return not (is_power and model.cavitation is Cavitation.EXIT)

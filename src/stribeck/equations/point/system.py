@@ -17,7 +17,7 @@ Newton's step is reduced to the total pressure: :math:`dh = K \, dp + dz - R_1`,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION_COEFFICIENT, particular, rates
 from stribeck.equations.point.films import ISOVISCOUS_PLANE, OutsideFilm, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.trace import Matrix, Trace, Value, act
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.half_space import deflections_from_beyond, tilt_from_beyond
@@ -34,10 +35,6 @@ from stribeck.solids.plane import BODIES
 from stribeck.solids.solid import Solid
 
 LOAD = 2.0 * np.pi / 3.0  # Load in Hertz units: the integral of the pressure
-
-USUAL_WETTED_RADIUS = 25.0  # Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]
-
-OFFSET_STEP = 1e-4  # Step of the offset over the square of the rim, in a central difference whose error is its square
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +70,10 @@ class Operators:
         return 0.5 * self.mesh.radii**2
 
     @cached_property
-    def rim_rates(self) -> Array:
-        """Film pressure without a source at the rim -> its radial derivative, shape (angles, angles)."""
+    def rim_rates(self) -> Matrix:
+        """Film pressure without a source at the rim -> its radial derivative."""
         mesh = self.mesh
-        return np.asarray((mesh.cosines * rates(mesh.modes)) @ mesh.to_modes / mesh.rim)
+        return Matrix((mesh.cosines * rates(mesh.modes)) @ mesh.to_modes / mesh.rim)
 
     @cached_property
     def load_row(self) -> Array:
@@ -126,7 +123,7 @@ class Equations:
     @cached_property
     def outside_film(self) -> OutsideFilm | None:
         """The film outside the rim less a film of constant viscosity; None where there is no such difference."""
-        return self.film.outside_film(self.speed, self.operators.mesh.rim) if self.speed > 0 else None
+        return self.film.outside_film(self.speed, self.operators.mesh) if self.speed > 0 else None
 
     def friction_error_outside(self, y: Unknowns) -> float:
         """Return an estimate of the error of the friction integrals by a film that still thins beyond the rim."""
@@ -137,28 +134,11 @@ class Equations:
         del y
         return 0.0
 
-    @property
-    def drag_beyond(self) -> float:
-        """An estimate of what the finite parts of friction leave out, if it is no logarithm."""
-        film = self.outside_film
-        return film.at_radius(USUAL_WETTED_RADIUS).drag if film is not None and film.is_all else 0.0
-
     @cached_property
-    def _more_at_rim(self) -> tuple[Array, Array]:
-        """Pressure, radial derivative and lost flux of that at the angles of the rim, and their derivatives by the offset."""
+    def more_at_rim(self) -> Array:
+        """Pressure, radial derivative and flux at the angles of the rim more than of a film of constant viscosity."""
         mesh = self.operators.mesh
-        nothing = np.zeros((3, mesh.modes))
-        return (nothing, nothing) if self.outside_film is None else self.outside_film.at_rim(mesh.angles, mesh.modes)
-
-    @cached_property
-    def _plain(self) -> float:
-        """Speed of the far film that does not thin."""
-        return 0.0 if self.outside_film is not None and self.outside_film.is_all else self.speed
-
-    def more_at_rim(self, offset: float) -> Array:
-        """Return pressure, radial derivative and flux that the rim has more than a film of constant viscosity."""
-        base, change = self._more_at_rim
-        return np.asarray(base + offset * change)
+        return np.zeros((3, mesh.modes)) if self.outside_film is None else self.outside_film.at_rim(mesh.angles, mesh.modes)
 
     def deflect(self, by_mode: Array) -> Array:
         """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
@@ -191,31 +171,25 @@ class Equations:
         radial, angular, (wide, carried) = self.film.fluxes(mesh, self.speed, h, p)
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
         cos, x, part = np.cos(mesh.angles), mesh.rim, np.pi / mesh.modes
-        own = wide * self.rim_slope(p[:, -1], offset) + self.more_at_rim(offset)[2]
+        own = wide * self.rim_slope(p[:, -1], offset) + self.more_at_rim[2]
         found[:, -1] += part * x * (self.speed * cos * carried - own)
         return found
 
-    def rim_slope(self, p: Array, offset: float) -> Array:
+    def rim_slope(self, p: Array, offset: Value) -> Any:
         """Return the radial derivative of the film pressure at the rim, p being that pressure."""
         mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, self._plain, bulge=self.operators.bulge)
-        cos = np.cos(mesh.angles)
-        more, more_slope, _ = self.more_at_rim(offset)
-        return np.asarray(self.operators.rim_rates @ (p - first * cos - more) + slope * cos + more_slope)
+        first, slope = particular(np.array([mesh.rim]), offset, self.speed, bulge=self.operators.bulge)
+        cos, (more, more_slope, _) = np.cos(mesh.angles), self.more_at_rim
+        return act(self.operators.rim_rates, p - first * cos - more) + slope * cos + more_slope
 
     def rim_rates(self, offset: float) -> Array:
         """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
-        return self.operators.rim_rates
+        return self.operators.rim_rates.matrix
 
     def rim_slope_by_offset(self, p: Array, offset: float) -> Array:
         """Return the derivative of :meth:`rim_slope` by the offset."""
-        step = OFFSET_STEP * self.operators.mesh.rim**2
-        return (self.rim_slope(p, offset + step) - self.rim_slope(p, offset - step)) / (2 * step)
-
-    @property
-    def rim_flux_by_offset(self) -> Array:
-        """The derivative by the offset of the flux that is lost."""
-        return np.asarray(self._more_at_rim[1][2])
+        traced = self.rim_slope(p, Trace.number("offset", np.array([offset])))
+        return np.asarray(traced.columns["offset"])
 
 
 class Linear:
@@ -234,7 +208,6 @@ class Linear:
         self.rim_of_pressure = -part * x * mobility
         self.rim_of_gap = part * x * (speed * np.cos(mesh.angles) * carried_by_gap - by_gap * slope)
         self.rim_of_offset = self.rim_of_pressure * equations.rim_slope_by_offset(y.fluid[:, -1], y.offset)
-        self.rim_of_offset -= part * x * equations.rim_flux_by_offset
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""

@@ -50,8 +50,6 @@ NEWTONIAN_BELOW_WITHOUT_PLATEAU = 1e-60  # Lowest shear rate of the table for la
 
 MAX_RATE = 1e13  # Highest shear rate of the table
 
-MIN_RATE_POWER_LAW = 1e-2  # Lowest shear rate of the table of a power law, which is extrapolated as such below
-
 CONVERGED_STEP = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
 
 FIRST_ORDER_STRESS_CHANGE = 0.3  # Change of the stress over the largest stress up to which first order is a good start
@@ -98,17 +96,10 @@ class FlowCurve:
         return np.exp(log), slope
 
 
-def has_viscosity_at_rest(law: RateLaw) -> bool:
-    """Return whether the viscosity at low rates is that of the contact, not that of a power law."""
-    slow = np.array([1e-60])
-    return abs(float(law.stress(slow)[0][0] / slow[0]) - 1.0) < 1e-3
-
-
 @lru_cache(maxsize=32)
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
-    slowest = law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU
-    ends = np.array([slowest if has_viscosity_at_rest(law) else MIN_RATE_POWER_LAW, MAX_RATE])
+    ends = np.array([law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE])
     lowest, highest = np.log(law.stress(ends)[0])
     stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
     rate = law.rate(stress)

@@ -17,37 +17,20 @@ Source: ours, from the generalised Reynolds equation.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.thinning.column import column, mean_wall_stress
-from stribeck.equations.thinning.outside_rim import OutsideRim, Waves
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
+from stribeck.numerics.settings import EPSILON, LEAST_DEGREE, MAX_ROUNDS, NEGLIGIBLE, SAFETY
 from stribeck.quantities.lazy import cached_property
 
-ANGLE_COUNT = 20  # Angles of the columns in half a turn
-
-MAX_DEGREE = 5  # Highest degree of the polynomial in powers of the radius
-
-MAX_ROUNDS = 40  # Most fixed-point iterations
-
-CONVERGED = 1e-9  # Change of the pressure coefficients over the speed at which the fixed-point iteration ends
-
-# Distance from a resonance over the lost fraction below which an exponent is left out: fixed-point iteration diverges there.
-RESONANCE_FACTOR = 20.0
-
-MIN_LOST_FRACTION = 1e-9  # Lost fraction of the viscosity at the rim below which the far film is Newtonian to column accuracy
-
-FIRST_ORDER = 1e-6  # Lost fraction of the viscosity at which its exponent in the rate is read
-
-# Stated error of friction over speed, lost fraction at the rim, and offset over the squared rim radius; the true factor is up
-# to 5 for Cross's law with exponents from 0.1 to 0.8.
-OFFSET_ERROR_FACTOR = 12.0
-
-ROLLING_SHEAR_RATE = 0.3  # Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness
+# The lost fraction of the viscosity is a difference from one: half of its digits tell where it is this small.
+UNSEEN_LOSS = math.sqrt(EPSILON)
 
 
 def lost(law: RateLaw, rate: float) -> float:
@@ -55,9 +38,9 @@ def lost(law: RateLaw, rate: float) -> float:
     return abs(1.0 - float(law.stress(np.array([rate]))[0][0]) / rate)
 
 
-def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
-    """Return the rate at a radius far from the contact, over that of the relaxation time."""
-    return 2.0 * law.time * speed * max(abs(slide), ROLLING_SHEAR_RATE) / radius**2
+def usual_rate(law: RateLaw, slide: float, speed: float, gap: float) -> float:
+    """Return the rate in a gap over that of the relaxation time: pressure shears films of walls that roll, too."""
+    return law.time * speed * max(1.0, abs(slide)) / gap
 
 
 class _Film(NamedTuple):
@@ -69,50 +52,67 @@ class _Film(NamedTuple):
     drag: Array  # Of the shear, around the ring
 
 
-class FarThinned(OutsideRim):
+@dataclass(frozen=True, eq=False)
+class FarThinned:
     """The film of a ball beyond a rim, less that of a fluid that does not thin."""
+
+    law: RateLaw  # The law, its time in Hertz units at this speed
+    slide: float  # Half the slide-to-roll ratio
+    speed: float  # Speed group
+    rim: float  # Radius of the rim [a]
+    angles: int  # Angles of the columns in half a turn
+
+    def at_radius(self, radius: float) -> FarThinned:
+        """Return the film beyond another radius."""
+        return replace(self, rim=radius)
 
     @cached_property
     def lost(self) -> float:
         """The lost part of the viscosity at the rim."""
-        return lost(self.law, far_rate(self.law, self.slide, self.speed, self.rim))
+        return lost(self.law, usual_rate(self.law, self.slide, self.speed, 0.5 * self.rim**2))
 
     @cached_property
     def power(self) -> float:
         """The power of the rate with which it falls."""
-        rate = far_rate(self.law, self.slide, self.speed, self.rim)
-        while lost(self.law, rate) > FIRST_ORDER:
-            rate *= 0.1
-        return math.log2(lost(self.law, 2.0 * rate) / lost(self.law, rate)) if self.lost > MIN_LOST_FRACTION else 2.0
+        rate = 1.0
+        while lost(self.law, rate) > UNSEEN_LOSS:
+            rate *= NEGLIGIBLE
+        return math.log(lost(self.law, rate / NEGLIGIBLE) / lost(self.law, rate)) / -math.log(NEGLIGIBLE)
 
     @cached_property
     def degree(self) -> int:
         """The degree of the polynomial."""
-        powers = (2.0 * self.power * np.arange(1, MAX_DEGREE + 2)[:, None]) ** 2
-        resonance = np.abs(powers - 9.0 - np.arange(1, ANGLE_COUNT, 2) ** 2).min(axis=1)
-        poor = np.flatnonzero(resonance < RESONANCE_FACTOR * self.lost)
-        return max(0, int(poor[0]) - 1) if poor.size else MAX_DEGREE
+        # Near a power with which pressures fall by themselves a round does not gain what is lost.
+        powers = (2.0 * self.power * np.arange(1, LEAST_DEGREE + 2)[:, None]) ** 2
+        resonance = np.abs(powers - 9.0 - np.arange(1, self.angles, 2) ** 2).min(axis=1)
+        poor = np.flatnonzero(NEGLIGIBLE * resonance < SAFETY * self.lost)
+        return max(0, int(poor[0]) - 1) if poor.size else LEAST_DEGREE
 
     @property
     def drag(self) -> float:
         """An estimate of the drag that is lost beyond the rim."""
-        return math.pi / 3.0 * self.speed * self.lost / self.power
+        return math.pi / 3.0 * self.speed * self.lost / self.power if self.lost > UNSEEN_LOSS else 0.0
 
     def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
-        return OFFSET_ERROR_FACTOR * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
+        more = max(1.0, abs(offset)) / (0.5 * self.rim**2)  # in flow and drag with the third power at most
+        return SAFETY * 3.0 * more * self.speed * self.lost
+
+    @property
+    def first(self) -> float:
+        """The factor of cos(theta) in the pressure at the rim."""
+        return float(self._film.pressure[-1, 1] / self.rim**3)
+
+    def at_rim(self, angles: Array, modes: int) -> Array:
+        """Return pressure, its radial derivative and flux at angles of the rim, shape (3, angles)."""
+        film, rim = self._film, self.rim
+        cosines = np.cos(np.multiply.outer(angles, np.arange(min(modes, self.angles))))
+        waves = film.pressure[-1] / rim**3, (film.steepness - 3.0 * film.pressure[-1]) / rim**4, film.flux[-1] * rim**2
+        return np.stack([cosines @ each[: cosines.shape[1]] for each in waves])
 
     @cached_property
-    def at_rim_by_offset(self) -> tuple[Waves, Waves]:
-        """The waves at the rim; those by the offset are not known."""
-        film, rim = self._film, self.rim
-        at_rim = film.pressure[-1] / rim**3, (film.steepness - 3.0 * film.pressure[-1]) / rim**4, film.flux[-1] * rim**2
-        found = Waves(*(each[1::2] for each in at_rim))
-        return found, Waves(*(np.zeros_like(each) for each in found))
-
-    def tails(self, offset: float) -> tuple[float, float, float]:
-        """Return the parts of shear, pressure flow and moment beyond the rim."""
-        del offset
+    def tails(self) -> tuple[float, float, float]:
+        """The parts of shear, pressure flow and moment beyond the rim."""
         film = self._film
         v, weights = _grid(self.degree)[:2]
         weights = weights / (2.0 * self.power * v)  # of dr/r
@@ -124,10 +124,10 @@ class FarThinned(OutsideRim):
 
     @cached_property
     def _film(self) -> _Film:
-        law, speed, rim = self.law, self.speed, self.rim
-        theta, modes = (np.arange(ANGLE_COUNT) + 0.5) * math.pi / ANGLE_COUNT, np.arange(ANGLE_COUNT)
+        law, speed, rim, count = self.law, self.speed, self.rim, self.angles
+        theta, modes = (np.arange(count) + 0.5) * math.pi / count, np.arange(count)
         cosines, sines = (each(np.multiply.outer(theta, modes)) for each in (np.cos, np.sin))
-        to_cosines, to_sines = cosines * (2.0 / ANGLE_COUNT), sines * (2.0 / ANGLE_COUNT)
+        to_cosines, to_sines = cosines * (2.0 / count), sines * (2.0 / count)
         to_cosines[:, 0] *= 0.5
         v, _, derivative = _grid(self.degree)
         along_r = -2.0 * self.power * (np.eye(v.size) + v[:, None] ** 2 * derivative / v)
@@ -136,22 +136,22 @@ class FarThinned(OutsideRim):
         scale = (rim * v ** (-0.5 / self.power))[:, None] ** 2  # Of r**2: all else is the same at all radii.
         along = np.stack([np.tile(np.cos(theta), (v.size, 1)), np.tile(-np.sin(theta), (v.size, 1))])
         plain = 0.8 * speed * np.stack([3.0 * along[0], -along[1]])
-        slip = -(2.0 * speed * law.time * self.slide) / scale * along
-        found = np.zeros((v.size, ANGLE_COUNT))
+        slip = (-(2.0 * speed * law.time * self.slide) / scale * along).reshape(2, -1)
+        found, start = np.zeros((v.size, count)), None
         for _ in range(MAX_ROUNDS):
             before = found
             gradient = plain + np.stack([(along_r @ found - 3.0 * found) @ cosines.T, -(found * modes) @ sines.T])
-            flow = column(law, (3.0 * law.time / scale * gradient).reshape(2, -1), slip.reshape(2, -1))
-            flux = 0.5 * scale / law.time * flow.carried.reshape(gradient.shape) - 0.125 * gradient
+            flow = column(law, (3.0 * law.time / scale * gradient).reshape(2, -1), slip, start)
+            flux, start = 0.5 * scale / law.time * flow.carried.reshape(gradient.shape) - 0.125 * gradient, flow.mean
             radial, angular = flux[0] @ to_cosines, flux[1] @ to_sines
             leaving = 3.0 * radial + along_r @ radial + modes * angular
             found = np.zeros_like(before)
             found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
-            if np.abs(found - before).max() <= CONVERGED * speed:
+            if np.abs(found - before).max() <= UNSEEN_LOSS * speed:
                 break
         shear = mean_wall_stress(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
         shear *= 0.5 * scale / (law.time * speed) if self.slide else 1.0
-        drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLE_COUNT)
+        drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / count)
         return _Film(found, radial, (along_r @ found)[-1], drag)
 
 

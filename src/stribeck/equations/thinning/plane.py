@@ -25,11 +25,9 @@ from stribeck.equations.thinning.column import (
     FIRST_ORDER_STRESS_CHANGE,
     Column,
     column,
-    has_viscosity_at_rest,
     mean_wall_stress,
 )
-from stribeck.equations.thinning.far_field import MIN_LOST_FRACTION, FarThinned
-from stribeck.equations.thinning.far_field_of_power_law import FarPower
+from stribeck.equations.thinning.far_field import UNSEEN_LOSS, FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 
@@ -57,12 +55,10 @@ class ThinningPlane:
     film: ShearThinning  # That of the line, at a speed
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
-    def outside_film(self, speed: float, rim: float) -> OutsideFilm | None:
-        """Return the film outside a rim less one of constant viscosity; None where the fluid is Newtonian there."""
-        if not has_viscosity_at_rest(self.film.law):
-            return FarPower(self.film.law, self.film.slide, speed, rim)
-        found = FarThinned(self.film.law, self.film.slide, speed, rim)
-        return found if found.lost > MIN_LOST_FRACTION else None
+    def outside_film(self, speed: float, mesh: PolarMesh) -> OutsideFilm | None:
+        """Return the film outside the rim less one of constant viscosity; None where the fluid is Newtonian there."""
+        found = FarThinned(self.film.law, self.film.slide, speed, mesh.rim, mesh.modes)
+        return found if found.lost > UNSEEN_LOSS else None
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""

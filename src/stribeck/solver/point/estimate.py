@@ -83,9 +83,9 @@ def safety_of(level: Level) -> tuple[float, float]:
     return (KINKED_SAFETY, KINKED_FLOOR) if breaks or film.uses_speed else (SMOOTH_SAFETY, SMOOTH_FLOOR)
 
 
-def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
-    """Return the scales of errors: one for shares and angles, at least ``drag`` for friction, else about the value."""
-    friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed, drag) if speed > 0 else 1.0
+def scales_of(values: dict[str, float], speed: float) -> dict[str, float]:
+    """Return the scales of errors: one for shares and angles, else about the value."""
+    friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed) if speed > 0 else 1.0
     found = {}
     for name, value in values.items():
         if name.endswith("share") or name in ("minimum_radius", "minimum_angle"):
@@ -101,7 +101,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     equations, y = fine.equations, fine.unknowns
     values, rough = observables(equations, y), observables(coarse.equations, coarse.unknowns)
-    scales = scales_of(values, equations.speed, equations.drag_beyond)
+    scales = scales_of(values, equations.speed)
     safety, floor = safety_of(fine)
     differences = {name: abs(value - rough[name]) / scales[name] for name, value in values.items()}
     # Two meshes may agree by chance in one number, hardly in all.

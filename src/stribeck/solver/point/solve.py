@@ -19,12 +19,14 @@ from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, fits, layout, operators_of, resolution
 from stribeck.equations.point.observables import OBSERVABLES, identity_error
-from stribeck.equations.point.planes import PLANES, has_far_film
+from stribeck.equations.point.planes import PLANES
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
+from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
+from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
@@ -145,11 +147,11 @@ def check_model(model: Model) -> None:
     """Refuse films, solids and flow factors that the equations of a ball do not have."""
     if type(model.film) not in PLANES:
         raise InputError(f"fluid = {model.film.name}: its flow in the plane under a ball is not implemented.")
-    if not has_far_film(effective_model(model)):
+    if isinstance(model.film, ShearThinning) and not has_plateau(model.film.law):
         raise InputError(
-            f"fluid = {model.film.name} with cavitation = exit: the film far from a ball that breaks in a power law is not "
-            "implemented; give Carreau or Cross, whose viscosity at low rates is that of the contact, or a cavity pressure "
-            "below zero."
+            f"fluid = {model.film.name}: around a ball every film is sheared slowly somewhere, where a pure power law grows "
+            "without bound; the viscosity at low rates must be that of the contact. Give Carreau(relaxation_time, exponent) "
+            "with the same exponent, or Cross; their viscosity has a plateau below the rate 1/relaxation_time."
         )
     if isinstance(model.film, Newtonian) and not is_isotropic(model.film.flow):
         raise InputError(
@@ -167,6 +169,12 @@ def check_model(model: Model) -> None:
             f"solid = {model.solid.name}: its thickness is {thickness:.3g} of the Hertz radius on a half-space; under a ball "
             f"it must be {MIN_LAYER_THICKNESS:g} or more. Thinner layers are solved under a cylinder only."
         )
+
+
+def has_plateau(law: RateLaw) -> bool:
+    """Return whether the viscosity of a fluid at low rates is that of the contact."""
+    slow = np.array([np.finfo(float).tiny])
+    return bool(np.isclose(law.stress(slow)[0], slow, atol=0.0)[0])
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
