@@ -170,8 +170,8 @@ class PowerLaw(RateLaw):
 
     .. math:: \eta = \eta_0 \, [10^{-16} + (t \dot\gamma)^2]^{(n-1)/2} \approx \eta_0 (t \dot\gamma)^{n-1}
 
-    Of cylinders only.  The viscosity of the contact is that at the rate 1/t.  With the consistency :math:`K = \eta_0 t^{n-1}`, that is
-    :math:`\tau = K \dot\gamma^n`.
+    Of cylinders only.  The viscosity of the contact is that at the rate 1/t.  With the consistency
+    :math:`K = \eta_0 t^{n-1}`, that is :math:`\tau = K \dot\gamma^n`.
 
     Parameters
     ----------
