@@ -243,7 +243,7 @@ def test_a_sweep_over_groups_has_a_law_too(tmp_path):
 
 def test_what_varies_in_a_sweep_is_not_also_said_by_its_surface(tmp_path):
     text = sweep_text().replace("[vary]", '[vary]\nroughness = ["1 um", "2 um"]')
-    with pytest.raises(sb.InputError, match=r"\[vary\] roughness follows from the table \[surface\]"):
+    with pytest.raises(sb.InputError, match=r"\[vary\] roughness = 1e-06 follows from the table \[surface\]"):
         sb.load_sweep(write(tmp_path, text))
 
 

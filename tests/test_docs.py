@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 import stribeck as sb
-from stribeck.sweeps.store import claimed_store
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -186,9 +185,7 @@ def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
     (tmp_path / "sweep.toml").write_text("[groups]\nload = 0.1\nroughness = 0\n[vary]\nspeed = [0, 0]\n")
     groups = sb.sweep(tmp_path / "sweep.toml", tmp_path / "groups").to_dataset()
     (tmp_path / "sweep.toml").write_text((ROOT / "examples" / "sweep.toml").read_text().replace("26", "2"))
-    design = sb.load_sweep(tmp_path / "sweep.toml")
-    with claimed_store(tmp_path / "contacts", design):
-        contacts = sb.open_sweep(tmp_path / "contacts").to_dataset(grid=False)
+    contacts = sb.sweep(tmp_path / "sweep.toml", tmp_path / "contacts").to_dataset(grid=False)
     assert {*groups.variables, *contacts.variables} - set(names_in_tables()) == set()
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.batches.chain import Chain
+from stribeck.batches.states import Chain, States
 from stribeck.curves.coordinate import Coordinate
 from stribeck.regimes.phase_grid import Diagram
-from stribeck.sweeps.columns import StateInputs
+from stribeck.sweeps.columns import row_of
 
 BALL = sb.Groups(1e-2, 1e-3, 1e-4, law=sb.contact_laws.GreenwoodTripp(), geometry="point")
 
@@ -32,6 +32,6 @@ def test_groups_made_of_others_share_their_physics(subtests):
 def test_a_chain_of_a_sweep_travels_with_the_physics_of_its_states():
     import pickle
 
-    inputs = StateInputs({}, False, BALL.physics)
-    chain = Chain(np.zeros(1, dtype=int), np.array([[1e-2, 1e-3, 1e-4]]), BALL.physics, 1e-6, inputs.contact, inputs.row)
-    assert pickle.loads(pickle.dumps(chain)).physics == BALL.physics
+    states = States(groups=np.array([[1e-2, 1e-3, 1e-4]]), physics=BALL.physics, rtol=1e-6)
+    chain = pickle.loads(pickle.dumps(Chain(np.zeros(1, dtype=int), states, row_of)))
+    assert chain.states.problem(0)[0].physics == BALL.physics

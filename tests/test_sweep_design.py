@@ -52,7 +52,7 @@ def test_groups_may_vary_with_the_coefficients_of_friction(tmp_path):
     design = load(
         tmp_path, "[groups]\nspeed = 1e-4\nload = 0.1\n[vary]\nroughness = [0, 1e-3]\nboundary_friction = [0.5, 1]\n"
     )
-    assert not design.si
+    assert design.contacts is None
     assert design.groups.tolist() == [[1e-4, 0.1, 0.0]] * 2 + [[1e-4, 0.1, 1e-3]] * 2
     assert design.inputs["boundary_friction"].tolist() == [0.5, 1.0, 0.5, 1.0]
     assert design.inputs["beta"].tolist() == [1.0] * 4
@@ -141,7 +141,7 @@ def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_pa
         ),
         (
             CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n",
-            "state 0: the dimensionless groups of this contact",
+            "the dimensionless groups of this contact",
         ),
         (GROUPS + "[vary]\nspeed = [1]\n[design]\npoints = 4\n", "[design] points = 4 is for random, latin-hypercube, sobol;"),
         (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; set how many states"),

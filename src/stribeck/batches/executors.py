@@ -19,7 +19,7 @@ from importlib.metadata import version
 from multiprocessing.connection import wait
 from typing import Any
 
-from stribeck.batches.chain import Chain
+from stribeck.batches.states import Chain
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 

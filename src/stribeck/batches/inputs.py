@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from stribeck.batches.states import Contacts
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["Contacts", "broadcast_inputs", "varied"]
-
-Contacts = np.ndarray[Any, np.dtype[np.object_]]
-"""A contact for each state."""
+__all__ = ["broadcast_inputs", "varied"]
 
 
 def varied(
@@ -31,17 +29,11 @@ def varied(
         columns, names = broadcast_inputs(table, dims)
         return replace(problem, **{name: _numbers(name, column) for name, column in columns.items()}), None, names
     columns, names = broadcast_inputs(inputs, dims)
-    shape = next(iter(columns.values())).shape if columns else ()
-    contacts: Contacts = np.empty(shape, dtype=object)
-    for index in np.ndindex(shape):
+    contacts: Contacts = np.empty(next(iter(columns.values())).shape if columns else (), dtype=object)
+    for index in np.ndindex(contacts.shape):
         contacts[index] = problem.replace(**{name: column[index] for name, column in columns.items()})
     flat = [contact.groups for contact in contacts.ravel()]
-    if any(each.physics != flat[0].physics for each in flat):
-        raise InputError(
-            f"the states of one batch need the same law, fluid and motion; of {', '.join(inputs)} only what changes the "
-            "groups of speed, load and roughness may vary in one call."
-        )
-    arrays = {name: np.array([float(getattr(each, name)) for each in flat]).reshape(shape) for name in GROUPS}
+    arrays = {name: np.reshape([float(getattr(each, name)) for each in flat], contacts.shape) for name in GROUPS}
     return replace(flat[0] if flat else problem.groups, **arrays), contacts, names
 
 

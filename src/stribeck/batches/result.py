@@ -1,45 +1,57 @@
-"""What :func:`stribeck.solve_batch` returns: observables, friction and outcomes of many states in arrays."""
+"""What :func:`stribeck.solve_batch` returns: many states, whose numbers are read off them as arrays."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.batches.inputs import Contacts
+from stribeck.batches.states import Contacts
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import far_film
-from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
-from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.geometries import LINE
+from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable, friction_rows
+from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError, show
-from stribeck.solver.numbers import absolute_error
+from stribeck.quantities.units import InputError
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.numbers import columns_of_states, si_films
+from stribeck.solver.point.solution import PointSolution
 
-__all__ = ["BatchSolution"]
+__all__ = ["BatchSolution", "without_fields"]
+
+
+def without_fields(solution: Any) -> Any:
+    """Return a state with its numbers alone: the fields of thousands would fill the memory."""
+    # Its fluid holds what was computed of it, and those of a contact are made anew.
+    groups = solution.groups if solution.contact is None else solution.contact.groups
+    if isinstance(solution, PointSolution):
+        names = "mesh", "nodal_gap", "nodal_contact_pressure", "nodal_fluid_pressure", "fields", "work"
+        fields: dict[str, Any] = {"groups": groups, **dict.fromkeys(names)}
+        observables = replace(solution.observables, _groups=groups)
+        return replace(solution, groups=groups, observables=observables, state=replace(solution.state, **fields))
+    return replace(solution, groups=groups, mesh=None, nodal_gap=None, nodal_pressures=None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BatchSolution(Exported, Shown, ByValue):
     """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
 
-    Its dataset has along :attr:`dims` the inputs that were given, observables, friction by both definitions, films in SI units
-    where there are contacts, errors and outcomes.
+    The observables of the geometry are attributes, such as ``contact_load_share`` or ``central_gap``.  Its dataset has along
+    :attr:`dims` the inputs that were given, observables, friction by both definitions, films in SI units where there are
+    contacts, errors and outcomes.
 
     Attributes
     ----------
     groups : Groups
-        The states.
+        The states; where a fluid or solid varies, with that of the first.
     contacts : ndarray of LineContact or PointContact, or None
         The contacts they came from.
     dims : tuple of str
@@ -50,15 +62,8 @@ class BatchSolution(Exported, Shown, ByValue):
         The relative tolerance asked for.
     outcome : ndarray of Outcome
         How the solve of each state ended.
-    values : dict of str to ndarray
-        The observables of the geometry by name; they are attributes too, such as ``contact_load_share`` or ``central_gap``.
-    errors : dict of str to ndarray
-        Estimated errors of the observables as a solution states them: relative, but absolute for the load shares.
-    error_estimate : ndarray
-        The largest of these of each state, as a solution states it.
-    own_viscous : dict of str to ndarray
-        By definition, viscous friction of each contact and its absolute error [-], where the observables do not give it: of
-        balls in a fluid that thins or in liquid that ends near the contact; else empty.
+    solutions : ndarray of Solution or PointSolution
+        The states with their numbers, but without their fields; None if there is no state.
     """
 
     _picture = "stribeck.plot.batch.plot_states"
@@ -69,31 +74,52 @@ class BatchSolution(Exported, Shown, ByValue):
     varied: tuple[str, ...]
     rtol: float
     outcome: np.ndarray[Any, np.dtype[np.object_]]
-    values: dict[str, Array] = field(repr=False)
-    errors: dict[str, Array] = field(repr=False)
-    error_estimate: Array = field(repr=False)
-    own_viscous: dict[Definition, Array] = field(default_factory=dict, repr=False)
+    solutions: np.ndarray[Any, np.dtype[np.object_]] = field(repr=False)
 
     def __getattr__(self, name: str) -> Array:
         """Return an observable under its own name."""
-        if not name.startswith("_") and name != "values" and name in self.values:
-            return self.values[name]
+        if not name.startswith("_") and name != "solutions" and name in self._observables:
+            return self._each(lambda state: getattr(state, name))
         # Of a property that fails Python asks here, and would show none of what failed.
         return object.__getattribute__(self, name)  # type: ignore[no-any-return]
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""
-        return [*super().__dir__(), *self.values]
+        return [*super().__dir__(), *self._observables]
+
+    @property
+    def _observables(self) -> list[str]:
+        return [row.name for row in self.outputs.rows]
+
+    def _each(self, number_of: Callable[[Any], Any]) -> Array:
+        """Return a number of each state, nan where there is none."""
+        numbers = [math.nan if each is None else number_of(each) for each in self.solutions.ravel()]
+        return np.array(numbers, dtype=float).reshape(self.solutions.shape)
 
     @property
     def outputs(self) -> OutputTable:
-        """The table of the observables of this geometry."""
-        return OUTPUT_TABLES[self.groups.geometry]
+        """The table of the observables of these states."""
+        solved: list[BaseSolution] = [each for each in self.solutions.ravel() if each is not None]
+        return solved[0].outputs if solved else OUTPUT_TABLES[self.groups.geometry]
 
     @property
     def ok(self) -> Flags:
         """Whether each state converged."""
         return np.array([one.ok for one in self.outcome.ravel()], dtype=bool).reshape(self.outcome.shape)
+
+    @property
+    def values(self) -> dict[str, Array]:
+        """The observables by name."""
+        return {name: getattr(self, name) for name in self._observables}
+
+    @property
+    def errors(self) -> dict[str, Array]:
+        """Estimated errors of the observables as a solution states them: relative, but absolute for the load shares."""
+
+        def errors_of(name: str) -> Array:
+            return self._each(lambda state: state.errors.get(name, math.nan))
+
+        return {name: errors_of(name) for name in self.outputs.names}
 
     @property
     def relative_errors(self) -> Array:
@@ -115,46 +141,18 @@ class BatchSolution(Exported, Shown, ByValue):
     def _friction(
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> FrictionArray:
-        rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
-        if beta is not None and self.own_viscous:
-            film = groups.model.film
-            liquid = f"a fluid that thins ({film.name})" if film.uses_speed else "a disc of liquid"
-            raise InputError(
-                f"beta = {show(beta)}: the friction of a ball in {liquid} needs the flow "
-                "up to where the liquid ends, which batches keep for the beta of their contacts alone; leave it out, or solve "
-                "the states one by one."
-            )
-        inputs = {"beta": self._coefficient("beta", beta), "far": far_film(groups.model)}
-        for name, of in rule.inputs.items():
-            inputs.setdefault(name, self._each(of))
-        mu0 = rule.sliding_factor(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)
-        if self.own_viscous:
-            viscous, error = self.own_viscous[definition]
-        else:
-            parts = {name: self.values[name] for name in rule.parts("published") + rule.parts(definition)}
-            viscous = rule.viscous(parts, groups.speed, groups.load, inputs, definition)
-            error = rule.viscous_error(parts, self.errors, groups.speed, groups.load, inputs, definition)
-        error = np.abs(mu0) * self.errors["contact_load_share"] + error
-        contact = mu0 * self.contact_load_share
-        return FrictionArray(contact, viscous, contact + viscous, error, self._friction)
+        given = boundary_friction, beta, definition
+        found = [None if each is None else each.friction(*given) for each in self.solutions.ravel()]
+        none = (math.nan,) * 4
+        terms = [none if each is None else (each.asperities, each.fluid, each.total, each.error) for each in found]
+        asperities, fluid, total, error = np.reshape(np.array(terms, dtype=float).T, (4, *self.solutions.shape))
+        return FrictionArray(asperities, fluid, total, error, self._friction)
 
     @property
     def regime(self) -> np.ndarray[Any, np.dtype[np.str_]]:
         """Lubrication regime of each state, as :func:`stribeck.regime_of` tells it; empty text if there is no state."""
-        friction = self.friction
-        part = friction_share(friction.asperities, friction.fluid)
-        return np.where(self.ok, np.array(REGIMES)[regime_numbers(self.fluid_load_share, part)], "")
-
-    def _each(self, of: Callable[[Any], float]) -> float | Array:
-        """Return an input of each contact; of groups alone, that of a contact that has none of its own."""
-        if self.contacts is None:
-            return float(of(None))
-        return np.array([of(contact) for contact in self.contacts.ravel()]).reshape(self.contacts.shape)
-
-    def _coefficient(self, name: str, given: float | None) -> float | Array:
-        if given is not None or self.contacts is None:
-            return LINE.checked(name, 1.0 if given is None else given)
-        return self._each(lambda contact: getattr(contact, name))
+        found = ["" if each is None else each.regime for each in self.solutions.ravel()]
+        return np.where(self.ok, np.array(found, dtype=str).reshape(self.solutions.shape), "")
 
     def to_si(self) -> dict[str, Array]:
         """Return films and other observables that have a scale in SI units.
@@ -171,33 +169,22 @@ class BatchSolution(Exported, Shown, ByValue):
         """
         if self.contacts is None:
             raise InputError("to_si needs the Hertz scales of a contact; give solve_batch a contact instead of Groups.")
-        hertz = [contact.hertz for contact in self.contacts.ravel()]
-        scales = {
-            "gap": np.reshape([each.indentation for each in hertz], self.contacts.shape),
-            "width": np.reshape([each.half_width for each in hertz], self.contacts.shape),
-        }
-        scales["pressure"] = np.reshape([each.pressure for each in hertz], self.contacts.shape)
-        rows = [row for row in self.outputs.rows if row.film and row.name in self.values]
-        return {row.film: self.values[row.name] * scales[row.scale] for row in rows}
+
+        def films(name: str) -> Array:
+            return self._each(lambda state: si_films(state)[name][0])
+
+        return {name: films(name) for name in self.outputs.films}
 
     def _labelled(self) -> Labelled:
+        flat = self.solutions.ravel()
+        solved = np.array([each is not None for each in flat], dtype=bool)
         columns: dict[str, Column] = {}
-        for name, about in self.outputs.listed.items():
-            if name in self.values or name == "error_estimate":
-                columns[name] = (self.dims, getattr(self, name), *about)
-        for row in self.outputs.rows:
-            if row.listed and row.error and row.name in self.errors:
-                error = absolute_error(row, self.values[row.name], self.errors[row.name])
-                columns[f"{row.name}_error"] = (self.dims, error, "1", f"estimated absolute error of {row.name}")
-        for definition in DEFINITIONS:
-            found = self.friction(definition=definition)
-            rows = zip(friction_rows(definition).items(), (found.total, found.fluid, found.error), strict=True)
-            columns |= {name: (self.dims, values, *about) for (name, about), values in rows}
-        if self.contacts is not None:
-            for name, values in self.to_si().items():
-                columns[name] = (self.dims, values, *self.outputs.films[name])
+        for name, (values, unit, label) in columns_of_states(flat[solved].tolist()).items():
+            every = np.full(len(flat), math.nan)
+            every[solved] = values
+            columns[name] = (self.dims, every.reshape(self.solutions.shape), unit, label)
         columns["regime"] = (self.dims, self.regime.astype(object), *COLUMNS["regime"])
-        columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), *COLUMNS["outcome"])
+        columns["outcome"] = (self.dims, _names(self.outcome), *COLUMNS["outcome"])
         coords = {}
         for name in self.varied:
             dims, values = _along(self.dims, self.input(name))
@@ -238,7 +225,7 @@ class BatchSolution(Exported, Shown, ByValue):
         if self.contacts is None:
             return "1"
         first: Contact = self.contacts.ravel()[0]
-        return first.INPUTS.unit(name)
+        return all_input_rows(first.INPUTS)[name].unit
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"
@@ -251,8 +238,7 @@ class BatchSolution(Exported, Shown, ByValue):
         return Card(shape, rows)
 
 
-def _name(outcome: Outcome) -> str:
-    return outcome.name
+_names = np.vectorize(lambda outcome: outcome.name, otypes=[object])
 
 
 def _along(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import fields
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Indices
-from stribeck.batches.chain import Chain, Ended
+from stribeck._types import Flags
 from stribeck.batches.executors import solve_here
 from stribeck.batches.inputs import varied
-from stribeck.batches.order import chains_of
-from stribeck.batches.result import BatchSolution
+from stribeck.batches.result import BatchSolution, without_fields
+from stribeck.batches.solving import solve_all
+from stribeck.batches.states import Ended, States
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import DEFINITIONS, Definition
-from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_callback, show
-from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.solve import check_rtol
 
 __all__ = ["solve_batch"]
@@ -81,59 +77,39 @@ def solve_batch(
         given = tuple(dict.fromkeys(problem.INPUTS.stands_for.get(name, name) for name in inputs))
     else:
         given = tuple(name for name in GROUPS if name in inputs or np.ndim(getattr(problem, name)))
-    shape = groups.shape
-    parts = (groups.speed, groups.load, groups.roughness)
-    states = np.stack([np.broadcast_to(part, shape).ravel() for part in parts], axis=1)
-    total = len(states)
-    table = OUTPUT_TABLES[groups.geometry].names
-    values = {name: np.full(total, np.nan) for name in table}
-    errors = {name: np.full(total, np.nan) for name in table}
-    estimate = np.full(total, np.nan)
-    rule = RULES[groups.geometry]
-    is_enough = rule.is_enough(
-        groups.model, [] if contacts is None else [rule.of_contact(each) for each in contacts.ravel().tolist()]
-    )
-    own: dict[Definition, Array] = {} if is_enough else {each: np.full((2, total), np.nan) for each in DEFINITIONS}
-    outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
-    done = 0
-
-    def keep(rows: Sequence[tuple[int, Ended]]) -> None:
-        nonlocal done
-        for row, ended in rows:
-            if ended.fault is not None:
-                raise ended.fault
-            ends = ended.solution if ended.outcome.ok and ended.solution is not None else ended
-            outcome[row], done = ends.outcome, done + 1
-            if ended.solution is None:
-                continue
-            estimate[row] = ended.solution.error_estimate
-            for definition, pair in own.items():
-                friction = ended.solution.friction(boundary_friction=0.0, definition=definition)
-                pair[:, row] = friction.fluid, friction.error
-            for kept, found in ((values, _observed(ended.solution)), (errors, ended.solution.errors)):
-                for name, value in found.items():
-                    kept.setdefault(name, np.full(total, np.nan))[row] = value
+    parts = (np.broadcast_to(getattr(groups, name), groups.shape).ravel() for name in GROUPS)
+    flat = None if contacts is None else contacts.ravel()
+    states = States(groups=np.stack(list(parts), axis=1), physics=groups.physics, rtol=rtol, contacts=flat)
+    kept = _InMemory(len(states.groups))
 
     def report_progress() -> None:
         if on_progress is not None:
-            on_progress(done, total)
+            on_progress(int(kept.done().sum()), len(states.groups))
 
-    def chain(rows: Indices) -> Chain:
-        each = [None] * len(rows) if contacts is None else contacts.ravel()[rows].tolist()
-        return Chain(rows, states[rows], groups.physics, rtol, each.__getitem__, lambda _, ended: ended)
-
-    with suppress(KeyboardInterrupt):
-        solve_here([chain(rows) for rows in chains_of(states)], keep, report_progress)
-
-    def shaped(kept: dict[str, Array]) -> dict[str, Array]:
-        return {name: value.reshape(shape) for name, value in kept.items()}
-
-    outcomes, estimates = outcome.reshape(shape), estimate.reshape(shape)
-    viscous = {each: pair.reshape(2, *shape) for each, pair in own.items()}
-    return BatchSolution(groups, contacts, names, given, rtol, outcomes, shaped(values), shaped(errors), estimates, viscous)
+    solve_all(states, kept, solve_here, _without_fields, report_progress)
+    outcome, solutions = kept.outcome.reshape(groups.shape), kept.solutions.reshape(groups.shape)
+    return BatchSolution(groups, contacts, names, given, rtol, outcome, solutions)
 
 
-def _observed(solution: BaseSolution) -> dict[str, float]:
-    """Return the observables of a state by name."""
-    found = solution.observables
-    return {each.name: float(getattr(found, each.name)) for each in fields(found) if not each.name.startswith("_")}
+class _InMemory:
+    """States that are kept in memory."""
+
+    def __init__(self, total: int) -> None:
+        self.outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
+        self.solutions = np.full(total, None, dtype=object)
+        self._done = np.zeros(total, dtype=bool)
+
+    def done(self) -> Flags:
+        """Return whether each state has ended."""
+        return self._done
+
+    def keep(self, rows: Sequence[tuple[int, Ended]]) -> None:
+        """Keep states that have ended; a fault of the program ends the batch."""
+        for number, ended in rows:
+            if ended.fault is not None:
+                raise ended.fault
+            self.outcome[number], self.solutions[number], self._done[number] = ended.outcome, ended.solution, True
+
+
+def _without_fields(ended: Ended, states: States, i: int) -> Ended:
+    return ended if ended.solution is None else replace(ended, solution=without_fields(ended.solution))

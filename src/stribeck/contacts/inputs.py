@@ -96,7 +96,7 @@ class InputTable:
 
     def unit(self, name: str) -> str:
         """Return the SI unit of an input in the spelling of UDUNITS, which files use."""
-        return DIMENSIONS[self.quantities[name].dimension].unit.replace("*", " ") or "1"
+        return self.quantities[name].unit
 
     def text(self, name: str, value: float, digits: int = 4) -> str:
         """Return an input with its unit."""

@@ -80,6 +80,11 @@ class Input:
         return f'"{self.typical}"' if DIMENSIONS[self.dimension].unit else self.typical
 
     @property
+    def unit(self) -> str:
+        """Its SI unit in the spelling of UDUNITS, which files use."""
+        return DIMENSIONS[self.dimension].unit.replace("*", " ") or "1"
+
+    @property
     def description(self) -> str:
         """What a docstring says of it."""
         symbol = f", :math:`{self.symbol.strip('$')}`" if self.symbol else ""

@@ -162,8 +162,9 @@ class Sweep(Exported, Told, ByValue):
 
     def _regimes(self) -> np.ndarray[Any, np.dtype[np.object_]]:
         """Return the regime of each state, empty where there is none."""
+        none = np.full(len(self), np.nan)  # where no state has ended yet
         fluid, contact, total = (
-            self.columns[name] for name in ("fluid_load_share", "friction_asperities", "friction_balanced")
+            self.columns.get(name, none) for name in ("fluid_load_share", "friction_asperities", "friction_balanced")
         )
         numbers = regime_numbers(fluid, friction_share(contact, total - contact))
         return np.where(np.isfinite(total), np.array(REGIMES, dtype=object)[numbers], "")

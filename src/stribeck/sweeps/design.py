@@ -7,25 +7,28 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.law import INPUTS_OF_SURFACES, Law
-from stribeck.cases.model_parts import take_parts
-from stribeck.cases.reading import contact_inputs, geometry_of, group_inputs
-from stribeck.cases.tables import noted, read_tables
+from stribeck.batches.states import States
+from stribeck.cases.case import Case
+from stribeck.cases.law import KEYS_OF_SURFACES, LAW_KEY, Law, law_of_file
+from stribeck.cases.model_parts import PART_TABLES
+from stribeck.cases.reading import check_case, geometry_of
+from stribeck.cases.tables import HEAD, Key, Keys, noted, read_tables, tolerance
 from stribeck.checks.body import unusual
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, Groups, Physics
-from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.contacts.parts import BASE_PARTS, Parts
+from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column
 from stribeck.files.results import Labelled, Tabled
 from stribeck.files.toml import read_toml
@@ -35,15 +38,14 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
+from stribeck.sweeps.axes import COEFFICIENTS, Axis, Kind, checked_group, points_of, read_axes
 from stribeck.sweeps.columns import input_columns
-from stribeck.sweeps.points import Axis, Kind, points_of
-from stribeck.sweeps.tables import COEFFICIENTS, axis_of, design_problems, keys_of_sweep, kind_of, missing
 
 __all__ = ["SweepDesign", "load_sweep"]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class SweepDesign(Tabled, Shown):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SweepDesign(Tabled, Shown, States):
     """The states that a sweep is to solve, each checked; its dataset has inputs and groups along ``state``.
 
     Attributes
@@ -64,31 +66,26 @@ class SweepDesign(Tabled, Shown):
         Every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups.
     groups : ndarray, shape (n, 3)
         Speed, load and roughness group of each state.
-    si : bool
-        Whether the states are contacts in SI units.
     rtol : float
         Relative tolerance of each state.
     law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
         Name of the contact law.
     physics : Physics
         What the states have in common beside their groups: the law itself and the geometry; the model is that of the first.
-    parts : Parts
-        Fluid, cavitation, flow factors, solid and motion of all contacts.
+    contacts : ndarray of LineContact or PointContact, or None
+        The contacts in SI units.
+    coefficients : ndarray, shape (n, 2), or None
+        ``boundary_friction`` and ``beta`` of each state that is given by its groups.
     """
 
     path: Path
-    text: str = field(repr=False)
+    text: str
     title: str
     kind: Kind
     shape: tuple[int, ...]
     varied: tuple[str, ...]
-    inputs: dict[str, Array] = field(repr=False)
-    groups: Array = field(repr=False)
-    si: bool
-    rtol: float
+    inputs: dict[str, Array]
     law: Law
-    physics: Physics = field(repr=False)
-    parts: Parts = field(default=BASE_PARTS, repr=False)
 
     def _labelled(self) -> Labelled:
         groups = {f"{name}_group": self.groups[:, i] for i, name in enumerate(GROUPS)}
@@ -105,8 +102,9 @@ class SweepDesign(Tabled, Shown):
 
     def _range(self, name: str) -> str:
         """Return how many values an input takes, and between which."""
-        values = np.unique(self.inputs[name])
-        dimension = INPUT_TABLES[self.physics["geometry"]].quantities[name].dimension if self.si else "number"
+        values = np.unique(self.inputs[name] if name in self.inputs else self.groups[:, GROUPS.index(name)])
+        rows = all_input_rows(INPUT_TABLES[self.physics["geometry"]])
+        dimension = "number" if self.contacts is None else rows[name].dimension
         low, high = (format_si(float(end), dimension) for end in (values[0], values[-1]))
         return f"{len(values)} values, {low} to {high}"
 
@@ -115,7 +113,7 @@ class SweepDesign(Tabled, Shown):
         """Sentences about inputs that are hardly meant, at the ends of what varies."""
         table = INPUT_TABLES[self.physics["geometry"]]
         inputs = {name: values for name, values in self.inputs.items() if name in table.quantities}
-        fixed = {"slide_to_roll": self.parts.slide_to_roll}
+        fixed = {} if self.contacts is None else {"slide_to_roll": self.contacts[0].slide_to_roll}
         fixed |= {name: float(values[0]) for name, values in inputs.items() if name not in self.varied}
         ends = ({name: float(end(inputs[name])) for name in self.varied if name in inputs} for end in (min, max))
         return tuple(filter(None, (unusual(numbers, table) for numbers in (fixed, *ends))))
@@ -132,13 +130,10 @@ class SweepDesign(Tabled, Shown):
     @cached_property
     def fingerprint(self) -> str:
         """Identity of this design: its states and settings, without comments in its file."""
-        settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
-        if self.physics["geometry"] != "line":
-            settings.append(self.physics["geometry"])
-        if self.contact_law is not None:
-            settings += [repr(self.contact_law), self.contact_law.parameters]
-        if self.parts != BASE_PARTS:
-            settings.append(repr(self.parts))
+        # The parts of all contacts are those of the first.
+        physics = self.physics if self.contacts is None else self.contacts[0]
+        parameters = {} if self.contact_law is None else self.contact_law.parameters
+        settings = [sorted(self.inputs), self.rtol, self.law, self.kind, self.shape, repr(physics), parameters]
         content = [json.dumps(settings).encode(), self.groups.tobytes()]
         content += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
         return hashlib.sha256(b"".join(content)).hexdigest()
@@ -150,10 +145,9 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     Parameters
     ----------
     path : str or path-like
-        A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``,
-        ``boundary_friction``, ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted
-        ``[design]`` (``kind``, ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``; beside ``[contact]``
-        the tables of fluid, cavitation, motion, flow factors and solid of case files.
+        A TOML file: a case file with a table ``[vary]`` of what does not stay fixed, and where wanted ``[design]``
+        (``kind``, ``points``, ``seed``); or ``[groups]`` (``speed``, ``load``, ``roughness``, ``boundary_friction``,
+        ``beta``) in the place of ``[contact]``.
 
     Returns
     -------
@@ -167,91 +161,110 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         on each line, for all of its problems.
     """
     path = path_of(path)
-    table = read_toml(path, "sweep file", "[vary]")
+    tables = read_toml(path, "sweep file", "[vary]")
+    own: dict[str, Any] = {name: tables.pop(name) for name in ("design", "vary") if name in tables}
     problems: list[str] = []
     geometry: Geometry = "line"
-    with noted(problems, "contact" if "contact" in table else "groups"):
-        geometry, table = geometry_of(table)
-    known = INPUT_TABLES[geometry]
-    table, parts, wrong = take_parts(table, geometry)
-    problems += wrong
-    si, vary, kind = "groups" not in table, table.get("vary"), kind_of(table)
-    if parts and not si:
+    with noted(problems, "contact" if "contact" in tables else "groups"):
+        geometry, _ = geometry_of(tables)
+    si = "groups" not in tables
+    design, axes = read_axes(own, INPUT_TABLES[geometry] if si else None, problems)
+    where = "contact" if si else "groups"
+    base: Any = tables.get(where)
+    for name in axes.keys() & (base if isinstance(base, dict) else {}):
+        problems.append(f"[{where}] {name} = {show(base[name])} also stands in [vary]; keep one of them.")
+    read = _read_contact if si else _read_groups
+    title, rtol, law, make = read(tables, axes, path, problems)
+    if problems:
+        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
+    varying = points_of(design["kind"], axes, design.get("points", 0), design.get("seed", 0))
+    try:
+        states = make(varying)
+    except InputError as problem:
+        raise InputError(f"{path}: {problem}") from None
+    return SweepDesign(
+        path=path,
+        text=path.read_text(encoding="utf-8-sig"),
+        title=title,
+        kind=design["kind"],
+        shape=tuple(map(len, axes.values())) if design["kind"] == "grid" else (len(states["groups"]),),
+        varied=tuple(varying),
+        rtol=rtol,
+        law=law,
+        **states,
+    )
+
+
+Made = tuple[str, float, Law, Callable[[dict[str, Array]], dict[str, Any]]]
+"""Title, tolerance and law of a file, and what makes its states of what varies."""
+
+
+def _read_contact(tables: dict[str, Any], axes: dict[str, Axis], path: Path, problems: list[str]) -> Made:
+    """Read what stays fixed as the case of the first values of what varies."""
+    given = tables.get("contact", {})
+    known = INPUT_TABLES["point"].quantities  # numbers of fluids and solids vary from those that their tables have
+    first = {name: float(axis.at(np.zeros(1))[0]) for name, axis in axes.items() if name in known}
+    try:
+        case = check_case(tables | {"contact": given | first} if isinstance(given, dict) else tables, path)
+    except InputError as problem:
+        for line in str(problem).splitlines():
+            said = line.removeprefix(f"{path}: ")
+            varies = any(said.startswith(f"[contact] {name} ") for name in axes)
+            problems.append(said.replace("[contact]", "[vary]", 1) if varies else said)
+        return "", 0.0, "", lambda varying: {}
+    forms = {name: value for name, value in given.items() if name in case.contact.INPUTS.stands_for}
+    return case.title, case.rtol, case.law, partial(_contacts, case.contact, forms)
+
+
+def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, problems: list[str]) -> Made:
+    """Read groups that stay fixed, with the coefficients beside them."""
+    if "contact" in tables:
+        problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
+    parts = [name for name in PART_TABLES if name in tables]
+    if parts:
         problems.append(
             f"{', '.join(parts)}: sweeps have other fluids, solids and motions in SI units; give [contact] in the place of "
             "[groups], or leave the table out."
         )
-    if "contact" in table and not si:
-        problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
-    checked = read_tables({name: each for name, each in table.items() if name != "vary"}, keys_of_sweep(known), problems)
-    if not isinstance(vary, dict):
-        problems.append("the table [vary] is missing." if vary is None else f"vary = {show(vary)} must be a table, [vary].")
-    axes: list[Axis] = []
-    if isinstance(vary, dict) and kind is not None:
-        for name, entry in vary.items():
-            with noted(problems, "vary"):
-                axes.append(axis_of(name, entry, kind, si, known))
-        if not vary:
-            problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
-        base = table.get("contact" if si else "groups", {})
-        given = INPUTS_OF_SURFACES if si and ("surface" in table or "asperities" in table) else ()
-        problems += missing(base if isinstance(base, dict) else {}, vary, si, given, known)
-    _refuse(path, problems)
-    design, law = checked["design"], checked["contact" if si else "groups"]["law"]
-    _refuse(path, design_problems(design, axes))
-    varying = points_of(design["kind"], axes, design.get("points", 0), design.get("seed", 0))
+    keys: dict[str, Keys] = {
+        "groups": {**dict.fromkeys((*GROUPS, *COEFFICIENTS), Key(checked_group)), "law": LAW_KEY},
+        "solver": {"rtol": tolerance(Case.rtol)},
+        **KEYS_OF_SURFACES,
+        "": HEAD,
+    }
+    geometry, tables = geometry_of(tables)
+    rest = {name: each for name, each in tables.items() if name not in ("contact", *parts)}
+    checked = read_tables(rest, keys, problems)
+    missing = [name for name in GROUPS if name not in axes and name not in tables["groups"]]
+    problems += [f"[groups] {name} is missing; add it there or to [vary]." for name in missing]
+    fixed, law, shape = dict(checked["groups"]), checked["groups"]["law"], None
     with noted(problems):
-        source = next((name for name in ("surface", "asperities") if name in checked), "")
-        for axis in axes:  # what varies is not also said by a table of the surface
-            if si and axis.name in INPUTS_OF_SURFACES and source:
-                raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
-        fixed = contact_inputs(checked, path.parent, known) if si else group_inputs(checked, path.parent)
-        shape: AsperityLaw | None = fixed.pop("law")
-        inputs, groups, of_first = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), BASE_MODEL)
-    _refuse(path, problems)
-    return SweepDesign(
-        path=path,
-        text=path.read_text(encoding="utf-8-sig"),
-        title=checked["title"],
-        kind=design["kind"],
-        shape=tuple(map(len, axes)) if kind == "grid" else (len(groups),),
-        varied=tuple(varying),
-        inputs=inputs,
-        groups=groups,
-        si=si,
-        rtol=checked["solver"]["rtol"],
-        law=law,
-        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry, model=of_first).physics,
-        parts=Parts(**parts) if parts else BASE_PARTS,
-    )
+        shape = law_of_file(law, {}, {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}, path.parent)[0]
+    physics = Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry).physics
+    return checked["title"], checked["solver"]["rtol"], law, partial(_groups, physics, fixed)
 
 
-def _refuse(path: Path, problems: list[str]) -> None:
-    if problems:
-        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
-
-
-def _contacts(
-    fixed: dict[str, Any], varying: dict[str, Array], geometry: Geometry, parts: dict[str, Any]
-) -> tuple[dict[str, Array], Array, Model]:
-    """Return inputs and groups of contacts, each of which is checked, and the model of the first."""
-    contacts = []
+def _contacts(base: Contact, forms: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
+    """Return contacts, each of which is checked, with their inputs and groups."""
+    contacts = np.empty(len(next(iter(varying.values()))), dtype=object)
     for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):
         try:
-            contacts.append(CONTACTS[geometry](**fixed, **dict(zip(varying, values, strict=True)), **parts))
+            contacts[i] = base.replace(**forms, **dict(zip(varying, values, strict=True)))
         except InputError as problem:
             raise InputError(f"state {i}: {problem}") from None
     kept = [contact.to_si() for contact in contacts]
     inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
-    for name in INPUT_TABLES[geometry].stands_for:
-        if name in varying or name in fixed:
-            inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
+    for name in forms:
+        inputs[name] = np.full(len(contacts), base.INPUTS.checked(name, forms[name]))
     groups = [contact.groups for contact in contacts]
-    return inputs, np.array([[getattr(each, name) for name in GROUPS] for each in groups]), groups[0].model
+    columns = np.array([[getattr(each, name) for name in GROUPS] for each in groups])
+    return {"inputs": inputs | varying, "groups": columns, "contacts": contacts, "physics": groups[0].physics}
 
 
-def _groups(fixed: dict[str, float], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
-    """Return coefficients and groups."""
+def _groups(physics: Physics, fixed: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
+    """Return groups, and the coefficients beside them."""
     number = len(next(iter(varying.values())))
     every = {name: varying.get(name, np.full(number, fixed.get(name, 1.0))) for name in (*GROUPS, *COEFFICIENTS)}
-    return {name: every[name] for name in COEFFICIENTS}, np.stack([every[name] for name in GROUPS], axis=1)
+    groups, coefficients = (np.stack([every[name] for name in names], axis=1) for names in (GROUPS, COEFFICIENTS))
+    own = {name: every[name] for name in COEFFICIENTS}
+    return {"inputs": own, "groups": groups, "coefficients": coefficients, "physics": physics}

@@ -31,7 +31,7 @@ from stribeck.batches.executors import SweepError
 from stribeck.files.writing import PathLike, path_of, reason_of
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
-from stribeck.sweeps.columns import Row, input_columns, value_columns
+from stribeck.sweeps.columns import Row, input_columns
 from stribeck.sweeps.design import SweepDesign
 
 __all__ = ["PENDING", "Store", "claimed_store", "read_store"]
@@ -53,9 +53,10 @@ REPAIR_ADVICE = "restore it from a copy, or run the sweep again into a new store
 class Store:
     """A store that this process fills."""
 
-    def __init__(self, path: Path, db: sqlite3.Connection, note: str) -> None:
+    def __init__(self, path: Path, db: sqlite3.Connection, note: str, values: dict[str, list[str]]) -> None:
         self.path, self.note = path, note  # What was found on opening, such as the name of a sweep that had died
         self._db, self._name = db, _new_name()
+        self._values = values  # Unit and meaning of the numbers of states
         self._set("writer", self._name)
         self._commit()
 
@@ -70,12 +71,22 @@ class Store:
         """Keep states that have ended, in one transaction."""
         if not rows:
             return
-        places = ", ".join("?" * (3 + len(rows[0][1][0])))
-        self._db.executemany(
-            f"INSERT INTO states VALUES ({places})",
-            [(state, outcome, message, *row) for state, (row, outcome, message) in rows],
-        )
+        for state, row in rows:
+            self._add_columns(row)
+            named = {"state": state, "outcome": row.outcome, "message": row.message}
+            named |= {name: value for name, (value, _, _) in row.numbers.items()}
+            names, places = ", ".join(f'"{name}"' for name in named), ", ".join("?" * len(named))
+            self._db.execute(f"INSERT INTO states ({names}) VALUES ({places})", list(named.values()))
         self._commit()
+
+    def _add_columns(self, row: Row) -> None:
+        """Make columns for the numbers that no state before had, as where a film begins to end."""
+        new = {name: words for name, (_, *words) in row.numbers.items() if name not in self._values}
+        if new:
+            self._values |= new
+            for name in new:
+                self._db.execute(f'ALTER TABLE states ADD COLUMN "{name}" REAL')
+            self._set("values", self._values)
 
     def release(self) -> None:
         """Let others write, and leave nothing beside the file where nobody reads it."""
@@ -116,11 +127,10 @@ def claimed_store(path: PathLike, design: SweepDesign) -> Iterator[Store]:
             note = _claim(place, db)
             if _is_new(place, db):
                 _make(db, design)
-            else:
-                _check_whole(place, db)
-                _check_same(place, _about(db), design)
+            with _read_whole(place, db) as about:
+                _check_same(place, about, design)
             db.execute(f"PRAGMA busy_timeout = {round(1e3 * BUSY_TIMEOUT)}")
-            store = Store(place, db, note)
+            store = Store(place, db, note, about["values"])
             try:
                 yield store
             finally:
@@ -146,19 +156,14 @@ def read_store(path: PathLike) -> tuple[dict[str, Any], dict[str, Array], list[s
             if _is_new(place, db):
                 raise InputError(f"{place} does not contain a sweep; {NO_STORE_ADVICE}.")
             db.execute("BEGIN")  # so that all is read as it was at one moment
-            _check_whole(place, db)
-            about = _about(db)
-            inputs = _table(db, "inputs", list(about["inputs"]), about["states"])
-            values = _table(db, "states", list(about["values"]), about["states"])
-            outcomes, messages = [PENDING] * about["states"], [""] * about["states"]
-            for state, outcome, message in db.execute("SELECT state, outcome, message FROM states"):
-                outcomes[state], messages[state] = outcome, message
+            with _read_whole(place, db) as about:
+                inputs = _table(db, "inputs", list(about["inputs"]), about["states"])
+                values = _table(db, "states", list(about["values"]), about["states"])
+                outcomes, messages = [PENDING] * about["states"], [""] * about["states"]
+                for state, outcome, message in db.execute("SELECT state, outcome, message FROM states"):
+                    outcomes[state], messages[state] = outcome, message
     except sqlite3.Error as problem:
         raise InputError(_unreadable(place, problem)) from None
-    except (ArithmeticError, LookupError, TypeError, ValueError) as problem:
-        if isinstance(problem, InputError):
-            raise
-        raise InputError(f"{place} is damaged ({type(problem).__name__}); {REPAIR_ADVICE}.") from None
     return about, {**inputs, **values}, outcomes, messages
 
 
@@ -231,9 +236,7 @@ def _new_name() -> dict[str, Any]:
 
 def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
     """Write everything but the states."""
-    columns = {name: design.inputs[name] for name in design.inputs}
-    columns |= {f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)}
-    values = value_columns(design.si, design.physics)
+    columns = design.inputs | {f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)}
     about = {
         "version": version("stribeck"),
         "title": design.title,
@@ -243,27 +246,22 @@ def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
         "shape": design.shape,
         "varied": design.varied,
         "states": len(design),
-        "si": design.si,
         "geometry": design.physics["geometry"],
         "rtol": design.rtol,
         "contact_law": design.law,
         "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
         "inputs": input_columns(design.inputs, design.physics),
-        "values": values,
+        "values": {},
     }
-    inputs, numbers = (", ".join(f'"{name}" REAL' for name in names) for names in (columns, values))
+    inputs = ", ".join(f'"{name}" REAL' for name in columns)
     db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     db.execute(f"PRAGMA user_version = {FORMAT}")
     db.execute("CREATE TABLE about (name TEXT PRIMARY KEY, value TEXT)")
     db.execute(f"CREATE TABLE inputs (state INTEGER PRIMARY KEY, {inputs})")
-    db.execute(f"CREATE TABLE states (state INTEGER PRIMARY KEY, outcome TEXT NOT NULL, message TEXT NOT NULL, {numbers})")
+    db.execute("CREATE TABLE states (state INTEGER PRIMARY KEY, outcome TEXT NOT NULL, message TEXT NOT NULL)")
     db.executemany("INSERT INTO about VALUES (?, ?)", [(name, json.dumps(value)) for name, value in about.items()])
     rows = zip(range(len(design)), *(column.tolist() for column in columns.values()), strict=True)
     db.executemany(f"INSERT INTO inputs VALUES ({', '.join('?' * (1 + len(columns)))})", rows)
-
-
-def _about(db: sqlite3.Connection) -> dict[str, Any]:
-    return {name: json.loads(value) for name, value in db.execute("SELECT name, value FROM about")}
 
 
 def _table(db: sqlite3.Connection, name: str, columns: list[str], total: int) -> dict[str, Array]:
@@ -277,10 +275,18 @@ def _table(db: sqlite3.Connection, name: str, columns: list[str], total: int) ->
     return dict(zip(columns, found, strict=True))
 
 
-def _check_whole(place: Path, db: sqlite3.Connection) -> None:
+@contextmanager
+def _read_whole(place: Path, db: sqlite3.Connection) -> Iterator[dict[str, Any]]:
+    """Read what a store says of itself, and more; refuse what is damaged."""
     (message,) = db.execute("PRAGMA quick_check(1)").fetchone()
-    if message != "ok":
-        raise InputError(f"{place} is damaged ({' '.join(message.split())}); {REPAIR_ADVICE}.")
+    try:
+        if message != "ok":
+            raise ValueError(message)
+        yield {name: json.loads(value) for name, value in db.execute("SELECT name, value FROM about")}
+    except (ArithmeticError, LookupError, TypeError, ValueError) as problem:
+        if isinstance(problem, InputError):
+            raise
+        raise InputError(f"{place} is damaged ({' '.join(str(problem).split())}); {REPAIR_ADVICE}.") from None
 
 
 def _check_same(place: Path, about: dict[str, Any], design: SweepDesign) -> None:

@@ -9,22 +9,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from stribeck.batches.chain import Chain
-from stribeck.batches.executors import (
-    Executor,
-    SweepError,
-    WorkerDiedError,
-    solve_here,
-    solve_on_cluster,
-    solve_on_processes,
-)
-from stribeck.batches.order import chains_of
+from stribeck._types import Flags
+from stribeck.batches.executors import Executor, SweepError, solve_here, solve_on_cluster, solve_on_processes
+from stribeck.batches.solving import solve_all
 from stribeck.files.results import Record
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
-from stribeck.sweeps.columns import Row, StateInputs
+from stribeck.sweeps.columns import Row, row_of
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import Store, claimed_store
@@ -32,8 +25,6 @@ from stribeck.sweeps.store import Store, claimed_store
 __all__ = ["SweepProgress", "sweep"]
 
 MAX_WORKERS = 1024
-
-MAX_REPLACEMENTS = 3  # Times that a killed worker process is replaced in one run
 
 RATE_WINDOW = 60.0  # Time over which the rate is measured [s]
 
@@ -131,8 +122,8 @@ def sweep(
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
     began = time.monotonic()
     with claimed_store(out, plan) as store:
-        run = _Run(plan, store, on_progress)
-        interrupted = run.to_the_end(_executor(workers, scheduler))
+        run = _Watched(store, on_progress)
+        interrupted = solve_all(plan, run, _executor(workers, scheduler), row_of, run.report_progress)
         missing = not store.done().all()
     if missing and not interrupted:
         raise SweepError("The run ended without an error, but states are missing; please report it.")
@@ -146,58 +137,35 @@ def _executor(workers: int, scheduler: str | None) -> Executor:
     return partial(solve_on_processes, workers) if workers > 1 else solve_here
 
 
-class _Run:
-    """One run of a sweep on its store."""
+class _Watched:
+    """A store whose filling is watched."""
 
-    def __init__(self, plan: SweepDesign, store: Store, on_progress: Callable[[SweepProgress], object] | None) -> None:
-        self.plan, self.store, self.on_progress = plan, store, on_progress
-        self.before = int(store.done().sum())
+    def __init__(self, store: Store, on_progress: Callable[[SweepProgress], object] | None) -> None:
+        self.store, self.on_progress = store, on_progress
+        self.total, self.before = len(store.done()), int(store.done().sum())
         self.computed = self.failed = 0
         self.marks = deque([(time.monotonic(), 0)])
 
-    def to_the_end(self, execute: Executor) -> bool:
-        """Solve what is not done; return whether that was interrupted."""
-        for deaths in range(1, MAX_REPLACEMENTS + 2):
-            try:
-                execute(self._chains(), self._keep, self._report_progress)
-            except KeyboardInterrupt:
-                return True
-            except WorkerDiedError:
-                if deaths > MAX_REPLACEMENTS:
-                    raise SweepError(
-                        f"Worker processes died {deaths} times; is the memory of this machine large enough, and does a "
-                        'script that sweeps with workers do so under `if __name__ == "__main__":`? '
-                        "What is finished is kept: run the same sweep again, with fewer workers."
-                    ) from None
-            else:
-                break
-        return False
+    def done(self) -> Flags:
+        """Return whether each state of the design has ended."""
+        return self.store.done()
 
-    def _chains(self) -> list[Chain]:
-        """Return what is left to solve; a chain that is done in part goes on with the rest."""
-        plan, done, found = self.plan, self.store.done(), []
-        for states in chains_of(plan.groups):
-            left = states[~done[states]]
-            if len(left):
-                columns = {name: column[left].tolist() for name, column in plan.inputs.items()}
-                inputs = StateInputs(columns, plan.si, plan.physics, plan.parts)
-                found.append(Chain(left, plan.groups[left], plan.physics, plan.rtol, inputs.contact, inputs.row))
-        return found
-
-    def _keep(self, rows: Sequence[tuple[int, Row]]) -> None:
+    def keep(self, rows: Sequence[tuple[int, Row]]) -> None:
+        """Keep states that have ended, and count them."""
         self.store.keep(rows)
         self.computed += len(rows)
-        self.failed += sum(outcome != Outcome.CONVERGED.name for _, (_, outcome, _) in rows)
+        self.failed += sum(row.outcome != Outcome.CONVERGED.name for _, row in rows)
         now = time.monotonic()
         self.marks.append((now, self.computed))
         while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
             self.marks.popleft()
 
-    def _report_progress(self) -> None:
+    def report_progress(self) -> None:
+        """Tell who wants to know how many states have ended."""
         if self.on_progress is None:
             return
         (began, first), now = self.marks[0], time.monotonic()
         rate = (self.computed - first) / (now - began) if self.computed > first and now > began else 0.0
-        done, total = self.before + self.computed, len(self.plan)
-        left = (total - done) / rate if rate > 0 else math.inf
-        self.on_progress(SweepProgress(done, total, self.failed, rate, left))
+        done = self.before + self.computed
+        left = (self.total - done) / rate if rate > 0 else math.inf
+        self.on_progress(SweepProgress(done, self.total, self.failed, rate, left))

@@ -1,0 +1,94 @@
+"""States to solve, how the solve of each ended, and the solving of a chain of them, each from those before it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups, Physics
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.neighbours import Neighbours
+from stribeck.solver.solve_error import SolveError, describe
+
+__all__ = ["Chain", "Contacts", "Ended", "States"]
+
+Contacts = np.ndarray[Any, np.dtype[np.object_]]
+"""A contact for each state."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How the solve of one state ended."""
+
+    outcome: Outcome  # PATH_LOST where the program failed
+    solution: BaseSolution | None  # The state, or what was reached of it
+    message: str  # What there is to say about it; of a failure in sentences that name the groups
+    fault: Exception | None = None  # The error of the program that ended the solve
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class States:
+    """States to solve, wherever they come from."""
+
+    groups: Array  # Speed, load and roughness group of each, shape (n, 3)
+    physics: Physics  # Contact law and geometry of all, and the model of the first
+    rtol: float  # Relative tolerance of each
+    contacts: Contacts | None = None  # The contacts that they come from
+    coefficients: Array | None = None  # boundary_friction and beta of each beside groups, shape (n, 2)
+
+    def part(self, rows: Indices) -> States:
+        """Return some of the states."""
+        return States(
+            groups=self.groups[rows],
+            physics=self.physics,
+            rtol=self.rtol,
+            contacts=None if self.contacts is None else self.contacts[rows],
+            coefficients=None if self.coefficients is None else self.coefficients[rows],
+        )
+
+    def problem(self, i: int) -> tuple[Groups, Contact | None]:
+        """Return the groups of a state, and its contact where it has one."""
+        if self.contacts is None:
+            return Groups(*self.groups[i].tolist(), **self.physics), None
+        contact: Contact = self.contacts[i]
+        return contact.groups, contact
+
+
+@dataclass(frozen=True)
+class Chain:
+    """States to solve one after the other; a chain travels to another process if ``row_of`` does."""
+
+    numbers: Indices  # Numbers of the states in the design
+    states: States
+    row_of: Callable[[Ended, States, int], Any]  # What is kept of the i-th state
+
+    @one_blas_thread
+    def solve(self, keep: Callable[[int, Any], object]) -> None:
+        """Call ``keep(number, row)`` with each state as it ends."""
+        neighbours = Neighbours(self.states.rtol)
+        for i, number in enumerate(self.numbers.tolist()):
+            keep(number, self.row_of(_solved(neighbours, *self.states.problem(i)), self.states, i))
+
+
+def _solved(neighbours: Neighbours, groups: Groups, contact: Contact | None) -> Ended:
+    """Return a state, or how its solve failed."""
+    try:
+        solution = neighbours.solution(groups, contact)
+        return Ended(solution.outcome, solution, "\n".join(solution.notes))
+    except SolveError as failure:
+        reached = failure.solution
+        if reached is None:
+            return Ended(failure.outcome, None, str(failure))
+        sentences = (reached.outcome.value, *reached.notes)
+        return Ended(reached.outcome, reached, f"{describe(groups)}: " + "\n".join(sentences))
+    except MemoryError:
+        raise
+    except Exception as problem:  # a fault of the program must not cost the other states of a long run
+        return Ended(Outcome.PATH_LOST, None, f"{describe(groups)}: {type(problem).__name__}: {problem}", problem)
