@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -47,34 +47,20 @@ class BatchSolution(Exported, Shown, ByValue):
     The observables of the geometry are attributes, such as ``contact_load_share`` or ``central_gap``.  Its dataset has along
     :attr:`dims` the inputs that were given, observables, friction by both definitions, films in SI units where there are
     contacts, errors and outcomes.
-
-    Attributes
-    ----------
-    groups : Groups
-        The states; where a fluid or solid varies, with that of the first.
-    contacts : ndarray of LineContact or PointContact, or None
-        The contacts they came from.
-    dims : tuple of str
-        Name of each dimension of the arrays.
-    varied : tuple of str
-        Inputs that were given for the batch.
-    rtol : float
-        The relative tolerance asked for.
-    outcome : ndarray of Outcome
-        How the solve of each state ended.
-    solutions : ndarray of Solution or PointSolution
-        The states with their numbers, but without their fields; None if there is no state.
     """
 
     _picture = "stribeck.plot.batch.plot_states"
 
-    groups: Groups
-    contacts: Contacts | None
-    dims: tuple[str, ...]
-    varied: tuple[str, ...]
-    rtol: float
-    outcome: np.ndarray[Any, np.dtype[np.object_]]
-    solutions: np.ndarray[Any, np.dtype[np.object_]] = field(repr=False)
+    groups: Annotated[Groups, "the states; where a fluid or solid varies, with that of the first"]
+    contacts: Annotated[Contacts | None, "the contacts they came from"]
+    dims: Annotated[tuple[str, ...], "name of each dimension of the arrays"]
+    varied: Annotated[tuple[str, ...], "inputs that were given for the batch"]
+    rtol: Annotated[float, "the relative tolerance asked for"]
+    outcome: Annotated[np.ndarray[Any, np.dtype[np.object_]], "how the solve of each state ended"]
+    solutions: Annotated[
+        np.ndarray[Any, np.dtype[np.object_]],
+        "the states with their numbers, but without their fields; None if there is no state",
+    ] = field(repr=False)
 
     def __getattr__(self, name: str) -> Array:
         """Return an observable under its own name."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from stribeck._types import Array, Indices
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.neighbours import Neighbours
@@ -34,14 +35,14 @@ class Ended:
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class States:
+class States(Described):
     """States to solve, wherever they come from."""
 
-    groups: Array  # Speed, load and roughness group of each, shape (n, 3)
-    physics: Physics  # Contact law and geometry of all, and the model of the first
-    rtol: float  # Relative tolerance of each
-    contacts: Contacts | None = None  # The contacts that they come from
-    coefficients: Array | None = None  # boundary_friction and beta of each beside groups, shape (n, 2)
+    groups: Annotated[Array, "speed, load and roughness group of each state, shape (n, 3)"]
+    physics: Annotated[Physics, "contact law and geometry of all states, and the model of the first"]
+    rtol: Annotated[float, "relative tolerance of each state"]
+    contacts: Annotated[Contacts | None, "the contacts in SI units that the states come from"] = None
+    coefficients: Annotated[Array | None, "``boundary_friction`` and ``beta`` of each beside groups, shape (n, 2)"] = None
 
     def part(self, rows: Indices) -> States:
         """Return some of the states."""

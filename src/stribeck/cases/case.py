@@ -1,8 +1,10 @@
 """A case: one contact with what is asked of it, in SI units."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.law import Law
@@ -11,6 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["Case", "CurveSettings", "curve_range"]
@@ -32,52 +35,34 @@ class CurveSettings:
 
 
 @dataclass(frozen=True)
-class Case:
-    """One case file, checked, with its quantities in SI units.
+class Case(Described):
+    """One case file, checked, with its quantities in SI units."""
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    contact : Contact or PointContact
-        The quantities of the ``[contact]`` table.
-    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
-        Name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``.
-    curve : CurveSettings
-        The ``[curve]`` table.
-    rtol : float
-        Relative tolerance asked of the solver, from the ``[solver]`` table.
-    definition : {"balanced", "published"}
-        Which friction force the outputs show, from the ``[solver]`` table.
-    title : str
-        Headline for outputs; empty if the file has none.
-    notes : str
-        Free text; empty if the file has none.
-    fit : FitSettings
-        The ``[fit]`` table, for :func:`stribeck.fit`.
-    facts : dict
-        The ``[check]`` table, for :func:`stribeck.check`, in SI units.
-    errors : dict
-        Relative standard errors of the inputs that have one, numbers of the fluid and the solid among them.
-    conversions : tuple of str
-        Conversions of data-sheet inputs, one sentence each.
-    tables : dict
-        All tables and keys of the file as written.
-    """
-
-    path: Path
-    contact: Contact
-    law: Law = "exponential"
-    curve: CurveSettings = field(default_factory=CurveSettings)
-    rtol: float = 1e-6
-    definition: Definition = "balanced"
-    title: str = ""
-    notes: str = ""
-    fit: FitSettings = field(default_factory=FitSettings)
-    facts: dict[str, float] = field(default_factory=dict)
-    errors: dict[str, float] = field(default_factory=dict)
-    conversions: tuple[str, ...] = ()
-    tables: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    path: Annotated[Path, "the file"]
+    contact: Annotated[Contact, "the quantities of the ``[contact]`` table"]
+    law: Annotated[
+        Law,
+        "name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``",
+    ] = "exponential"
+    curve: Annotated[CurveSettings, "the ``[curve]`` table"] = field(default_factory=CurveSettings)
+    rtol: Annotated[float, "relative tolerance asked of the solver, from the ``[solver]`` table"] = 1e-6
+    definition: Annotated[Definition, "which friction force the outputs show, from the ``[solver]`` table"] = "balanced"
+    title: Annotated[str, "headline for outputs; empty if the file has none"] = ""
+    notes: Annotated[str, "free text; empty if the file has none"] = ""
+    fit: Annotated[FitSettings, "the ``[fit]`` table, for :func:`stribeck.fit`"] = field(default_factory=FitSettings)
+    facts: Annotated[
+        dict[str, float],
+        "the ``[check]`` table, for :func:`stribeck.check`, in SI units",
+    ] = field(default_factory=dict)
+    errors: Annotated[
+        dict[str, float],
+        "relative standard errors of the inputs that have one, numbers of the fluid and the solid among them",
+    ] = field(default_factory=dict)
+    conversions: Annotated[tuple[str, ...], "conversions of data-sheet inputs, one sentence each"] = ()
+    tables: Annotated[
+        dict[str, Any],
+        "all tables and keys of the file as written",
+    ] = field(default_factory=dict, repr=False, compare=False)
 
 
 def curve_range(value: Any, over: str, inputs: InputTable = LINE) -> tuple[float, float]:

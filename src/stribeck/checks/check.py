@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.results import Card, Told
@@ -26,55 +26,18 @@ MIN_HEADLINE_ERROR = 0.05  # Smallest error that the headline names: about what 
 
 @dataclass(frozen=True)
 class Check(Record):
-    """One check of whether the model applies to a contact.
+    """One check of whether the model applies to a contact."""
 
-    Attributes
-    ----------
-    name : str
-        What is checked.
-    value : float
-        Its value for this contact, in ``unit``.
-    limit : float
-        Largest value that is fine, in ``unit``, or smallest if ``at_least``.
-    verdict : {"fine", "doubtful", "outside"}
-        Whether the model applies.
-    sentence : str
-        What the verdict means.
-    unit : str
-        Unit of value and limit; empty for a bare number.
-    at_least : bool
-        Whether larger values than the limit are the fine ones.
-    condition : str
-        What must hold for the model to apply, where the check cannot judge it; empty otherwise.
-    error : float
-        Relative error of the result that the check estimates [-]; 0 where it estimates none.
-    notable : bool
-        Whether outputs print the sentence although the check is fine.
-    """
-
-    name: str
-    value: float
-    limit: float
-    verdict: Verdict
-    sentence: str
-    unit: str = ""
-    at_least: bool = False
-    condition: str = ""
-    error: float = 0.0
-    notable: bool = False
-
-    _labels = {
-        "name": ("1", "what is checked"),
-        "value": ("", "value for this contact"),
-        "limit": ("", "limit up to which, or from which, it is fine"),
-        "verdict": ("1", "whether the model applies"),
-        "sentence": ("1", "what the verdict means"),
-        "unit": ("1", "unit of value and limit; empty for a bare number"),
-        "at_least": ("1", "whether larger values than the limit are the fine ones"),
-        "condition": ("1", "what must hold for the model to apply, where the check cannot judge it"),
-        "error": ("1", "relative error of the result that the check estimates"),
-        "notable": ("1", "whether outputs print the sentence although the check is fine"),
-    }
+    name: Annotated[str, "what is checked", "1"]
+    value: Annotated[float, "value for this contact", ""]
+    limit: Annotated[float, "largest value that is fine, or smallest if ``at_least``", ""]
+    verdict: Annotated[Verdict, "whether the model applies", "1"]
+    sentence: Annotated[str, "what the verdict means", "1"]
+    unit: Annotated[str, "unit of value and limit; empty for a bare number", "1"] = ""
+    at_least: Annotated[bool, "whether larger values than the limit are the fine ones", "1"] = False
+    condition: Annotated[str, "what must hold for the model to apply, where the check cannot judge it", "1"] = ""
+    error: Annotated[float, "relative error of the result that the check estimates", "1"] = 0.0
+    notable: Annotated[bool, "whether outputs print the sentence although the check is fine", "1"] = False
 
     @property
     def word(self) -> str:
@@ -95,23 +58,16 @@ class Check(Record):
 
 @dataclass(frozen=True, repr=False)
 class Checks(Exported, Told):
-    """The checks of one contact; its dataset has them along ``check``.
-
-    Attributes
-    ----------
-    checks : tuple of Check
-        Those that could be made, in the order of the table.
-    unsolved : tuple of str
-        What could not be checked, and why, one sentence each.
-    missing : dict of str to str
-        By name of a check, the fact that must be given for it.
-    """
+    """The checks of one contact; its dataset has them along ``check``."""
 
     _picture = "stribeck.plot.checks.plot_checks"
 
-    checks: tuple[Check, ...]
-    unsolved: tuple[str, ...] = ()
-    missing: Mapping[str, str] = field(default_factory=dict)
+    checks: Annotated[tuple[Check, ...], "those that could be made, in the order of the table"]
+    unsolved: Annotated[tuple[str, ...], "what could not be checked, and why, one sentence each"] = ()
+    missing: Annotated[
+        Mapping[str, str],
+        "by name of a check, the fact that must be given for it",
+    ] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Check]:
         """Iterate over the checks."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
@@ -44,35 +44,15 @@ EXCLUDED_AICC = 10.0  # Difference of AICc from which a law is practically exclu
 
 @dataclass(frozen=True)
 class Candidate(Record):
-    """One law or model, fitted.
+    """One law or model, fitted."""
 
-    Attributes
-    ----------
-    name : str
-        Its name.
-    fit : Fit
-        Its fit.
-    aicc : float
-        Corrected information criterion of Akaike.
-    difference : float
-        Excess over the smallest.
-    weight : float
-        Relative probability among what is compared, 0 to 1.
-    """
+    name: Annotated[str, "law or model", "1"]
+    fit: Annotated[Fit, "its fit"]
+    aicc: Annotated[float, "corrected information criterion of Akaike", "1"]
+    difference: Annotated[float, "excess over the smallest", "1"]
+    weight: Annotated[float, "relative probability among what is compared", "1"]
 
-    name: str
-    fit: Fit
-    aicc: float
-    difference: float
-    weight: float
-
-    _labels = {
-        "name": ("1", "law or model"),
-        "aicc": ("1", "corrected information criterion of Akaike"),
-        "difference": ("1", "excess over the smallest"),
-        "weight": ("1", "relative probability among what is compared"),
-        "noise": ("1", "scatter of the data about the fit"),
-    }
+    _properties = {"noise": ("1", "scatter of the data about the fit")}
 
     @property
     def noise(self) -> float:
@@ -82,20 +62,12 @@ class Candidate(Record):
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Exported, Told):
-    """Laws or models fitted to the same data, the preferred first; its dataset has their criteria along ``law``.
-
-    Attributes
-    ----------
-    candidates : tuple of Candidate
-        What was fitted.
-    failed : dict of str to str
-        What could not be fitted, and why.
-    """
+    """Laws or models fitted to the same data, the preferred first; its dataset has their criteria along ``law``."""
 
     _picture = "stribeck.plot.experiments.plot_comparison"
 
-    candidates: tuple[Candidate, ...]
-    failed: dict[str, str]
+    candidates: Annotated[tuple[Candidate, ...], "what was fitted"]
+    failed: Annotated[dict[str, str], "what could not be fitted, and why"]
 
     @property
     def sentence(self) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -46,72 +46,33 @@ MAX_RUNS = 50  # Runs that are chosen in one call
 
 @dataclass(frozen=True)
 class NextRun(Record):
-    """One run worth measuring.
+    """One run worth measuring."""
 
-    Attributes
-    ----------
-    curve : str
-        The curve whose contact it is, perhaps at another load or viscosity.
-    speed, load, viscosity : float
-        Where to measure, in SI units.
-    friction : float
-        Friction coefficient to expect [-].
-    gain : float
-        Growth of half the logarithm of the determinant of the information.
-    cost : float
-        Its cost.
-    errors : dict of str to float
-        Standard errors of the logarithms of the fitted inputs after this run and those before it.
-    unit : str
-        SI unit of the load.
-    """
-
-    curve: str
-    speed: float
-    load: float
-    viscosity: float
-    friction: float
-    gain: float
-    cost: float
-    errors: dict[str, float]
-    unit: str = "N/m"
-
-    _labels = {
-        "curve": ("1", "curve whose contact it is"),
-        "speed": ("m s-1", "sum of the surface speeds"),
-        "load": ("", "load"),
-        "viscosity": ("Pa s", "viscosity"),
-        "friction": ("1", "friction coefficient to expect"),
-        "gain": ("1", "growth of half the logarithm of the determinant of the information"),
-        "cost": ("1", "cost"),
-    }
+    curve: Annotated[str, "curve whose contact it is, perhaps at another load or viscosity", "1"]
+    speed: Annotated[float, "sum of the surface speeds", "m s-1"]
+    load: Annotated[float, "load", ""]
+    viscosity: Annotated[float, "viscosity", "Pa s"]
+    friction: Annotated[float, "friction coefficient to expect", "1"]
+    gain: Annotated[float, "growth of half the logarithm of the determinant of the information", "1"]
+    cost: Annotated[float, "cost", "1"]
+    errors: Annotated[
+        dict[str, float],
+        "standard errors of the logarithms of the fitted inputs after this run and those before it",
+    ]
+    unit: Annotated[str, "SI unit of the load"] = "N/m"
 
 
 @dataclass(frozen=True, repr=False)
 class Plan(Exported, Told):
-    """Runs worth measuring, the best first; its dataset has them along ``run``.
-
-    Attributes
-    ----------
-    runs : tuple of NextRun
-        The runs.
-    before : dict of str to float
-        Standard errors of the logarithms of the fitted inputs from the data so far.
-    noise : float
-        Relative standard error of a run that was supposed.
-    scanned : tuple of NextRun
-        All runs that were tried, with the gain of each as the first.
-    load_dimension : str
-        Kind of the load, of a cylinder or a ball.
-    """
+    """Runs worth measuring, the best first; its dataset has them along ``run``."""
 
     _picture = "stribeck.plot.experiments.plot_plan"
 
-    runs: tuple[NextRun, ...]
-    before: dict[str, float]
-    noise: float
-    scanned: tuple[NextRun, ...] = field(repr=False)
-    load_dimension: str = "load"
+    runs: Annotated[tuple[NextRun, ...], "the runs"]
+    before: Annotated[dict[str, float], "standard errors of the logarithms of the fitted inputs from the data so far"]
+    noise: Annotated[float, "relative standard error of a run that was supposed"]
+    scanned: Annotated[tuple[NextRun, ...], "all runs that were tried, with the gain of each as the first"] = field(repr=False)
+    load_dimension: Annotated[str, "kind of the load, of a cylinder or a ball"] = "load"
 
     def _card(self) -> Card:
         table = [("run", "speed", "load", "viscosity", "friction", "gain", "cost", "standard errors after it")]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from stribeck.files.datasets import Column, listed, new_dataset, write_csv, write_netcdf, write_parquet, write_zarr
 from stribeck.files.writing import PathLike
+from stribeck.quantities.docstrings import Described
 
 if TYPE_CHECKING:
     import xarray
@@ -42,15 +43,22 @@ class Tabled:
         return new_dataset(*self._labelled())
 
 
-class Record(Tabled):
+class Record(Described, Tabled):
     """A result of a few numbers or words, of which many may stand in one table.
 
-    A class names the attributes that outputs hold, with unit and long name; where the unit is empty it is that of the record
-    itself, its attribute ``unit``. Two numbers, the ends of an interval, become two variables, such as ``low_95`` and
-    ``high_95`` of ``interval_95``.
+    Outputs hold the fields that have a unit, and the properties that the class lists with unit and long name; an empty unit is
+    that of the record itself, its attribute ``unit``. Two numbers, the ends of an interval, become two variables, such as
+    ``low_95`` and ``high_95`` of ``interval_95``.
     """
 
+    _properties: ClassVar[dict[str, tuple[str, str]]] = {}
     _labels: ClassVar[Mapping[str, tuple[str, str]]]
+
+    def __init_subclass__(cls) -> None:
+        """Take unit and long name of the fields."""
+        super().__init_subclass__()
+        fields = {name: (each.unit, each.meaning) for name, each in cls._words.items() if each.unit is not None}
+        cls._labels = vars(cls).get("_labels", fields | cls._properties)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers and words under their names, ready for JSON.

@@ -1,11 +1,53 @@
-"""Docstrings that share their words: what many functions say of an argument, a value or an error is written once."""
+"""Docstrings that share their words: what many functions say of an argument, a value or an error is written once.
+
+A field of a result is said where it stands, ``speed: Annotated[float, "the sum of both speeds", "m/s"]``, with its unit if it
+has one, and from there on in the docstring and in files.
+"""
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
+
+__all__ = ["Described", "Words", "complete_docstring"]
+
+
+class Words(NamedTuple):
+    """What is said of a field."""
+
+    kind: str
+    meaning: str
+    unit: str | None = None  # None where it is no number
+
+
+class Described:
+    """A class whose fields say what they are; its docstring lists them as attributes."""
+
+    _words: ClassVar[dict[str, Words]] = {}
+
+    def __init_subclass__(cls) -> None:
+        """Put what is said of the fields into the docstring."""
+        super().__init_subclass__()
+        own: dict[str, Words] = {}
+        for name, text in inspect.get_annotations(cls).items():
+            if str(text).startswith("Annotated["):
+                kind, *words = ast.parse(text, mode="eval").body.slice.elts
+                own[name] = Words(ast.unparse(kind), *map(ast.literal_eval, words))
+        cls._words = {name: each for base in cls.__mro__[:0:-1] for name, each in vars(base).get("_words", {}).items()} | own
+        if own:
+            listed = "\n".join(f"{name} : {each.kind}\n    {_sentence(each)}" for name, each in cls._words.items())
+            head, *rest = re.split(r"(?m)^(?=(?:Raises|Notes|Examples)\n-)", inspect.getdoc(cls) or "")
+            cls.__doc__ = f"{head.strip()}\n\nAttributes\n----------\n{listed}\n\n{''.join(rest)}".rstrip() + "\n"
+
+
+def _sentence(words: Words) -> str:
+    bare = " [-]" if words.kind == "float" else ""
+    unit = bare if words.unit == "1" else f" [{words.unit}]" if words.unit else ""
+    return f"{words.meaning[0].upper()}{words.meaning[1:]}{unit}."
+
 
 _HEADING = re.compile(r"^(\w+)\n-+\n", re.MULTILINE)
 

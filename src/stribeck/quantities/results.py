@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from stribeck.quantities.docstrings import Described
+
 __all__ = ["ByValue", "Card", "Shown", "Told", "brief_text", "equal_values", "table_lines", "table_rows"]
 
 
@@ -31,7 +33,7 @@ class Card:
         return [*table_rows(self.table), *self.rows]
 
 
-class Shown:
+class Shown(Described):
     """A result shown as a :class:`Card`: lines in a terminal, a table in a notebook; by default its fields in short."""
 
     def _card(self) -> Card:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
@@ -31,23 +32,14 @@ TWINS = {"speed": "viscosity", "viscosity": "speed"}  # They enter as a product:
 class Lever(Record):
     """One input that lowers friction: its new value, and the friction solved there."""
 
-    name: str
+    name: Annotated[str, "input that lowers friction", "1"]
     label: str
-    value: float
-    factor: float
-    friction: float
-    change: float
-    unit: str
+    value: Annotated[float, "its new value", ""]
+    factor: Annotated[float, "the new value over the present one", "1"]
+    friction: Annotated[float, "friction coefficient solved there", "1"]
+    change: Annotated[float, "relative change of the friction", "1"]
+    unit: Annotated[str, "SI unit of the value", "1"]
     dimension: str
-
-    _labels = {
-        "name": ("1", "input that lowers friction"),
-        "value": ("", "its new value"),
-        "factor": ("1", "the new value over the present one"),
-        "friction": ("1", "friction coefficient solved there"),
-        "change": ("1", "relative change of the friction"),
-        "unit": ("1", "SI unit of the value"),
-    }
 
     @property
     def texts(self) -> tuple[str, str]:

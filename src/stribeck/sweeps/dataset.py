@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -28,41 +28,28 @@ __all__ = ["Sweep", "open_sweep"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Exported, Told, ByValue):
-    """The states of a store at the time it was read.
-
-    Attributes
-    ----------
-    path : pathlib.Path
-        The store.
-    about : dict
-        What it says of itself: ``title``, ``version``, ``design`` (the text of its file), ``rtol`` and more.
-    columns : dict of str to ndarray
-        Inputs, groups and numbers of each state by name, nan where a state is not finished.
-    outcome : tuple of str
-        How the solve of each state ended; NOT_COMPUTED where it is not finished.
-    message : tuple of str
-        What there is to say about each state.
-    interrupted : bool
-        Whether the run that returned this was interrupted.
-    computed : int
-        States that this run computed; the others were in the store before.
-    seconds : float
-        Time that it took [s].
-    note : str
-        What was found when it began, such as that the sweep before it had died.
-    """
+    """The states of a store at the time it was read."""
 
     _picture = "stribeck.plot.batch.plot_states"
 
-    path: Path
-    about: dict[str, Any] = field(repr=False)
-    columns: dict[str, Array] = field(repr=False)
-    outcome: tuple[str, ...] = field(repr=False)
-    message: tuple[str, ...] = field(repr=False)
-    interrupted: bool = False
-    computed: int = 0
-    seconds: float = 0.0
-    note: str = ""
+    path: Annotated[Path, "the store"]
+    about: Annotated[
+        dict[str, Any],
+        "what it says of itself: ``title``, ``version``, ``design`` (the text of its file), ``rtol`` and more",
+    ] = field(repr=False)
+    columns: Annotated[
+        dict[str, Array],
+        "inputs, groups and numbers of each state by name, nan where a state is not finished",
+    ] = field(repr=False)
+    outcome: Annotated[
+        tuple[str, ...],
+        "how the solve of each state ended; NOT_COMPUTED where it is not finished",
+    ] = field(repr=False)
+    message: Annotated[tuple[str, ...], "what there is to say about each state"] = field(repr=False)
+    interrupted: Annotated[bool, "whether the run that returned this was interrupted"] = False
+    computed: Annotated[int, "states that this run computed; the others were in the store before"] = 0
+    seconds: Annotated[float, "time that it took", "s"] = 0.0
+    note: Annotated[str, "what was found when it began, such as that the sweep before it had died"] = ""
 
     def __len__(self) -> int:
         """Return the number of states, finished or not."""

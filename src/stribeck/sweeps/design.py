@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -46,46 +46,19 @@ __all__ = ["SweepDesign", "load_sweep"]
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SweepDesign(Tabled, Shown, States):
-    """The states that a sweep is to solve, each checked; its dataset has inputs and groups along ``state``.
+    """The states that a sweep is to solve, each checked; its dataset has inputs and groups along ``state``."""
 
-    Attributes
-    ----------
-    path : pathlib.Path
-        The file that says so.
-    text : str
-        What stands in it.
-    title : str
-        Headline for outputs; empty where the file has none.
-    kind : {"grid", "list", "random", "latin-hypercube", "sobol"}
-        How the states were chosen.
-    shape : tuple of int
-        Points along each axis of a grid; otherwise the number of states.
-    varied : tuple of str
-        The inputs that vary, in the order of the file.
-    inputs : dict of str to ndarray
-        Every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups.
-    groups : ndarray, shape (n, 3)
-        Speed, load and roughness group of each state.
-    rtol : float
-        Relative tolerance of each state.
-    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
-        Name of the contact law.
-    physics : Physics
-        What the states have in common beside their groups: the law itself and the geometry; the model is that of the first.
-    contacts : ndarray of LineContact or PointContact, or None
-        The contacts in SI units.
-    coefficients : ndarray, shape (n, 2), or None
-        ``boundary_friction`` and ``beta`` of each state that is given by its groups.
-    """
-
-    path: Path
-    text: str
-    title: str
-    kind: Kind
-    shape: tuple[int, ...]
-    varied: tuple[str, ...]
-    inputs: dict[str, Array]
-    law: Law
+    path: Annotated[Path, "the file that says so"]
+    text: Annotated[str, "what stands in it"]
+    title: Annotated[str, "headline for outputs; empty where the file has none"]
+    kind: Annotated[Kind, "how the states were chosen"]
+    shape: Annotated[tuple[int, ...], "points along each axis of a grid; otherwise the number of states"]
+    varied: Annotated[tuple[str, ...], "the inputs that vary, in the order of the file"]
+    inputs: Annotated[
+        dict[str, Array],
+        "every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups",
+    ]
+    law: Annotated[Law, "name of the contact law"]
 
     def _labelled(self) -> Labelled:
         groups = {f"{name}_group": self.groups[:, i] for i, name in enumerate(GROUPS)}

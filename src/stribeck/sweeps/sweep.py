@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Annotated
 
 from stribeck._types import Flags
 from stribeck.batches.executors import Executor, SweepError, solve_here, solve_on_cluster, solve_on_processes
@@ -31,35 +32,13 @@ RATE_WINDOW = 60.0  # Time over which the rate is measured [s]
 
 @dataclass(frozen=True)
 class SweepProgress(Record):
-    """The progress of a sweep.
+    """The progress of a sweep."""
 
-    Attributes
-    ----------
-    done : int
-        States finished, those of earlier runs included.
-    total : int
-        States of the design.
-    failed : int
-        States of this run that did not converge.
-    rate : float
-        States per second over the last minute; 0 before the first.
-    seconds_left : float
-        Time left at this rate [s]; infinite before the first.
-    """
-
-    _labels = {
-        "done": ("1", "states finished, those of earlier runs included"),
-        "total": ("1", "states of the design"),
-        "failed": ("1", "states of this run that did not converge"),
-        "rate": ("s-1", "states per second over the last minute"),
-        "seconds_left": ("s", "time left at this rate"),
-    }
-
-    done: int
-    total: int
-    failed: int
-    rate: float
-    seconds_left: float
+    done: Annotated[int, "states finished, those of earlier runs included", "1"]
+    total: Annotated[int, "states of the design", "1"]
+    failed: Annotated[int, "states of this run that did not converge", "1"]
+    rate: Annotated[float, "states per second over the last minute, 0 before the first", "s-1"]
+    seconds_left: Annotated[float, "time left at this rate, infinite before the first", "s"]
 
     @property
     def text(self) -> str:

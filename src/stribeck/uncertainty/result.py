@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.part_inputs import all_input_rows
@@ -26,39 +26,17 @@ MIN_NAMED_SHARE = 1e-3  # Smallest share of the variance that is named
 
 @dataclass(frozen=True)
 class Spread(Record):
-    """The distribution of one number.
+    """The distribution of one number."""
 
-    Attributes
-    ----------
-    name, label : str
-        Its name in a solution, and its label in reports.
-    value : float
-        Its value for the inputs as given, in SI units.
-    median : float
-        Its median.
-    interval_68, interval_95 : tuple of float
-        Intervals that hold it with 68 and 95 % probability.
-    dimension : str
-        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
-    """
+    name: Annotated[str, "quantity", "1"]
+    label: Annotated[str, "its label in reports", "1"]
+    value: Annotated[float, "value for the inputs as given", ""]
+    median: Annotated[float, "median", ""]
+    interval_68: Annotated[tuple[float, float], "68 % interval", ""]
+    interval_95: Annotated[tuple[float, float], "95 % interval", ""]
+    dimension: Annotated[str, "A key of :data:`stribeck.quantities.units.DIMENSIONS`"] = "number"
 
-    name: str
-    label: str
-    value: float
-    median: float
-    interval_68: tuple[float, float]
-    interval_95: tuple[float, float]
-    dimension: str = "number"
-
-    _labels = {
-        "name": ("1", "quantity"),
-        "label": ("1", "its label in reports"),
-        "value": ("", "value for the inputs as given"),
-        "median": ("", "median"),
-        "interval_68": ("", "68 % interval"),
-        "interval_95": ("", "95 % interval"),
-        "unit": ("1", "SI unit"),
-    }
+    _properties = {"unit": ("1", "SI unit")}
 
     @property
     def unit(self) -> str:
@@ -88,35 +66,24 @@ class Uncertainty(Exported, Told):
     """A state with the propagated errors of its inputs.
 
     Its dataset has value, median, ends of the intervals and SI unit along ``quantity``.
-
-    Attributes
-    ----------
-    contact : Contact
-        The contact with the inputs as given.
-    errors : dict of str to float
-        Standard error of the logarithm of each uncertain input of the contact.
-    spreads : tuple of Spread
-        Friction, films, load shares and transitions.
-    regimes : dict of str to float
-        Probability of boundary, mixed and hydrodynamic lubrication.
-    contributions : dict of str to float
-        Share of each input in the variance of ln(friction), by exact derivatives; they sum to one. Empty for a model
-        without derivatives.
-    method : str
-        ``"atlas"`` or ``"solver"``: where the states of the samples come from.
-    notes : tuple of str
-        Where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty.
     """
 
     _picture = "stribeck.plot.uncertainty.plot_uncertainty"
 
-    contact: Contact
-    errors: dict[str, float]
-    spreads: tuple[Spread, ...]
-    regimes: dict[str, float]
-    contributions: dict[str, float]
-    method: str
-    notes: tuple[str, ...] = ()
+    contact: Annotated[Contact, "the contact with the inputs as given"]
+    errors: Annotated[dict[str, float], "standard error of the logarithm of each uncertain input of the contact"]
+    spreads: Annotated[tuple[Spread, ...], "friction, films, load shares and transitions"]
+    regimes: Annotated[dict[str, float], "probability of boundary, mixed and hydrodynamic lubrication"]
+    contributions: Annotated[
+        dict[str, float],
+        "share of each input in the variance of ln(friction), by exact derivatives; they sum to one. Empty for a "
+        "model without derivatives",
+    ]
+    method: Annotated[str, '``"atlas"`` or ``"solver"``: where the states of the samples come from']
+    notes: Annotated[
+        tuple[str, ...],
+        "where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty",
+    ] = ()
 
     def __getitem__(self, name: str) -> Spread:
         """Return the spread of a name."""
