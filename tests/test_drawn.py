@@ -62,7 +62,7 @@ def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_p
     for kind in KINDS:
         with subtests.test(kind=kind):
             found = results[kind]
-            assert found.plot(tmp_path / "one.svg").axes
+            assert found.plot(tmp_path / f"{kind}.svg").axes
             axes = Figure().subplots()
             assert found.plot(ax=axes) is axes.figure
             assert axes.has_data() and axes.get_xlabel()
