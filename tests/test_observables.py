@@ -11,7 +11,7 @@ from stribeck.contacts.groups import contact_law
 from stribeck.equations.drag import friction_scale
 from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import ROW, gradients, observables
+from stribeck.equations.observables import ROW, changes, observables
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.quantities.outputs import NAMES
 
@@ -85,7 +85,7 @@ def smooth_changes(equations, y):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_gradient_of_each_observable_is_its_derivative(case, name):
     equations, y, load = case
-    row = gradients(equations, y, load)[ROW[name]]
+    row = changes(equations, y, load, np.eye(y.size))[:, ROW[name]]
     for change in smooth_changes(equations, y):
         step = 1e-5
         up, down = (values(equations, y + d * change, load)[NAMES.index(name)] for d in (step, -step))
@@ -101,7 +101,7 @@ def test_at_speed_zero_only_contact_has_gradients(solved):
     groups = Groups(*STATES["slow"])
     equations = Equations(Operators(s.mesh), 0.0, contact_law(groups), s.flux_gap**2)
     y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
-    rows = gradients(equations, y, groups.load)
+    rows = changes(equations, y, groups.load, np.eye(y.size)).T
     for name in ("fluid_load_share", "viscous_published", "viscous_balanced"):
         assert not rows[ROW[name]].any()
 

@@ -7,7 +7,7 @@ import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved, perturbations
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import DRAG_ROWS, gradients, observables, observables_of_stacked
+from stribeck.equations.observables import DRAG_ROWS, changes, observables, observables_of_stacked
 from stribeck.equations.state import StackedStates
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.solids.half_plane import (
@@ -39,11 +39,12 @@ def rows(size, load=0.1, roughness=1e-3):
 def test_rows_are_what_each_state_is_alone():
     together, alone, y = rows(12)
     residuals, found = together.residual(y), observables_of_stacked(together, y, 0.1)
-    slopes = gradients(together, y, 0.1)
+    times = np.arange(1.0, 4.0)[:, None]
+    moved = changes(together, y, 0.1, times[:, None] * y)
     for i, equations in enumerate(alone):
         np.testing.assert_allclose(residuals[i], equations.residual(y[i]), rtol=1e-12, atol=1e-13)
         np.testing.assert_allclose(found[i].array(), observables(equations, y[i], 0.1).array(), rtol=1e-12, atol=1e-17)
-        np.testing.assert_allclose(slopes[:, i], gradients(equations, y[i], 0.1), rtol=1e-11, atol=1e-15)
+        np.testing.assert_allclose(moved[:, i], changes(equations, y[i], 0.1, times * y[i]), rtol=1e-11, atol=1e-15)
 
 
 def test_the_jacobian_in_units_of_the_unknowns_has_its_columns_scaled_by_them():

@@ -29,8 +29,8 @@ from stribeck.equations.observables import (
     DRAG_ROWS,
     ROW,
     Observables,
+    changes,
     drag_scales,
-    gradients,
 )
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
@@ -280,8 +280,7 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     # At speed zero the values may be those of the same state under another load, see stribeck.solver.at_rest.
     values = np.array([one.array() for one in observed])
     changed = perturbations(states, values, fine)
-    rows = gradients(states.equations, states.y, states.load)
-    effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
+    effects = np.abs(changes(states.equations, states.y, states.load, changed.unknowns)).transpose(1, 2, 0)
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
     centres, stretch = np.zeros(len(values)), np.ones(len(values))
     if op.has_exit:

@@ -207,7 +207,7 @@ class Equations:
     def fluid_of_gradient(self, u: Fields, g: Any, by: str | None = None) -> Any:
         """Return the pressure of the fluid that follows from its gradient."""
         op, d = self.operators, self.stretch_of(u)
-        fluid = self.speed_of(by) * act(op.integral, g)
+        fluid = act(op.integral, self.speed_of(by) * g)
         return fluid if d is None else d * fluid + op.in_cavity * self.cavity_pressure_of(u)
 
     def balances(self, u: Fields, fluid: Any, g: Any, by: str | None = None) -> Fields:

@@ -1,4 +1,4 @@
-r"""The observables of a state: load shares, films, friction, and their derivatives with respect to the unknowns.
+r"""The observables of a state: load shares, films, friction, and their changes with the unknowns.
 
 Friction is kept for beta = 1, to which it is proportional, and in the definitions of :mod:`stribeck.equations.drag`.
 """
@@ -19,11 +19,12 @@ from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.numerics.trace import Trace, act, value_of
 from stribeck.quantities.outputs import ALL_NAMES
 
-__all__ = ["ROW", "Observables", "gradients", "measured", "observables", "observables_of_stacked"]
+__all__ = ["ROW", "Observables", "changes", "measured", "observables", "observables_of_stacked"]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
+ALONG = "along"  # Name of directions in traces
 DRAG_ROWS = [ROW[name] for name in VISCOUS]
 
 
@@ -121,28 +122,32 @@ def measured(equations: Equations, u: Fields, load: Numbers, by: str | None = No
     return found
 
 
-def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
-    """Return the derivatives of the observables with respect to the unknowns, shape (len(ALL_NAMES), ..., y.shape[-1])."""
-    at = equations.layout
-    found = np.zeros((len(ALL_NAMES), *y.shape))
-    for name, value in measured(equations, equations.traced(y), load).items():
+def changes(equations: Equations, y: Array, load: Numbers, dy: Array) -> Array:
+    """Return the changes of the observables with small changes ``dy`` of the unknowns, shape (..., len(ALL_NAMES))."""
+    at, u, du = equations.layout, equations.fields(y), equations.fields(dy)
+    moving = Fields(*(None if value is None else Trace(value, None, {ALONG: by}) for value, by in zip(u, du, strict=True)))
+    found = np.zeros((*dy.shape[:-1], len(ALL_NAMES)))
+    for name, value in measured(equations, moving, load).items():
         if isinstance(value, Trace):
-            row = found[ROW[name]]
-            for block in (each for each in Fields._fields if each in value.terms or each in value.columns):
-                row[..., getattr(at, block)] = value.row(block)
-    central, lowest = (found[ROW[name]].reshape(-1, at.size) for name in ("central_gap", "minimum_gap"))
-    for k, own in enumerate(y.reshape(-1, at.size)):
-        _of_central_gap(equations, own, central[k])
-        lowest[k, np.argmin(own[at.gap])] = 1.0  # at a fixed position, right to first order
+            found[..., ROW[name]] = value.columns[ALONG][..., 0]
+    rows = np.atleast_2d(y)
+    each = dy.reshape(*dy.shape[: dy.ndim - y.ndim], *rows.shape)
+    central = [_of_central_gap(equations, own, equations.fields(each[..., k, :])) for k, own in enumerate(rows)]
+    lowest = [each[..., k, np.argmin(own[at.gap])] for k, own in enumerate(rows)]  # at a fixed position, right to first order
+    for name, values in (("central_gap", central), ("minimum_gap", lowest)):
+        found[..., ROW[name]] = np.stack(values, axis=-1).reshape(found.shape[:-1])
     return found
 
 
-def _of_central_gap(equations: Equations, y: Array, row: Array) -> None:
-    """Write the derivatives of the central gap, which is the gap's polynomial at a place that moves with the exit."""
-    u, at, mesh = equations.fields(y), equations.layout, equations.operators.mesh
+def _of_central_gap(equations: Equations, y: Array, du: Fields) -> Array:
+    """Return the changes of the central gap, which is the gap's polynomial at a place that moves with the exit."""
+    u, mesh = equations.fields(y), equations.operators.mesh
     stretch = 1.0 if u.cavity_stretch is None else float(u.cavity_stretch[0])
     place = 0.0 if u.exit is None else -float(u.exit[0]) / stretch
     middle, slope, nodes, weights = gap_beside(mesh, u.gap, place)
-    row[at.gap][nodes] = middle * weights / u.gap[nodes]
-    row[at.exit] = -slope / stretch
-    row[at.cavity_stretch] = -slope * place / stretch
+    found = du.gap[..., nodes] @ (middle * weights / u.gap[nodes])
+    if du.exit is not None:
+        found = found - slope / stretch * du.exit[..., 0]
+    if du.cavity_stretch is not None:
+        found = found - slope * place / stretch * du.cavity_stretch[..., 0]
+    return np.asarray(found)

@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.model import Model
 from stribeck.equations.line import Equations
-from stribeck.equations.observables import ROW, gradients, measured
+from stribeck.equations.observables import ROW, changes, measured
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
 from stribeck.numerics.trace import Trace
@@ -29,22 +29,22 @@ Change = tuple[Model, Model, float]
 """Two models, and the distance of the values that give them."""
 
 
-def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
+def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Array]:
     """Return the derivatives of contact share and both viscous frictions with respect to ln(group)."""
     equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)
-    through = gradients(equations, y, load)[[ROW[name] for name in DIFFERENTIATED]]
-    found = np.zeros((len(DIFFERENTIATED), len(GROUPS) + len(changes)))
-    for column, name in enumerate(GROUPS):
+    direct, moves = np.zeros((len(GROUPS) + len(beside), len(DIFFERENTIATED))), np.zeros((len(GROUPS) + len(beside), y.size))
+    for k, name in enumerate(GROUPS):
         if float(getattr(state.groups, name)) > 0:
-            direct = measured(equations, equations.fields(y), load, name)
-            found[:, column] = [_by(direct[each], name) for each in DIFFERENTIATED]
-            found[:, column] += through @ (units * inverse(equations.parameter_derivative(y, name)))
-    for column, (below, above, width) in enumerate(changes, len(GROUPS)):
+            at_fixed = measured(equations, equations.fields(y), load, name)
+            direct[k] = [_by(at_fixed[each], name) for each in DIFFERENTIATED]
+            moves[k] = units * inverse(equations.parameter_derivative(y, name))
+    for k, (below, above, width) in enumerate(beside, len(GROUPS)):
         first, second = (replace(equations, operators=Operators(state.mesh, model)) for model in (below, above))
-        dy = units * inverse((second.residual(y) - first.residual(y)) / width)
-        found[:, column] = through @ dy + (_values(second, y, load) - _values(first, y, load)) / width
-    return dict(zip(DIFFERENTIATED, found, strict=True))
+        direct[k] = (_values(second, y, load) - _values(first, y, load)) / width
+        moves[k] = units * inverse((second.residual(y) - first.residual(y)) / width)
+    found = direct + changes(equations, y, load, moves)[:, [ROW[name] for name in DIFFERENTIATED]]
+    return dict(zip(DIFFERENTIATED, found.T, strict=True))
 
 
 def _by(value: Any, name: str) -> float:

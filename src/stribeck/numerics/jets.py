@@ -21,8 +21,7 @@ from stribeck.numerics.series import along
 
 __all__ = ["Jet", "Tape", "polynomial"]
 
-Linear = Callable[[Any], Any]  # Order, or a slice of orders -> what those of the parents give
-Lower = Callable[[int, Array], Any]  # Order and the jet's own coefficients -> what lower orders give
+Term = Callable[[int, Array], Any]  # Order and the jet's own coefficients -> the coefficient of that order
 
 
 class Tape:
@@ -58,19 +57,15 @@ class Tape:
             self.settle()
         self.reached = k
         for jet in self.made:
-            found = jet.linear(k)
-            if jet.lower is not None:
-                jet.from_lower = jet.lower(k, jet.coefficients)
-                found = found + jet.from_lower
-            jet.coefficients[k] = found
+            jet.coefficients[k] = jet.term(k, jet.coefficients)
 
     def settle(self) -> None:
         """Find those of the last order again that others follow from, as the caller has written to the given jets."""
         k = self.reached
-        for jet in self.made:
-            if jet.is_needed and k > 0:
-                found = jet.linear(k)
-                jet.coefficients[k] = found if jet.lower is None else found + jet.from_lower
+        if k > 0:
+            for jet in self.made:
+                if jet.is_needed:
+                    jet.coefficients[k] = jet.term(k, jet.coefficients)
         self.known = k
 
 
@@ -79,9 +74,7 @@ class Jet(NDArrayOperatorsMixin):
 
     def __init__(self, tape: Tape, coefficients: Array, *parents: Jet) -> None:
         self.tape, self.coefficients, self.parents = tape, coefficients, parents
-        self.linear: Linear = lambda k: 0.0
-        self.lower: Lower | None = None
-        self.from_lower: Any = 0.0  # What lower orders gave to the last one
+        self.term: Term = _zero
         self.is_needed = False  # Whether other orders follow from its coefficients
         self.log: Jet | None = None  # What it is the exponential of
 
@@ -121,31 +114,34 @@ class Jet(NDArrayOperatorsMixin):
     def mapped(self, operator: Callable[[Array], Array]) -> Jet:
         """Return the series of what a linear map makes of nodal values, of rows of them too."""
         a = self.coefficients
-        return _made(operator(a[0]), lambda k: operator(a[k]), None, self)
+        return _made(operator(a[0]), lambda k, _: operator(a[k]), self)
 
 
-def _made(value: Any, linear: Linear, lower: Lower | None, *parents: Jet) -> Jet:
-    """Return a new jet of a tape, with its coefficients as far as those of its parents are known."""
+def _zero(k: int, own: Array) -> float:
+    """Return the coefficients of a jet that is given."""
+    return 0.0
+
+
+def _made(value: Any, term: Term, *parents: Jet, needs: Iterable[Jet] = (), needs_own: bool = False) -> Jet:
+    """Return a new jet of a tape, with its coefficients as far as those of its parents are known.
+
+    Its terms may follow from lower orders of some parents, and from its own.
+    """
     tape = parents[0].tape
     found = Jet(tape, np.empty((tape.order + 1, *np.shape(value))), *parents)
-    found.linear, found.lower, found.coefficients[0] = linear, lower, value
+    found.term, found.coefficients[0] = term, value
     tape.made.append(found)
-    if lower is None:
-        found.coefficients[1 : tape.known + 1] = linear(slice(1, tape.known + 1))
-        return found
-    found.need()
+    for each in (*needs, *([found] if needs_own else [])):
+        each.need()
     for k in range(1, tape.known + 1):
-        found.coefficients[k] = linear(k) + lower(k, found.coefficients)
+        found.coefficients[k] = term(k, found.coefficients)
     return found
 
 
-def _between(a: Array, b: Array, k: int) -> Any:
-    """Return the part of order k in a product that comes of orders from 1 to k - 1 of both factors."""
-    if k < 2:
-        return 0.0
-    first, second = a[1:k], b[k - 1 : 0 : -1]
+def _convolved(first: Array, second: Array) -> Any:
+    """Return the sum of products of orders of two factors, the second in descending order."""
     if first.shape[1:] == (1,):
-        return first[:, 0] @ second
+        return first[::-1, 0] @ second[::-1]  # numpy would copy rows in descending order
     if second.shape[1:] == (1,):
         return second[:, 0] @ first
     return np.einsum("jn,jn->n", first, second)
@@ -156,9 +152,9 @@ def _add(a: Any, b: Any) -> Jet:
         a, b = b, a
     of_a = a.coefficients
     if not isinstance(b, Jet):
-        return _made(of_a[0] + b, lambda k: of_a[k], None, a)
+        return _made(of_a[0] + b, lambda k, _: of_a[k], a)
     of_b = b.coefficients
-    return _made(of_a[0] + of_b[0], lambda k: of_a[k] + of_b[k], None, a, b)
+    return _made(of_a[0] + of_b[0], lambda k, _: of_a[k] + of_b[k], a, b)
 
 
 def _subtract(a: Any, b: Any) -> Jet:
@@ -166,9 +162,9 @@ def _subtract(a: Any, b: Any) -> Jet:
         return _add(a, -np.asarray(b))
     of_b = b.coefficients
     if not isinstance(a, Jet):
-        return _made(a - of_b[0], lambda k: -of_b[k], None, b)
+        return _made(a - of_b[0], lambda k, _: -of_b[k], b)
     of_a = a.coefficients
-    return _made(of_a[0] - of_b[0], lambda k: of_a[k] - of_b[k], None, a, b)
+    return _made(of_a[0] - of_b[0], lambda k, _: of_a[k] - of_b[k], a, b)
 
 
 def _multiply(a: Any, b: Any) -> Any:
@@ -177,8 +173,7 @@ def _multiply(a: Any, b: Any) -> Any:
     if not isinstance(b, Jet):
         return a.mapped(lambda values: values * b)
     of_a, of_b = a.coefficients, b.coefficients
-    first, second = of_a[0], of_b[0]
-    return _made(first * second, lambda k: first * of_b[k] + of_a[k] * second, lambda k, _: _between(of_a, of_b, k), a, b)
+    return _made(of_a[0] * of_b[0], lambda k, _: _convolved(of_a[: k + 1], of_b[k::-1]), a, b, needs=(a, b))
 
 
 def _divide(a: Any, b: Any) -> Any:
@@ -186,25 +181,22 @@ def _divide(a: Any, b: Any) -> Any:
     if not isinstance(b, Jet):
         return a.mapped(lambda values: values / b)
     of_b, below = b.coefficients, b.value
-    value = _value(a) / below
-
-    def lower(k: int, own: Array) -> Any:
-        return -_between(own, of_b, k) / below
-
     if not isinstance(a, Jet):
-        return _made(value, lambda k: -value * of_b[k] / below, lower, b)
+        return _made(a / below, lambda k, own: -_convolved(own[:k], of_b[k:0:-1]) / below, b, needs_own=True)
     of_a = a.coefficients
-    return _made(value, lambda k: (of_a[k] - value * of_b[k]) / below, lower, a, b)
+    return _made(
+        a.value / below, lambda k, own: (of_a[k] - _convolved(own[:k], of_b[k:0:-1])) / below, a, b, needs_own=True
+    )
 
 
 def _exponential(a: Jet) -> Jet:
-    of_a, value, slopes = a.coefficients, np.exp(a.value), np.zeros_like(a.coefficients)
+    of_a, slopes = a.coefficients, np.zeros_like(a.coefficients)
 
-    def lower(k: int, own: Array) -> Any:
-        slopes[k - 1] = (k - 1) * of_a[k - 1]
-        return _between(slopes, own, k) / k
+    def term(k: int, own: Array) -> Any:
+        slopes[k] = k * of_a[k]
+        return _convolved(slopes[1 : k + 1], own[k - 1 :: -1]) / k
 
-    found = _made(value, lambda k: value * of_a[k], lower, a)
+    found = _made(np.exp(a.value), term, a, needs_own=True)
     found.log = a
     return found
 
@@ -214,11 +206,11 @@ def _logarithm(a: Jet) -> Jet:
         return a.log
     of_a, slopes = a.coefficients, np.zeros_like(a.coefficients)
 
-    def lower(k: int, own: Array) -> Any:
+    def term(k: int, own: Array) -> Any:
         slopes[k - 1] = (k - 1) * own[k - 1]
-        return -_between(slopes, of_a, k) / (k * of_a[0])
+        return (of_a[k] - _convolved(slopes[1:k], of_a[k - 1 : 0 : -1]) / k) / of_a[0]
 
-    return _made(np.log(a.value), lambda k: of_a[k] / of_a[0], lower, a)
+    return _made(np.log(a.value), term, a, needs_own=True)
 
 
 def _power(a: Jet, exponent: float) -> Any:
@@ -235,7 +227,7 @@ def _chosen(first: Any, second: Any, is_first: Flags) -> Jet:
 
     parents = [each for each in (first, second) if isinstance(each, Jet)]
     value = np.where(is_first, _value(first), _value(second))
-    return _made(value, lambda k: np.where(is_first, of(first, k), of(second, k)), None, *parents)
+    return _made(value, lambda k, _: np.where(is_first, of(first, k), of(second, k)), *parents)
 
 
 def _value(given: Any) -> Any:
@@ -273,11 +265,11 @@ def polynomial(coefficients: Array, a: Any) -> Any:
         tower[m] = polyval(a.value, coefficients[m:] * falling[:, None], tensor=False)
     slopes, next_one = np.zeros_like(of_a), np.vstack([tower[1:], np.zeros_like(tower[:1])])
 
-    def lower(k: int, own: Array) -> Any:
+    def term(k: int, own: Array) -> Any:
         slopes[k - 1] = (k - 1) * of_a[k - 1]
-        found = np.zeros_like(tower)
+        found = next_one * of_a[k]
         if k > 1:
-            np.einsum("jn,jmn->mn", slopes[1:k], own[k - 1 : 0 : -1, 1:], out=found[:-1])
-        return found / k
+            found[:-1] += np.einsum("jn,jmn->mn", slopes[1:k], own[k - 1 : 0 : -1, 1:]) / k
+        return found
 
-    return _made(tower, lambda k: next_one * of_a[k], lower, a).mapped(lambda values: values[..., 0, :])
+    return _made(tower, term, a, needs_own=True).mapped(lambda values: values[..., 0, :])

@@ -51,7 +51,7 @@ class Matrix:
 
     def __call__(self, values: Array) -> Array:
         """Return what it makes of nodal values."""
-        if np.iscomplexobj(values):  # numpy would make the matrix complex each time
+        if values.dtype.kind == "c":  # numpy would make the matrix complex each time
             return np.asarray(self(values.real) + 1j * self(values.imag))
         return np.asarray(values @ self.matrix.T)
 
@@ -95,7 +95,7 @@ class Trace:
     @classmethod
     def number(cls, name: str, value: Array, unit: Numbers = 1.0) -> Trace:
         """Return a number among the unknowns, or any other, measured in a unit."""
-        return cls(value, None, {name: np.broadcast_to(np.asarray(unit, dtype=float), np.shape(value))})
+        return cls(value, None, {name: np.full(np.shape(value), unit, dtype=float)})
 
     def scaled(self, factor: Numbers, value: Array) -> Trace:
         """Return another value, whose derivatives are these times a factor at each node."""
@@ -103,7 +103,18 @@ class Trace:
             name: [Term(_product(factor, left), operator, right) for left, operator, right in each]
             for name, each in self.terms.items()
         }
-        return Trace(value, terms, {name: np.asarray(factor * column) for name, column in self.columns.items()})
+        return Trace(value, terms, {name: factor * column for name, column in self.columns.items()})
+
+    def _joined(self, other: Trace, value: Array) -> Trace:
+        """Return another value, whose derivatives are the sums of both."""
+        if not other.terms and not other.columns:
+            return Trace(value, self.terms, self.columns)
+        terms, columns = dict(self.terms), dict(self.columns)
+        for name, each in other.terms.items():
+            terms[name] = [*terms[name], *each] if name in terms else each
+        for name, column in other.columns.items():
+            columns[name] = columns[name] + column if name in columns else column
+        return Trace(value, terms, columns)
 
     def factor(self, name: str) -> Any:
         """Return the factor of a field under the operator that its terms share, without those that have none."""
@@ -113,15 +124,6 @@ class Trace:
                 factor = _product(left, right)
                 found = found + (1.0 if factor is None else factor)
         return found
-
-    def row(self, name: str) -> Array:
-        """Return the derivative of a functional by a field, whose factors on the left are numbers, or by a number."""
-        found: Any = self.columns.get(name, 0.0)
-        for left, operator, right in self.terms.get(name, ()):
-            assert operator is not None
-            factor = _product(left, right)
-            found = found + (operator.matrix if factor is None else operator.matrix * factor)
-        return np.asarray(found)
 
     def along(self, changes: Mapping[str, Array]) -> Array:
         """Return the change with that of fields and numbers, each with values of shape (..., nodes)."""
@@ -138,12 +140,7 @@ class Trace:
         """Return the sum."""
         if not isinstance(other, Trace):
             return Trace(self.value + other, self.terms, self.columns)
-        terms, columns = dict(self.terms), dict(self.columns)
-        for name, each in other.terms.items():
-            terms[name] = [*terms[name], *each] if name in terms else each
-        for name, column in other.columns.items():
-            columns[name] = columns[name] + column if name in columns else column
-        return Trace(self.value + other.value, terms, columns)
+        return self._joined(other, self.value + other.value)
 
     __radd__ = __add__
 
@@ -162,7 +159,7 @@ class Trace:
     def __mul__(self, other: Value) -> Trace:
         """Return the product."""
         if isinstance(other, Trace):
-            return self.scaled(other.value, self.value * other.value) + other.scaled(self.value, ZERO)
+            return self.scaled(other.value, ZERO)._joined(other.scaled(self.value, ZERO), self.value * other.value)
         return self.scaled(other, self.value * other)
 
     __rmul__ = __mul__
@@ -179,6 +176,8 @@ class Trace:
         return self.scaled(-value / self.value, value)
 
 
+NOTHING = Trace(ZERO)
+
 Value: TypeAlias = Trace | Array | float
 
 
@@ -193,11 +192,12 @@ def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
     A derivative None stands for one.  Of plain values the function gives its plain value.
     """
     value, *slopes = function(*(value_of(each) for each in given))
-    found = value
+    found = None
     for each, slope in zip(given, slopes, strict=True):
         if isinstance(each, Trace):
-            found = each.scaled(1.0 if slope is None else slope, ZERO) + found
-    return found
+            part = each if slope is None else each.scaled(slope, ZERO)
+            found = part._joined(found or NOTHING, value)
+    return value if found is None else found
 
 
 def act(operator: Operator, given: Any) -> Any:
@@ -207,7 +207,11 @@ def act(operator: Operator, given: Any) -> Any:
     if not isinstance(given, Trace):
         return operator(given)
     terms = {name: [_after(operator, each) for each in own] for name, own in given.terms.items()}
-    columns = {name: operator(np.broadcast_to(column, np.shape(given.value))) for name, column in given.columns.items()}
+    nodes = np.shape(given.value)[-1]
+    columns = {
+        name: operator(column if column.shape[-1] == nodes else np.broadcast_to(column, (*column.shape[:-1], nodes)))
+        for name, column in given.columns.items()
+    }
     return Trace(operator(given.value), terms, columns)
 
 
@@ -238,10 +242,12 @@ def matrix_of(trace: Trace, name: str, out: Array) -> None:
             diagonal = diagonal + factor
         else:
             factors[operator] = factors[operator] + factor if operator in factors else factor
-    total: Any = 0.0
+    if not factors:
+        out[...] = 0.0
     for k, (operator, factor) in enumerate(factors.items()):
-        term = operator.matrix * factor
-        total = np.add(total, term, out=total) if k else term
-    out[...] = total
+        if k:
+            out += operator.matrix * factor
+        else:
+            np.multiply(operator.matrix, factor, out=out)
     if np.any(diagonal):
         np.einsum("ii->i", out)[...] += diagonal
