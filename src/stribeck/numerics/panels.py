@@ -318,11 +318,14 @@ def adapt(
         found = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
         return np.asarray(found.max(axis=0) / tolerance)
 
+    before = math.inf
     while True:
         x = reach / nodes[None, :]
-        tail = legendre_tail(fields(x, np.array([reach]), nodes[None, :] ** -2.0).reshape(-1, order), order)
-        if tail.max() <= tolerance or reach > 1e9 * scale:
+        tail = legendre_tail(fields(x, np.array([reach]), nodes[None, :] ** -2.0).reshape(-1, order), order).max()
+        # Beyond its own panels a guess tells no more: then one that is solved on the wider mesh does.
+        if tail <= tolerance or tail >= before:
             break
+        before = float(tail)
         reach *= 2.0
     edges = base_edges(scale, reach)
     if start is not None:
