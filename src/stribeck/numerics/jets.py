@@ -184,9 +184,7 @@ def _divide(a: Any, b: Any) -> Any:
     if not isinstance(a, Jet):
         return _made(a / below, lambda k, own: -_convolved(own[:k], of_b[k:0:-1]) / below, b, needs_own=True)
     of_a = a.coefficients
-    return _made(
-        a.value / below, lambda k, own: (of_a[k] - _convolved(own[:k], of_b[k:0:-1])) / below, a, b, needs_own=True
-    )
+    return _made(a.value / below, lambda k, own: (of_a[k] - _convolved(own[:k], of_b[k:0:-1])) / below, a, b, needs_own=True)
 
 
 def _exponential(a: Jet) -> Jet:
