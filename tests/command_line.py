@@ -1,12 +1,15 @@
 """What the tests of the command share: case files to write, and the command called inside this process or outside."""
 
+import json
 import math
 import os
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+import stribeck as sb
 from stribeck.cli import main, progress
 
 progress.LINE_INTERVAL = math.inf  # On a busy machine a command may take long enough for a line of progress on stderr.
@@ -43,6 +46,29 @@ def case_text(contact=None, **tables):
         parts.append(f"[{table}]")
         parts += [f"{key} = {value}" for key, value in entries.items() if value is not None]
     return "\n".join(parts)
+
+
+def toml_of(**tables):
+    """Return tables of Python values as TOML."""
+
+    def text(value):
+        if isinstance(value, dict):
+            return f"{{ {', '.join(f'{json.dumps(key)} = {text(each)}' for key, each in value.items())} }}"
+        if isinstance(value, (list, tuple)):
+            return f"[{', '.join(map(text, value))}]"
+        return json.dumps(value).replace("NaN", "nan").replace("Infinity", "inf")
+
+    return "\n".join(f"{name} = {text(table)}" for name, table in tables.items())
+
+
+def fit_settings(table, geometry="line"):
+    """Return what the table ``[fit]`` of a case asks for, read from a file."""
+    load = "1 N" if geometry == "point" else "30 N/m"
+    contact = {name: json.loads(value) for name, value in CONTACT.items()} | {"geometry": geometry, "load": load}
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "case.toml"
+        path.write_text(toml_of(contact=contact, fit=table))
+        return sb.load_case(path).fit
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ import pytest
 from command_line import EXAMPLES, HEAVY, PDMS, SWEEP, call, case_text
 
 import stribeck as sb
-from stribeck.quantities.units import to_si
 
 LINES, COLUMNS = 25, 80
 
@@ -40,8 +39,8 @@ def test_the_answer_of_a_state_fits_a_screen(subtests, capsys):
             for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
                 film, stated = files[name], files[f"{name}_error"]
                 [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
-                assert to_si(shown, "length", label) == pytest.approx(film, rel=1e-2)
-                assert to_si(error, "length", label) == pytest.approx(stated, rel=0.06)  # two digits
+                assert contact.replace(radius=shown).radius == pytest.approx(film, rel=1e-2)
+                assert contact.replace(radius=error).radius == pytest.approx(stated, rel=0.06)  # two digits
                 assert stated < 0.2 * film
 
 

@@ -7,7 +7,6 @@ import pytest
 from test_results import CONTACT
 
 import stribeck as sb
-from stribeck.batches.inputs import broadcast_inputs
 
 SPEEDS = np.geomspace(1e-3, 1e-2, 3)
 
@@ -62,13 +61,17 @@ def test_groups_take_arrays_by_name_and_have_no_scales():
 @pytest.mark.quick
 def test_names_of_dimensions_join_arrays():
     xarray = pytest.importorskip("xarray")
-    runs, both = xarray.DataArray([1.0, 2.0, 3.0], dims="run"), xarray.DataArray(np.ones((2, 3)), dims=("surface", "run"))
-    columns, dims = broadcast_inputs({"speed": runs, "beta": both, "load": 30}, None)
-    assert dims == ("run", "surface") and all(column.shape == (3, 2) for column in columns.values())
-    assert columns["speed"][:, 1].tolist() == [1.0, 2.0, 3.0]
-    columns, dims = broadcast_inputs({"a": np.ones((2, 1)), "b": np.ones((2, 4))}, None)
-    assert dims == ("dim_0", "dim_1")
-    assert broadcast_inputs({"a": np.ones((2, 1)), "b": np.ones(4)}, ("day", "run"))[1] == ("day", "run")
+    runs, both = (
+        xarray.DataArray([1e-3, 2e-3, 3e-3], dims="run"),
+        xarray.DataArray(np.full((2, 3), 0.06), dims=("surface", "run")),
+    )
+    found = sb.solve_batch(CONTACT, speed=runs, beta=both, load=30, rtol=1e-3)
+    assert found.dims == ("run", "surface") and found.groups.shape == (3, 2)
+    assert [contact.speed for contact in found.contacts[:, 1]] == [1e-3, 2e-3, 3e-3]
+    speeds, betas = [[1e-3], [2e-3]], np.full((2, 3), 0.06)
+    assert sb.solve_batch(CONTACT, speed=speeds, beta=betas, rtol=1e-3).dims == ("dim_0", "dim_1")
+    named = sb.solve_batch(CONTACT, speed=speeds, beta=betas[0], dims=("day", "run"), rtol=1e-3)
+    assert named.dims == ("day", "run")
 
 
 @pytest.mark.quick
@@ -90,8 +93,8 @@ def test_what_does_not_fit_is_a_sentence(subtests):
 @pytest.mark.quick
 def test_a_quantity_of_pint_may_be_an_array():
     unit = pytest.importorskip("pint").UnitRegistry()
-    columns, dims = broadcast_inputs({"speed": unit.Quantity([1, 2], "mm/s")}, None)
-    assert dims == ("speed",) and CONTACT.replace(speed=columns["speed"][1]).speed == 2e-3
+    found = sb.solve_batch(CONTACT, speed=unit.Quantity([1, 2], "mm/s"), rtol=1e-3)
+    assert found.dims == ("speed",) and found.contacts[1].speed == 2e-3
 
 
 def test_a_group_that_is_none_is_refused():

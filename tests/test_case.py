@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck import Case, InputError, LineContact, load_case
-from stribeck.cases.case import CurveSettings
-from stribeck.contacts.geometries import LINE
 
 EXAMPLES = sorted(
     path for path in (Path(__file__).parents[1] / "examples").glob("*.toml") if "\n[vary]\n" not in path.read_text()
@@ -83,7 +81,8 @@ def test_a_case_with_a_contact_alone_has_the_defaults(write):
         boundary_friction=0.7,
     )
     assert load_case(path) == Case(path=path, contact=contact)
-    assert load_case(str(path)).curve == CurveSettings(over="speed", range=None, points=101)
+    curve = load_case(str(path)).curve
+    assert (curve.over, curve.range, curve.points) == ("speed", None, 101)
 
 
 def test_every_key_of_a_case_is_read(write):
@@ -100,7 +99,7 @@ def test_every_key_of_a_case_is_read(write):
     )
     case = load_case(write(text))
     assert case.contact.modulus == pytest.approx(2e6 / 0.75, rel=1e-15)
-    assert case.curve == CurveSettings(over="load", range=(1.0, 2e3), points=7)
+    assert (case.curve.over, case.curve.range, case.curve.points) == ("load", (1.0, 2e3), 7)
     assert (case.title, case.notes, case.law) == ("T", "N", "exponential")
     assert (case.rtol, case.definition) == (1e-9, "balanced")
 
@@ -121,7 +120,12 @@ def test_a_byte_order_mark_is_read_over(write):
 def test_a_case_knows_every_quantity(write):
     pair = {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"}
     second = {"radius_2", "youngs_modulus_2", "poisson_ratio_2"}
-    assert set(LINE.quantities) >= set(CONTACT) | set(pair) | second | {"entrainment_speed", "shore_a", "rq", "force"}
+    assert set(LineContact.INPUTS.quantities) >= set(CONTACT) | set(pair) | second | {
+        "entrainment_speed",
+        "shore_a",
+        "rq",
+        "force",
+    }
     assert load_case(write(toml(contact=pair))).contact.modulus > 2e6
 
 
@@ -340,7 +344,7 @@ def test_every_quantity_of_an_example_has_a_comment_above(subtests):
             contact = lines[lines.index("[contact]") + 1 :]
             above = ""
             for line in contact[: next((i for i, line in enumerate(contact) if line.startswith("[")), None)]:
-                if "=" in line and line.split(" =")[0] in LINE.quantities and "poisson" not in line:
+                if "=" in line and line.split(" =")[0] in LineContact.INPUTS.quantities and "poisson" not in line:
                     assert above.startswith("#"), line
                 above = line
 

@@ -1,11 +1,12 @@
 """The tables of a case for fluid, cavitation, motion, flow factors and solid."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
+from command_line import toml_of
 
 import stribeck as sb
-from stribeck.cases.reading import check_case
 
 CONTACT = {
     "radius": "10 mm",
@@ -21,7 +22,11 @@ CONTACT = {
 
 
 def case_of(contact=None, **tables):
-    return check_case({"contact": CONTACT if contact is None else contact, **tables}, Path("a.toml"))
+    """Return the case of a file with these tables."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "a.toml"
+        path.write_text(toml_of(contact=CONTACT if contact is None else contact, **tables))
+        return sb.load_case(path)
 
 
 @pytest.mark.quick
@@ -191,10 +196,10 @@ def test_slide_to_roll_may_stand_in_contact_or_motion_but_not_in_both(subtests):
 def test_all_problems_are_told_at_once():
     with pytest.raises(sb.InputError) as problem:
         case_of(fluid={"model": "carreau"}, motion={"slip": 1}, solid={})
-    assert [line.split("]")[0] for line in str(problem.value).split("\n")] == [
-        "a.toml: [fluid",
-        "a.toml: [motion",
-        "a.toml: [solid",
+    assert [line.split("]")[0].split("[")[1] for line in str(problem.value).split("\n")] == [
+        "fluid",
+        "motion",
+        "solid",
     ]
 
 

@@ -5,13 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from stribeck import Groups, InputError
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.model import Model
-from stribeck.fluids.cavitation import Cavitation
+from stribeck import Groups, InputError, LineContact
 
 pytestmark = pytest.mark.quick
 
@@ -33,23 +29,15 @@ def test_groups_of_a_ball_follow_from_its_si_numbers():
     assert groups.hersey_number(beta) == pytest.approx(eta * U * R / F_N, rel=1e-12)
 
 
-def test_the_contact_law_of_a_ball_is_in_units_of_its_own_hertz_pressure():
-    """p_c/p_Hz at zero gap is beta E*/p_Hz, and its slopes by load and roughness are those of differences."""
-    groups, step, gap = Groups(1.0, 0.2, 1e-2, geometry="point"), 1e-6, np.array([0.01])
-    law = contact_law(groups)
-    assert law.pressure(np.zeros(1))[0] == pytest.approx(0.2 ** (-1 / 3), rel=1e-14)
-    for name, slope in (("load", law.load_derivative), ("roughness", law.roughness_derivative)):
-        ends = [
-            contact_law(replace(groups, **{name: getattr(groups, name) * math.exp(sign * step)})).pressure(gap)[0]
-            for sign in (-1, 1)
-        ]
-        assert slope(gap, law.pressure(gap))[0] == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-8)
-
-
 def test_groups_that_differ_in_geometry_or_model_are_not_equal():
     """Nothing that is kept by groups may be taken for that of another contact."""
     line, point = Groups(1.0, 0.1, 0.0), Groups(1.0, 0.1, 0.0, geometry="point")
-    with_exit = Groups(1.0, 0.1, 0.0, model=Model(cavitation=Cavitation.EXIT))
+    plain, ends = (
+        LineContact.from_groups(line, radius=1, modulus=1, viscosity=1, alpha=1, beta=1, boundary_friction=1, cavitation=each)
+        for each in ("none", "exit")
+    )
+    assert plain.groups.model == line.model
+    with_exit = replace(line, model=ends.groups.model)
     assert line != point and line != with_exit and hash(line) != hash(point)
     assert "point" in repr(point) and repr(line) == "Groups(speed=1.0, load=0.1, roughness=0.0)"
 

@@ -4,11 +4,11 @@ import time
 
 import numpy as np
 import pytest
+from command_line import fit_settings
 from hypothesis import given
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.cases.fit_settings import check_fit_table
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
@@ -22,7 +22,7 @@ def read(tmp_path):
     def reader(text, **table):
         path = tmp_path / "lab.csv"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return sb.read_measurements(path, check_fit_table(table))
+        return sb.read_measurements(path, fit_settings(table))
 
     return reader
 
@@ -287,7 +287,7 @@ def test_a_wrong_fit_table_is_refused_by_the_case_file(subtests, tmp_path):
     for table, where, what in TABLES.values():
         with subtests.test(table=table, where=where, what=what):
             with pytest.raises(sb.InputError) as caught:
-                check_fit_table(table)
+                fit_settings(table)
             assert where in str(caught.value) and what in str(caught.value)
 
 

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import call, case_text
+from command_line import call, case_text, fit_settings
 from fit_data import exact
 
 import stribeck as sb
 from stribeck import FitSettings
-from stribeck.cases.fit_settings import check_fit_table
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
@@ -25,7 +24,7 @@ def read(tmp_path):
     def reader(text, name="rig.txt", geometry="line", **table):
         path = tmp_path / name
         path.write_text(text)
-        return sb.read_measurements(path, check_fit_table(table, geometry))
+        return sb.read_measurements(path, fit_settings(table, geometry))
 
     return reader
 

@@ -13,10 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import call, case_text
+from command_line import call, case_text, fit_settings
 
 import stribeck as sb
-from stribeck.cases.fit_settings import check_fit_table
 
 DATA = Path(__file__).parent / "data"
 SPEEDS = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0])  # [mm/s]
@@ -30,7 +29,7 @@ def curve(speed):
 def read(path, geometry="point", **table):
     """Return the measurements in a file, or in one of the data of the tests."""
     path = Path(path)
-    return sb.read_measurements(path if path.is_absolute() else DATA / path, check_fit_table(table, geometry))
+    return sb.read_measurements(path if path.is_absolute() else DATA / path, fit_settings(table, geometry))
 
 
 @pytest.fixture
@@ -340,7 +339,7 @@ def test_a_rotation_is_a_speed_by_the_radius_of_its_track(subtests, written):
 def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
     path = written(table("Ball diameter: 12 mm\nSpeed [rpm];COF", speed, friction))
     assert "'Speed [rpm]' is a rotation" in refusal(path) and "track_radius = '20 mm' in [fit]" in refusal(path)
-    assert "track_radius = -1" in str(pytest.raises(sb.InputError, check_fit_table, {"track_radius": -1}).value)
+    assert "track_radius = -1" in str(pytest.raises(sb.InputError, fit_settings, {"track_radius": -1}).value)
 
 
 def test_declared_columns_come_before_those_that_are_known_by_their_names(written):
@@ -439,7 +438,7 @@ def test_the_sheet_of_a_workbook_is_named_and_chosen(tmp_path):
     assert read(path, sheet="oil").friction == pytest.approx(0.5 * curve(SPEEDS[:-1]))
     assert "has no sheet 'glycerol'; its sheets are 'water', 'oil', 'notes'" in refusal(path, sheet="glycerol")
     assert "is no workbook" in refusal("12_three_header_rows.txt", sheet="oil")
-    assert "sheet = 3" in str(pytest.raises(sb.InputError, check_fit_table, {"sheet": 3}).value)
+    assert "sheet = 3" in str(pytest.raises(sb.InputError, fit_settings, {"sheet": 3}).value)
 
 
 def test_a_table_that_would_take_minutes_is_refused(written):

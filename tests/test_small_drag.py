@@ -1,14 +1,15 @@
 """A drag that nearly vanishes, as of rolling films on one wall: the error that is stated of it is its own."""
 
 import stribeck as sb
-from stribeck.contacts.with_parts import with_parts
 
 RTOL = 1e-4
 NEARLY = 1e-6
 
 
 def rolling(speed: float, slide_to_roll: float, cavitation: str) -> sb.Groups:
-    return with_parts(sb.Groups(speed, 0.1, 1e-3), slide_to_roll=slide_to_roll, cavitation=cavitation)
+    contact = {"radius": 1.0, "modulus": 1.0, "viscosity": 1.0, "alpha": 1.0, "beta": 1.0, "boundary_friction": 1.0}
+    groups = sb.Groups(speed, 0.1, 1e-3)
+    return sb.LineContact.from_groups(groups, **contact, slide_to_roll=slide_to_roll, cavitation=cavitation).groups
 
 
 def vanishing(speed: float, wall: str, cavitation: str) -> tuple[float, float]:
