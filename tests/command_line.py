@@ -58,7 +58,11 @@ def toml_of(**tables):
             return f"[{', '.join(map(text, value))}]"
         return json.dumps(value).replace("NaN", "nan").replace("Infinity", "inf")
 
-    return "\n".join(f"{name} = {text(table)}" for name, table in tables.items())
+    plain = [f"{name} = {text(value)}" for name, value in tables.items() if not isinstance(value, dict)]
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            plain += [f"[{name}]", *(f"{key} = {text(each)}" for key, each in table.items())]
+    return "\n".join(plain)
 
 
 def fit_settings(table, geometry="line"):

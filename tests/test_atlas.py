@@ -18,7 +18,6 @@ from stribeck.atlas import table as atlas_table
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
 from stribeck.contacts.model import Model
 from stribeck.curves.result import path_of
-from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -456,12 +455,6 @@ def test_a_curve_knows_what_it_does_not_have(contact):
         sb.stribeck_curve(contact, points=3, method="atlas").observable("error_estimate")
     with pytest.raises(sb.InputError, match="must be 'solver' or 'atlas'"):
         sb.stribeck_curve(contact, points=3, method="table")
-
-
-def test_elasticities_read_off_it_are_the_solved_ones(contact):
-    _, right = friction_sensitivities(contact)
-    found = atlas_sensitivities(contact)
-    assert found == pytest.approx(right, abs=2e-4)
 
 
 def test_a_phase_diagram_read_off_it_is_the_solved_one():

@@ -137,11 +137,15 @@ def test_curves_at_two_loads_and_motions_have_the_friction_of_their_contacts():
 
 def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys):
     case, file = tmp_path / "ball.toml", tmp_path / "data.csv"
-    case.write_text(toml_of(contact=TRUE.to_si() | {"geometry": "point", "boundary_friction": 0.6}))
+    given = TRUE.to_si() | {"geometry": "point", "boundary_friction": 0.6, "entrainment_speed": TRUE.speed / 2}
+    given.pop("speed")
+    case.write_text(toml_of(contact=given))
     noise = np.exp(1e-3 * np.random.default_rng(3).standard_normal(5))
     rows = zip(SPEEDS / 2, frictions(TRUE) * noise, strict=True)
     file.write_text("mean speed [m/s],friction\n" + "".join(f"{v:.8g},{m:.8g}\n" for v, m in rows))
-    out = call(capsys, "fit", file, case, "--out", tmp_path / "fitted.toml", "--free", "mu0", "h_rms").out
+    answer = call(capsys, "fit", file, case, "--out", tmp_path / "fitted.toml", "--free", "mu0", "h_rms")
+    assert answer.code == 0, answer.err
+    out = answer.out
     assert "boundary_friction" in out
     back = sb.load_case(tmp_path / "fitted.toml").contact
     assert back.boundary_friction == pytest.approx(0.8, rel=1e-2)

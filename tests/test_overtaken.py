@@ -8,7 +8,6 @@ from fit_data import TRUE, measured
 
 import stribeck as sb
 from stribeck.atlas import friction, friction_derivatives
-from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.curves import solved_curve
 from stribeck.plot.curve import plot_curve
 from stribeck.regimes.transition_speeds import transition_speeds
@@ -76,26 +75,6 @@ def test_the_minimum_of_a_ball_goes_by_the_size_too(subtests):
             marks = transition_speeds(BALL, DRY, BETA, slide_to_roll=ratio)
             assert marks.minimum[0] == pytest.approx(minimum.value, rel=2e-2)
             assert marks.hydrodynamic[0] == pytest.approx(found.landmark("hydrodynamic_start").value, rel=2e-2)
-
-
-def test_asperities_of_a_ball_that_hardly_slides_stick_as_on_a_curve():
-    ball = sb.PointContact(
-        radius="9.5 mm",
-        modulus="1.6 MPa",
-        load="1.3 N",
-        viscosity="10 mPa*s",
-        entrainment_speed="1 mm/s",
-        slide_to_roll=0.004,
-        roughness="2 um",
-        alpha=2.0,
-        beta=0.05,
-        boundary_friction=0.9,
-    )
-    solution, found = friction_sensitivities(ball, rtol=1e-3)
-    part = 0.5 * 0.4 * (3 - 0.4**2)
-    assert solution.friction().asperities == pytest.approx(part * 0.9 * solution.contact_load_share, rel=1e-12)
-    ends = [sb.solve(ball.replace(slide_to_roll=0.004 * math.exp(step)), rtol=1e-3).friction().total for step in (1e-3, -1e-3)]
-    assert found["slide_to_roll"] == pytest.approx(math.log(ends[0] / ends[1]) / 2e-3, rel=1e-4)
 
 
 def test_derivatives_off_the_atlas_are_those_of_the_friction_with_its_sign():

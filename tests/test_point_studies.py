@@ -1,7 +1,6 @@
 """Balls in sweeps, in sensitivities and regimes, in curves from the command line."""
 
 import json
-import math
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,6 @@ import pytest
 
 import stribeck as sb
 from stribeck.cli.running import main
-from stribeck.curves.sensitivities import friction_sensitivities
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -64,21 +62,6 @@ def test_the_command_draws_a_ball(capsys, tmp_path):
     assert "<svg" in drawn
     for said in ("film", "µm", "MPa"):
         assert said in drawn, said
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("edge", [None, "2 mm"])
-def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
-    contact = ball(slide_to_roll=0.6, wetted_radius=edge)
-    solution, found = friction_sensitivities(contact, rtol=1e-6)
-    assert set(found) == {name for name, _ in contact.inputs()}
-    for name in ("speed", "load", "beta", "radius", "slide_to_roll", *(["wetted_radius"] if edge else [])):
-        ends = [
-            sb.solve(contact.replace(**{name: getattr(contact, name) * math.exp(step)}), rtol=1e-6).friction().total
-            for step in (0.02, -0.02)
-        ]
-        assert found[name] == pytest.approx(math.log(ends[0] / ends[1]) / 0.04, abs=3e-3), name
-    assert solution.contact is contact
 
 
 @pytest.mark.quick

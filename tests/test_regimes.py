@@ -13,9 +13,7 @@ import stribeck as sb
 from stribeck import cli
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.regime import friction_share
-from stribeck.curves import sensitivities
 from stribeck.curves.regime import Transition
-from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.curves.stribeck_curve import begun
 from stribeck.regimes import margin_scan
 from stribeck.regimes import margins as margins_module
@@ -62,59 +60,6 @@ def test_the_exponents_are_those_of_the_groups(subtests):
 
             slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
             np.testing.assert_allclose(slope, LINE.exponents[name], atol=1e-12)
-
-
-def test_elasticities_agree_with_differences_of_cold_solves(subtests):
-    for speed, definition in [(1e-3, "published"), (0.03, "balanced")]:
-        with subtests.test(speed=speed, definition=definition):
-            contact = CONTACT.replace(speed=speed)
-            solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
-            assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
-            step = 1e-2
-            for name in LINE.exponents:
-
-                def log_friction(k, name=name):
-                    other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})
-                    return math.log(sb.solve(other, rtol=1e-9).friction(definition=definition).total)
-
-                f = [log_friction(k) for k in (-2, -1, 1, 2)]
-                assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
-
-
-def test_elasticities_obey_the_dimensions():
-    # Speed and viscosity enter as their product; friction knows no unit of force and none of length.
-    _, found = friction_sensitivities(CONTACT)
-    assert found["speed"] == found["viscosity"]
-    assert found["load"] + found["modulus"] + found["viscosity"] == pytest.approx(0, abs=1e-12)
-    assert found["alpha"] == -found["roughness"]
-
-
-def test_at_rest_only_the_dry_friction_coefficient_matters():
-    solution, found = friction_sensitivities(CONTACT.replace(speed=0))
-    assert found.pop("boundary_friction") == pytest.approx(1, abs=1e-6)
-    assert set(found.values()) == {0.0}
-    assert solution.groups.speed == 0
-
-
-def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
-    _, found = friction_sensitivities(CONTACT.replace(roughness=0))
-    assert found["roughness"] == found["alpha"] == found["boundary_friction"] == 0
-    assert (
-        abs(found["beta"]) < 1e-9
-    )  # the fluid's part and the groups' cancel but for the rounding of a solve with the Jacobian
-    assert found["speed"] > 0.4
-
-
-def test_where_there_is_no_friction_elasticities_are_no_number():
-    _, found = friction_sensitivities(CONTACT.replace(speed=0, boundary_friction=0))
-    assert all(math.isnan(value) for value in found.values())
-
-
-def test_bad_settings_are_refused(subtests):
-    for arguments in [{"rtol": 1e-20}, {"definition": "mine"}]:
-        with subtests.test(arguments=arguments):
-            with pytest.raises(sb.InputError):
-                friction_sensitivities(CONTACT, **arguments)
 
 
 def test_a_substrate_that_is_overtaken_has_regimes_too():
@@ -448,40 +393,12 @@ def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with
     assert counted.startswith("the errors of speed; radius, effective modulus, ") and counted.endswith(" count as exact.")
 
 
-def test_inputs_that_change_the_numbers_of_a_fluid_or_layer_move_friction_through_them_too(subtests):
-    for parts, names in [
-        ({"solid": sb.solids.Layer("0.3 mm", 0.5)}, ("modulus", "load", "speed")),
-        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
-        ({"flow_factors": "effective-medium"}, ("roughness",)),
-    ]:
-        with subtests.test(parts=parts, names=names):
-            contact = CONTACT.replace(speed="10 mm/s", **parts)
-            _, found = friction_sensitivities(contact, rtol=1e-6)
-            for name in names:
-                value = getattr(contact, name)
-                high, low = (
-                    sb.solve(contact.replace(**{name: value * factor}), rtol=1e-7).friction().total for factor in (1.01, 0.99)
-                )
-                assert found[name] == pytest.approx(math.log(high / low) / math.log(1.01 / 0.99), abs=2e-3)
-
-
 def test_a_fluid_that_thins_has_no_margin_in_viscosity(monkeypatch):
     monkeypatch.setattr(margins_module, "SCANNED", ("speed",))
     thinning = CONTACT.replace(speed="20 mm/s", fluid=sb.fluids.Carreau("1 ms", 0.5))
     found = regime_margins(thinning, rtol=1e-3)
     assert [margin.name for margin in found.margins] == ["speed"] and "thins with the shear rate" in found.notes[-1]
     assert not any("Only the product" in sentence for sentence in ways_to(found))
-
-
-@pytest.mark.quick
-def test_a_part_without_derivatives_leaves_the_sensitivities_out_and_says_so(monkeypatch):
-    def refuse(contact, rtol, definition):
-        raise sb.InputError("this solid has no derivatives.")
-
-    assert sensitivities_if_known(CONTACT, rtol=1e-3)[2] == ""
-    monkeypatch.setitem(sensitivities.SENSITIVITIES, "line", refuse)
-    solution, slopes, reason = sensitivities_if_known(CONTACT, rtol=1e-3)
-    assert solution.outcome.ok and slopes == {} and reason == "this solid has no derivatives."
 
 
 @pytest.mark.quick
