@@ -323,7 +323,7 @@ def adapt(
         x = reach / nodes[None, :]
         tail = legendre_tail(fields(x, np.array([reach]), nodes[None, :] ** -2.0).reshape(-1, order), order).max()
         # Beyond its own panels a guess tells no more: then one that is solved on the wider mesh does.
-        if tail <= tolerance or tail >= before:
+        if not tolerance < tail < before:
             break
         before = float(tail)
         reach *= 2.0
