@@ -116,7 +116,7 @@ def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(
                 if name.endswith("_error") and name.removesuffix("_error") in found:
                     assert values.dims == found[name.removesuffix("_error")].dims
                     assert "error" in values.attrs["long_name"]
-            found.to_netcdf(tmp_path / "one.nc")
+            found.to_netcdf(tmp_path / f"{kind}.nc")
 
 
 def test_the_results_above_are_all_that_have_numbers(parts):
@@ -131,8 +131,8 @@ def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp
             xarray = pytest.importorskip("xarray")
             found = results[kind].to_dataset()
             assert found.sizes and found.attrs["title"]
-            results[kind].to_netcdf(tmp_path / "one.nc")
-            with xarray.open_dataset(tmp_path / "one.nc") as kept:
+            results[kind].to_netcdf(tmp_path / f"{kind}.nc")
+            with xarray.open_dataset(tmp_path / f"{kind}.nc") as kept:
                 assert dict(kept.sizes) == dict(found.sizes)
                 for name, values in found.data_vars.items():
                     np.testing.assert_array_equal(kept[name].values, values.values)

@@ -287,7 +287,9 @@ def test_a_table_that_is_no_law_is_refused_with_its_row(subtests):
         (S[:4], [1.0, 0.4, 0.5, 0.05], "row 3 of the contact law's table: pressure 0.5 must be below that of the row before"),
         (S[:4], [1.0, 0.4, 0.0, -1], "row 3 of the contact law's table: pressure 0 must be positive"),
         (S[:4], [1.0, math.nan, 0.1, 0.05], "row 2 of the contact law's table, 1 and nan, is not finite"),
-        (S[:4], "abcd", "^pressure = 'abcd'; it must be a list of numbers"),
+        (S[:4], "abcd", "^pressure = 'abcd' is not made of real numbers"),
+        (S[:4], [1.0, 0.5, "0.4", 0.05], "^pressure = .* is not made of real numbers"),
+        (S[:4], 1.0, "^pressure = 1.0; it must be a list of numbers"),
     ]:
         with subtests.test(s=s, p=p, sentence=sentence):
             with pytest.raises(sb.InputError, match=sentence):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.batches.states import Contacts
+from stribeck.batches.states import Objects
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outputs import GROUPS
@@ -19,7 +19,7 @@ __all__ = ["broadcast_inputs", "varied"]
 
 def varied(
     problem: Groups | Contact, inputs: Mapping[str, Any], dims: Sequence[str] | None
-) -> tuple[Groups, Contacts | None, tuple[str, ...]]:
+) -> tuple[Groups, Objects | None, tuple[str, ...]]:
     """Return the groups of all states, their contacts if they have any, and the names of the dimensions."""
     if isinstance(problem, Groups):
         table = {name: getattr(problem, name) for name in GROUPS} | dict(inputs)
@@ -29,7 +29,7 @@ def varied(
         columns, names = broadcast_inputs(table, dims)
         return replace(problem, **{name: _numbers(name, column) for name, column in columns.items()}), None, names
     columns, names = broadcast_inputs(inputs, dims)
-    contacts: Contacts = np.empty(next(iter(columns.values())).shape if columns else (), dtype=object)
+    contacts: Objects = np.empty(next(iter(columns.values())).shape if columns else (), dtype=object)
     for index in np.ndindex(contacts.shape):
         contacts[index] = problem.replace(**{name: column[index] for name, column in columns.items()})
     flat = [contact.groups for contact in contacts.ravel()]

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.batches.states import Contacts
+from stribeck.batches.states import Objects
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
@@ -52,11 +52,11 @@ class BatchSolution(Exported, Shown, ByValue):
     _picture = "stribeck.plot.batch.plot_states"
 
     groups: Annotated[Groups, "the states; where a fluid or solid varies, with that of the first"]
-    contacts: Annotated[Contacts | None, "the contacts they came from"]
+    contacts: Annotated[Objects | None, "the contacts they came from"]
     dims: Annotated[tuple[str, ...], "name of each dimension of the arrays"]
     varied: Annotated[tuple[str, ...], "inputs that were given for the batch"]
     rtol: Annotated[float, "the relative tolerance asked for"]
-    outcome: Annotated[np.ndarray[Any, np.dtype[np.object_]], "how the solve of each state ended"]
+    outcome: Annotated[Objects, "how the solve of each state ended"]
     solutions: Annotated[
         np.ndarray[Any, np.dtype[np.object_]],
         "the states with their numbers, but without their fields; None if there is no state",

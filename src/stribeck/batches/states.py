@@ -18,10 +18,10 @@ from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["Chain", "Contacts", "Ended", "States"]
+__all__ = ["Chain", "Objects", "Ended", "States"]
 
-Contacts = np.ndarray[Any, np.dtype[np.object_]]
-"""A contact for each state."""
+Objects = np.ndarray[Any, np.dtype[np.object_]]
+"""A contact, an outcome or a solution for each state."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class States(Described):
     groups: Annotated[Array, "speed, load and roughness group of each state, shape (n, 3)"]
     physics: Annotated[Physics, "contact law and geometry of all states, and the model of the first"]
     rtol: Annotated[float, "relative tolerance of each state"]
-    contacts: Annotated[Contacts | None, "the contacts in SI units that the states come from"] = None
+    contacts: Annotated[Objects | None, "the contacts in SI units that the states come from"] = None
     coefficients: Annotated[Array | None, "``boundary_friction`` and ``beta`` of each beside groups, shape (n, 2)"] = None
 
     def part(self, rows: Indices) -> States:

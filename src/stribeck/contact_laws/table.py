@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from stribeck._types import Array
 from stribeck.files.text_table import read_two_columns
+from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show
 
@@ -223,10 +224,7 @@ class TableLaw:
 
 
 def _column(name: str, values: ArrayLike) -> list[float]:
-    try:
-        found = np.asarray(values, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        found = np.empty((0, 0))
+    found = real_array(name, values)
     if found.ndim != 1:
         raise InputError(f"{name} = {show(values)}; it must be a list of numbers, one for each row of the table.")
     return [float(value) for value in found]

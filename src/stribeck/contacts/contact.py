@@ -29,6 +29,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.formats import format_si
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import HERTZ
 from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.schema import Input, numbers_of
@@ -170,7 +171,7 @@ class Contact(Parts):
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
         values = read_inputs({name: each for name, each in inputs.items() if name not in parts}, self.INPUTS).checked()
         # The numbers are checked with the parts of the article's model first, so that what is wrong with them is said of them.
-        vars(self).update(vars(BASE_PARTS))
+        vars(self).update(BASE_PARTS.part_values())
         for name in self.INPUTS.names:
             object.__setattr__(self, name, values.get(name))
         object.__setattr__(self, "law", law_of(law))
@@ -178,6 +179,7 @@ class Contact(Parts):
         self._check_scales()
         if parts:
             super().__init__(**{**self.part_values(), **parts})
+            vars(self).pop("own_parts", None)  # which were none
         _ = self.groups.model
 
     @classmethod
@@ -244,6 +246,14 @@ class Contact(Parts):
     @property
     def groups(self) -> Groups:
         """The dimensionless groups, see :class:`Groups`."""
+        if not self.own_parts:
+            return self._base_groups
+        # Made anew each time: a fluid holds what is computed of it.
+        return replace(self._base_groups, model=self.model_in(self.film_units, self.hertz.half_width, self.speed))
+
+    @cached_property
+    def _base_groups(self) -> Groups:
+        """The groups with the article's model."""
         scaling, slope, scale = self.scaling(), self.slope, self.scaling().slope_factor * self.beta
         # Quotients one by one: a product of small numbers may underflow where the group itself does not.
         return Groups(
@@ -252,10 +262,9 @@ class Contact(Parts):
             roughness=self.roughness / self.radius / self.alpha / scale / scale,
             law=self.law,
             geometry=scaling.name,
-            model=self.model_in(self.film_units, self.hertz.half_width, self.speed) if self.own_parts else BASE_MODEL,
         )
 
-    @property
+    @cached_property
     def own_parts(self) -> dict[str, Any]:
         """The parts that are neither the article's nor among the inputs."""
         return {name: value for name, value in super().own_parts.items() if name not in self.INPUTS.names}

@@ -72,4 +72,3 @@ class LineContact(Contact):
     )
 
     WIDTH: ClassVar[str] = "Hertz half-width"
-    hersey_number = Contact.hersey_number  # here too, as the reference lists what stands in the class itself

@@ -16,6 +16,7 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
@@ -89,10 +90,10 @@ class Parts:
         """Return the parts by name: keywords that make them again."""
         return {name: getattr(self, name) for name in PART_KEYWORDS}
 
-    @property
+    @cached_property
     def own_parts(self) -> dict[str, Any]:
         """Those that are not the article's."""
-        usual = vars(BASE_PARTS)
+        usual = BASE_PARTS.part_values()
         return {name: value for name, value in self.part_values().items() if value is not usual[name] and value != usual[name]}
 
     @property

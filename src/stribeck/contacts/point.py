@@ -105,7 +105,6 @@ class PointContact(Contact):
     )
 
     WIDTH: ClassVar[str] = "Hertz radius"
-    hersey_number = Contact.hersey_number  # here too, as the reference lists what stands in the class itself
 
     @property
     def sliding_speed(self) -> float:
