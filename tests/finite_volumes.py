@@ -10,6 +10,7 @@ import numpy as np
 
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
+from stribeck.numerics.dual import with_slope
 
 REACH = 2.0
 """Half of the width that is covered [a]; pressures beyond are zero."""
@@ -50,7 +51,7 @@ def system(y, x, dx, D, speed, law):
     n = len(x)
     h, p, c = y[:-1].reshape(3, n)
     contact = law.pressure(h)
-    slope = law.slope(h, contact)
+    slope = with_slope(law.pressure, h)[1]
     residual, jacobian = np.zeros_like(y), np.zeros((3 * n + 1, 3 * n + 1))
     gap, mass, void = (slice(k * n, (k + 1) * n) for k in range(3))
     residual[gap] = h - y[-1] - 0.5 * x**2 - D @ (p + contact)

@@ -22,7 +22,7 @@ def laws():
         "greenwood-williamson": sb.contact_laws.GreenwoodWilliamson(),
         "greenwood-tripp": sb.contact_laws.GreenwoodTripp(),
         "table": sb.contact_laws.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
-        "function": sb.contact_laws.FunctionLaw(lambda s: -s - np.log(s), lambda s: -1 - 1 / s),
+        "function": sb.contact_laws.FunctionLaw(lambda s: -s - np.log(s)),
     }
 
 

@@ -131,5 +131,5 @@ def speed_of_film(contact: Contact, film: float) -> float:
     if isinstance(fluid, ShearThinning):
         for _ in range(MAX_FIXED_POINT_STEPS):
             rate = np.array([fluid.law.time * float(groups.speed) * speed / gap])
-            speed = newtonian * float(rate[0] / fluid.law.stress(rate)[0][0])
+            speed = newtonian * float(rate[0] / fluid.law.stress(rate)[0])
     return speed

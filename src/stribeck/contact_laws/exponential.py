@@ -6,6 +6,7 @@ Everything is in Hertz units: gap in u_Hz, pressure in p_Hz.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
@@ -21,24 +22,13 @@ class NoContact:
     decay_length: Numbers = 0.0
     constant_decay: bool = True
 
-    def local_decay_length(self, gap: Array) -> Numbers:
-        """Return zero."""
-        return self.decay_length
-
-    def pressure(self, gap: Array) -> Array:
+    def pressure(self, gap: Any) -> Any:
         """Return zeros."""
         return 0.0 * gap
 
-    def log_pressure(self, gap: Array) -> Array:
+    def log_pressure(self, gap: Any) -> Any:
         """Return minus infinity."""
         return np.full_like(gap, -np.inf)
-
-    def slope(self, gap: Array, pressure: Array) -> Array:
-        """Return zeros."""
-        return np.zeros_like(gap)
-
-    load_derivative = slope
-    roughness_derivative = slope
 
 
 @dataclass(frozen=True)
@@ -50,35 +40,19 @@ class ExponentialLaw:
     with e = 1/2 on the line and 1/3 on the ball.
     """
 
-    load: Numbers  # Load group [-]; for stacked states a column of them
-    decay_length: Numbers  # Relative roughness kappa, the length of the decay [u_Hz], likewise
+    load: Any  # Load group [-]; for stacked states a column of them
+    decay_length: Any  # Relative roughness kappa, the length of the decay [u_Hz], likewise
     pressure_exponent: float = 0.5  # e
     name: str = "exponential"
     constant_decay: bool = True
 
-    def local_decay_length(self, gap: Array) -> Numbers:
-        """Return kappa."""
-        return self.decay_length
-
-    def pressure(self, gap: Array) -> Array:
+    def pressure(self, gap: Any) -> Any:
         """Return the contact pressure [p_Hz]."""
         return np.exp(self.log_pressure(gap))
 
-    def log_pressure(self, gap: Array) -> Array:
+    def log_pressure(self, gap: Any) -> Any:
         """Return ``-h/kappa - e ln(F)``."""
         return gap / -self.decay_length - self.pressure_exponent * np.log(self.load)
-
-    def slope(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dh`` = -p_c/kappa."""
-        return pressure / -self.decay_length
-
-    def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dlnF`` = -e p_c (1 + 2 h/kappa), the roughness group held."""
-        return -pressure * self.pressure_exponent * (1 + 2 * gap / self.decay_length)
-
-    def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dln h_rms`` = p_c h/kappa."""
-        return pressure * (gap / self.decay_length)
 
 
 @dataclass(frozen=True)
@@ -97,13 +71,9 @@ class SpectralExponential:
         """The slope of the area."""
         return {"area_slope": self.area_slope}
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         """Return ``-s``."""
-        return -np.asarray(separation)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return -1."""
-        return np.full_like(separation, -1.0)
+        return -separation
 
     def area_fraction_at(self, pressure: Array) -> Array:
         """Return ``erf(k Phi)``, the real area of contact over the apparent one."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -81,7 +82,7 @@ class FiniteSurface:
         """Lowest separation of the base law."""
         return -math.inf if self.base is None else self.base.lowest
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         """Return ln(Phi) at the separation s.
 
         Parameters
@@ -94,26 +95,8 @@ class FiniteSurface:
         ndarray
             Logarithm of p/(beta E*).
         """
-        s = np.asarray(separation, dtype=float)
-        base = -s if self.base is None else self.base.log_pressure(s)
-        return np.asarray(base - TAIL_COEFFICIENT * np.maximum(s / self.alpha, 0.0) ** 3)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at the separation s.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Separation s = alpha u/h_rms, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            The derivative, negative.
-        """
-        s = np.asarray(separation, dtype=float)
-        base = np.full_like(s, -1.0) if self.base is None else self.base.log_slope(s)
-        return np.asarray(base - 3 * TAIL_COEFFICIENT / self.alpha * np.maximum(s / self.alpha, 0.0) ** 2)
+        base = -separation if self.base is None else self.base.log_pressure(separation)
+        return base - TAIL_COEFFICIENT * np.maximum(separation / self.alpha, 0.0) ** 3
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return what the law says of a state.

@@ -1,13 +1,15 @@
-"""Contact law of a user as two functions, which are checked when the law is made: values, fall and derivative."""
+"""Contact law of a user as a function, which is checked when the law is made: values, fall and derivative."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import check_slopes
+from stribeck.contact_laws.law import check_falls
+from stribeck.numerics.trace import pointwise
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FunctionLaw"]
@@ -18,17 +20,30 @@ RESERVED_NAMES = ("exponential", "persson", "greenwood-williamson", "greenwood-t
 
 
 @dataclass(frozen=True)
+class _WithSlope:
+    """A function and its derivative as one."""
+
+    value: Callable[[Any], Any]
+    slope: Callable[[Array], Array]
+
+    def __call__(self, separation: Any) -> Any:
+        """Return the value, with its derivative where the separation has one."""
+        return pointwise(lambda s: (self.value(s), self.slope(s)), separation)
+
+
+@dataclass(frozen=True)
 class FunctionLaw:
-    r"""Contact law given by two functions: ln(Phi) and its derivative.
+    r"""Contact law given by a function, ln(Phi).
 
     .. math:: p_c = \beta E^* \exp[f(s)], \qquad s = \alpha h/h_\mathrm{rms}
 
     Parameters
     ----------
     log_pressure : callable
-        f: takes an array of separations, returns ln(Phi) at each.
-    log_slope : callable
-        df/ds, likewise, negative.
+        f: takes an array of separations, returns ln(Phi) at each, falling.  Written with functions of numpy it brings its
+        derivative.
+    log_slope : callable, optional
+        df/ds, likewise, for a function that is not, as an interpolation.
     name : str
         What outputs call the law; not the name of one of the package's.
     lowest : float
@@ -43,8 +58,8 @@ class FunctionLaw:
         differences are not its derivative within 1e-5, or if the name is taken.
     """
 
-    log_pressure: Callable[[Array], Array]
-    log_slope: Callable[[Array], Array]
+    log_pressure: Callable[[Any], Any]
+    log_slope: Callable[[Array], Array] | None = None
     name: str = "function"
     lowest: float = 0.0
     checked: tuple[float, float] = field(default=(1e-3, 100.0), repr=False)
@@ -56,7 +71,7 @@ class FunctionLaw:
                 f"name = {show(self.name)} must be a word other than {', '.join(RESERVED_NAMES)}, which are other laws."
             )
         for name, function in (("log_pressure", self.log_pressure), ("log_slope", self.log_slope)):
-            if not callable(function):
+            if not (callable(function) or (function is None and name == "log_slope")):
                 raise InputError(f"{name} = {show(function)} must be a function of an array of separations.")
         try:
             low, high = map(float, self.checked)
@@ -68,7 +83,9 @@ class FunctionLaw:
                 f"lowest = {show(self.lowest)}, checked = {show(self.checked)}; lowest must be 0 or below, "
                 "checked two increasing positive separations."
             )
-        check_slopes(self.log_pressure, self.log_slope, low, high)
+        if self.log_slope is not None:
+            object.__setattr__(self, "log_pressure", _WithSlope(self.log_pressure, self.log_slope))
+        check_falls(self.log_pressure, low, high)
 
     @property
     def parameters(self) -> dict[str, float | str]:

@@ -23,8 +23,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.numerics.trace import pointwise
 from stribeck.quantities.schema import Input
 
 MIN_KNOT = -12.0  # Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*.
@@ -59,29 +59,16 @@ def _ends() -> tuple[float, float]:
     return math.asinh(MIN_KNOT), math.asinh(MAX_KNOT)
 
 
-def log_moment(order: float, separation: Array) -> Array:
+def log_moment(order: float, separation: Any) -> Any:
     r"""Return :math:`\ln F_n(s)`."""
-    s = np.asarray(separation, dtype=float)
     spline, slope = _spline(order)
-    inside = np.maximum(s, MIN_KNOT)
+    inside = np.maximum(separation, MIN_KNOT)
     low, high = _ends()
     t = np.arcsinh(inside)
-    found = spline(np.minimum(t, high)) - 0.5 * inside * inside - (order + 1) * np.maximum(t - high, 0.0)
-    if s.size and s.min() < MIN_KNOT:
-        tangent = float(slope(low)) / math.hypot(1.0, MIN_KNOT) - MIN_KNOT
-        found = found + tangent * (s - inside)
-    return np.asarray(found)
-
-
-def log_moment_slope(order: float, separation: Array) -> Array:
-    """Return the derivative of :func:`log_moment` with respect to the separation."""
-    s = np.asarray(separation, dtype=float)
-    _, slope = _spline(order)
-    inside = np.maximum(s, MIN_KNOT)
-    low, high = _ends()
-    t = np.arcsinh(inside)
-    of_spline = np.where(t > high, -(order + 1.0), slope(np.minimum(t, high)))
-    return np.asarray(of_spline / np.hypot(1.0, inside) - inside)
+    found = pointwise(lambda t: (np.asarray(spline(t)), slope(t)), np.minimum(t, high))
+    found = found - 0.5 * inside * inside - (order + 1) * np.maximum(t - high, 0.0)
+    tangent = float(slope(low)) / math.hypot(1.0, MIN_KNOT) - MIN_KNOT
+    return found + tangent * np.minimum(separation - MIN_KNOT, 0.0)
 
 
 @dataclass(frozen=True)
@@ -100,13 +87,9 @@ class _GaussianHeights(AsperityLaw):
         """None: the law has no parameter beside alpha, beta and h_rms."""
         return {}
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         """Return ln(Phi) at the separation ``s = alpha h/h_rms``."""
         return log_moment(self.order, separation)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds."""
-        return log_moment_slope(self.order, separation)
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return notes on a state with this minimum separation."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.exponential import SpectralExponential
+from stribeck.numerics.dual import with_slope
 from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
 
@@ -37,11 +38,11 @@ class AsperityLaw(Protocol):
         """Separation s below which the law has no value: 0 where it diverges towards full contact, else minus infinity."""
         return -math.inf
 
-    def log_pressure(self, separation: Array) -> Array:
-        """Return ln(Phi) at the separation s, finite where Phi itself underflows."""
+    def log_pressure(self, separation: Any) -> Any:
+        """Return ln(Phi) at the separation s, falling and finite where Phi itself underflows.
 
-    def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at the separation s, negative."""
+        It is written with functions of numpy, so that its derivative follows.
+        """
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return notes on a state with this minimum separation, one sentence each."""
@@ -67,27 +68,23 @@ class ContactLaw(Protocol):
     def decay_length(self) -> Numbers:
         """The unit of separations, kappa [u_Hz]; 0 where there is no contact."""
 
-    def local_decay_length(self, gap: Array) -> Numbers:
-        """Return the length over which the pressure falls by a factor e, by its slope at the gap [u_Hz]."""
-
     @property
     def constant_decay(self) -> bool:
-        """Whether that length is the same at all gaps."""
+        """Whether the pressure falls by a factor e over the same length at all gaps."""
 
-    def pressure(self, gap: Array) -> Array:
+    def pressure(self, gap: Any) -> Any:
         """Return the contact pressure [p_Hz] at the gap [u_Hz]."""
 
-    def log_pressure(self, gap: Array) -> Array:
+    def log_pressure(self, gap: Any) -> Any:
         """Return the logarithm of the contact pressure over p_Hz, finite where the pressure itself underflows."""
 
-    def slope(self, gap: Array, pressure: Array) -> Array:
-        """Return the derivative of the contact pressure with respect to the gap, given that pressure [p_Hz/u_Hz]."""
 
-    def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return the derivative of the contact pressure with respect to the logarithm of the load group [p_Hz]."""
-
-    def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return the derivative of the contact pressure with respect to the logarithm of the roughness group [p_Hz]."""
+def local_decay_length(law: ContactLaw, gap: Array) -> Numbers:
+    """Return the length over which the pressure falls by a factor e, by its slope at the gap [u_Hz]."""
+    if law.constant_decay:
+        return law.decay_length
+    with np.errstate(divide="ignore"):
+        return np.asarray(-1 / with_slope(law.log_pressure, gap)[1])
 
 
 def is_exponential(law: AsperityLaw | None) -> bool:
@@ -118,15 +115,22 @@ SLOPE_RTOL = 1e-5  # Largest relative difference between the slope of a user's l
 CHECKED_RANGE = (1e-3, 100.0)  # Separations between which a user's law is checked.
 
 
-def check_slopes(log_pressure: Callable[[Array], Array], log_slope: Callable[[Array], Array], low: float, high: float) -> None:
-    """Refuse two functions that are not ln(Phi), falling, and its derivative between two separations."""
+def check_falls(log_pressure: Callable[[Any], Any], low: float, high: float) -> None:
+    """Refuse a function that is not ln(Phi), falling, with a derivative that its differences agree with."""
     s = np.geomspace(low, high, 400)
-    values, slopes = _values("log_pressure", log_pressure, s), _values("log_slope", log_slope, s)
-    _refuse("log_slope", slopes, slopes >= 0, s, "it must be negative everywhere, as the pressure falls")
+    values = _values("log_pressure", log_pressure, s)
+    try:
+        slopes = with_slope(log_pressure, s)[1]
+    except TypeError as error:
+        raise InputError(
+            "log_pressure must be written with functions of numpy that have a derivative, such as exp, log, power, maximum "
+            f"and where; or give FunctionLaw its derivative too, log_slope. It fails: {error}."
+        ) from error
+    _refuse("the slope of log_pressure", slopes, ~(slopes < 0), s, "it must be negative everywhere, as the pressure falls")
     step = 1e-5 * s
     ahead, behind = (_values("log_pressure", log_pressure, s + sign * step) for sign in (1, -1))
     wrong = np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_RTOL * np.abs(slopes) + 1e-10 * np.abs(values) / step
-    _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, but finite differences disagree")
+    _refuse("the slope of log_pressure", slopes, wrong, s, "finite differences of log_pressure disagree")
 
 
 def _values(name: str, function: Callable[[Array], Array], s: Array) -> Array:
@@ -158,7 +162,7 @@ def as_asperity_law(law: Any) -> AsperityLaw | None:
         return law
     if isinstance(law, AsperityLaw) and not isinstance(law, type):
         if not type(law).__module__.startswith("stribeck."):
-            check_slopes(law.log_pressure, law.log_slope, *CHECKED_RANGE)
+            check_falls(law.log_pressure, *CHECKED_RANGE)
         with suppress(TypeError):  # what allows no weak reference is looked at again
             _ACCEPTED[id(law)] = law
         return law

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import scipy
@@ -19,6 +20,7 @@ import scipy
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness, table_of
+from stribeck.numerics.trace import value_of
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -119,7 +121,7 @@ class PerssonLaw(ByValue):
             "equation with the mean gap is outside its range.",
         )
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         r"""Return :math:`\ln\Phi(s)`.
 
         Parameters
@@ -132,34 +134,12 @@ class PerssonLaw(ByValue):
         ndarray
             Logarithm of p/(beta E*); infinite where the separation is not positive.
         """
-        s = np.asarray(separation, dtype=float)
+        s = separation
         position = np.log(np.maximum(s, np.finfo(float).tiny))
         index, t = self._locate(position)
         c = self._coefficients[:, index]
         excess = ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0]
-        return np.asarray(np.where(s > 0, np.where(position < self._knots[-1], excess, 0.0) - s, np.inf))
-
-    def log_slope(self, separation: Array) -> Array:
-        r"""Return :math:`\mathrm{d}\ln\Phi/\mathrm{d}s`, the derivative of what ``log_pressure`` returns.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Mean separation s = alpha u/h_rms, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            The derivative, below zero; minus infinity where the separation is not positive.
-        """
-        s = np.asarray(separation, dtype=float)
-        held = np.maximum(s, np.finfo(float).tiny)
-        position = np.log(held)
-        index, t = self._locate(position)
-        c = self._coefficients[:, index]
-        rise = (((5 * c[5] * t + 4 * c[4]) * t + 3 * c[3]) * t + 2 * c[2]) * t + c[1]
-        excess = np.where(position < self._knots[-1], rise, 0.0) / held
-        return np.asarray(np.where(s > 0, excess - 1.0, -np.inf))
+        return np.where(s > 0, np.where(position < self._knots[-1], excess, 0.0) - s, np.inf)
 
     def area_fraction(self, separation: Array) -> Array:
         r"""Return the real area of contact over the apparent one.
@@ -225,10 +205,10 @@ class PerssonLaw(ByValue):
             rms_slope=self.rms_slope * factor,
         )
 
-    def _locate(self, position: Array) -> tuple[Indices, Array]:
+    def _locate(self, position: Any) -> tuple[Indices, Any]:
         """Return the interval of the table that holds each ln s, and the distance from its left end."""
         knots = self._knots
-        index = np.clip(np.searchsorted(knots, position, side="right") - 1, 0, knots.size - 2)
+        index = np.clip(np.searchsorted(knots, value_of(position), side="right") - 1, 0, knots.size - 2)
         return index, position - knots[index]
 
 

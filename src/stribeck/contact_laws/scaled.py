@@ -1,19 +1,20 @@
 r"""Contact laws of any shape: scaled to a load and a roughness, shifted, found by name.
 
-A law is a small frozen object with a name, the pressure, and its derivatives beside it.  Everything is in Hertz units
+A law is a small frozen object with a name and the pressure, of which derivatives follow.  Everything is in Hertz units
 (gap in u_Hz, pressure in p_Hz).  A *shape* is the law without dimensions, :class:`stribeck.contact_laws.law.AsperityLaw`,
 which the groups of a state carry; :class:`ScaledLaw` makes the contact law of it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Numbers
-from stribeck.contact_laws.law import AsperityLaw, as_asperity_law
+from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
+from stribeck.contact_laws.law import AsperityLaw, ContactLaw, as_asperity_law
+from stribeck.numerics.trace import Trace, mapped
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import made_of
 from stribeck.quantities.units import InputError, show
@@ -32,8 +33,8 @@ class ScaledLaw:
     """
 
     shape: AsperityLaw  # Phi of the separation `s = h/kappa`, which is alpha h/h_rms
-    load: Numbers  # Load group [-]; for stacked states a column of them
-    decay_length: Numbers  # Relative roughness kappa, the unit of separations [u_Hz], likewise
+    load: Any  # Load group [-]; for stacked states a column of them
+    decay_length: Any  # Relative roughness kappa, the unit of separations [u_Hz], likewise
     pressure_exponent: float = 0.5  # e
     constant_decay: bool = False
 
@@ -42,34 +43,25 @@ class ScaledLaw:
         """Name of the shape."""
         return self.shape.name
 
-    def local_decay_length(self, gap: Array) -> Numbers:
-        """Return ``-kappa/(d ln Phi/ds)``."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(-self.decay_length / self.shape.log_slope(gap / self.decay_length))
-
-    def pressure(self, gap: Array) -> Array:
+    def pressure(self, gap: Any) -> Any:
         """Return the contact pressure [p_Hz]."""
         return np.exp(self.log_pressure(gap))
 
-    def log_pressure(self, gap: Array) -> Array:
+    def log_pressure(self, gap: Any) -> Any:
         """Return ``ln Phi(h/kappa) - e ln(F)``."""
-        return self.shape.log_pressure(gap / self.decay_length) - self.pressure_exponent * np.log(self.load)
+        return mapped(self.shape.log_pressure, gap / self.decay_length) - self.pressure_exponent * np.log(self.load)
 
-    def slope(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dh`` = p_c (d ln Phi/ds)/kappa."""
-        return np.asarray(pressure * self.shape.log_slope(gap / self.decay_length) / self.decay_length)
 
-    def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dlnF`` = e p_c (-1 + 2 s d ln Phi/ds), the roughness group held."""
-        return np.asarray(pressure * self.pressure_exponent * (-1 + 2 * self._elasticity(gap)))
-
-    def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dln h_rms`` = -p_c s d ln Phi/ds."""
-        return np.asarray(-pressure * self._elasticity(gap))
-
-    def _elasticity(self, gap: Array) -> Array:
-        s = gap / self.decay_length
-        return np.asarray(s * self.shape.log_slope(s))
+def by_group(law: ContactLaw, name: str) -> ContactLaw:
+    """Return a law whose pressures are traced by the logarithm of the load or the roughness group, the other one held."""
+    if isinstance(law, NoContact):
+        return law
+    assert isinstance(law, ExponentialLaw | ScaledLaw)
+    load, kappa = np.asarray(law.load), np.asarray(law.decay_length)
+    if name == "roughness":
+        return replace(law, decay_length=Trace.number(name, kappa, kappa))
+    by_load = -2 * law.pressure_exponent * kappa
+    return replace(law, load=Trace.number(name, load, load), decay_length=Trace.number(name, kappa, by_load))
 
 
 @dataclass(frozen=True)
@@ -94,13 +86,9 @@ class ShiftedLaw:
         """Lowest separation of the shape, shifted."""
         return self.shape.lowest + self.shift
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         """Return ln(Phi) at ``s - shift``."""
         return self.shape.log_pressure(separation - self.shift)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at ``s - shift``."""
-        return self.shape.log_slope(separation - self.shift)
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return the notes of the shape at ``s - shift``."""

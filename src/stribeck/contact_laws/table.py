@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from stribeck._types import Array
 from stribeck.files.text_table import read_two_columns
+from stribeck.numerics.trace import pointwise
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show
@@ -158,7 +159,7 @@ class TableLaw:
         """Degree of the interpolant: 5, 3, or 1 for the cubic of which only the slope is continuous."""
         return self._spline[2]
 
-    def log_pressure(self, separation: Array) -> Array:
+    def log_pressure(self, separation: Any) -> Any:
         """Return ln(Phi) at the separation s.
 
         Parameters
@@ -171,27 +172,12 @@ class TableLaw:
         ndarray
             Logarithm of p/(beta E*), of the same shape.
         """
-        s = np.asarray(separation, dtype=float)
         first, last, slope_first, slope_last = self._ends
-        inside = np.clip(s, first, last)
-        outside = s - inside
-        return np.asarray(self._spline[0](inside) + np.where(outside < 0, slope_first, slope_last) * outside)
-
-    def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at the separation s.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Separation s, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            The derivative, negative.
-        """
-        first, last, _, _ = self._ends
-        return np.asarray(self._spline[1](np.clip(np.asarray(separation, dtype=float), first, last)))
+        spline, slope, _ = self._spline
+        inside = np.clip(separation, first, last)
+        outside = separation - inside
+        found = pointwise(lambda s: (np.asarray(spline(s)), slope(s)), inside)
+        return found + np.where(outside < 0, slope_first, slope_last) * outside
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return what to know about a state.

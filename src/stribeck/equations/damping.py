@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import ContactLaw
+from stribeck.contact_laws.law import ContactLaw, local_decay_length
 from stribeck.numerics.settings import HALF_DIGITS
 
 
@@ -16,7 +16,7 @@ def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) 
     if not np.all(law.decay_length > 0):
         return part
     log_p = law.log_pressure(gap)
-    decays = change / law.local_decay_length(gap)
+    decays = change / local_decay_length(law, gap)
     allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
     closing = float((-decays / allowed).max())
     opening = float((decays * (log_p > -7.0)).max()) / 3.0

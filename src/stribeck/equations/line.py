@@ -32,6 +32,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contact_laws.scaled import by_group
 from stribeck.equations.damping import longest_step
 from stribeck.equations.film import NODAL, gradient_in_film
 from stribeck.equations.operators import LOAD, Operators
@@ -42,7 +43,7 @@ from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import Volterra
 from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.numerics.trace import Matrix, Term, Trace, act, matrix_of, pointwise, value_of
+from stribeck.numerics.trace import Matrix, Term, Trace, act, mapped, matrix_of, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Coupled", "Eliminated", "Equations", "Operators"]
@@ -191,14 +192,8 @@ class Equations:
 
     def contact(self, gap: Any, by: str | None = None) -> Any:
         """Return the contact pressure at the nodes."""
-        law, h = self.law, value_of(gap)
-        p = law.pressure(h)
-        if isinstance(gap, Trace):
-            return pointwise(lambda _: (p, law.slope(h, p)), gap)
-        if by in ("load", "roughness"):
-            change = law.load_derivative(h, p) if by == "load" else law.roughness_derivative(h, p)
-            return Trace(p, None, {by: change})
-        return p
+        law = by_group(self.law, by) if by in ("load", "roughness") else self.law
+        return mapped(law.pressure, gap)
 
     def speed_of(self, by: str | None) -> Any:
         """Return the speed group, traced by its logarithm where asked for."""

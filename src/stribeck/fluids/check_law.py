@@ -1,4 +1,4 @@
-"""The check of a law that somebody else wrote: its slopes, limits and scaling must agree with its values."""
+"""The check of a law that somebody else wrote: its derivatives, limits and scaling must agree with its values."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, Law, RateLaw, ViscosityLaw
+from stribeck.numerics.dual import with_slope
 from stribeck.quantities.user_part import check_user_part, refusal
 
 __all__ = ["check_law"]
@@ -39,26 +40,26 @@ def _check_members(law: Any) -> None:
 
 
 def _rate_law(law: RateLaw) -> None:
-    g, slope = _pair(law, "stress", CHECKED_RATES)
+    g, slope = _with_slope(law, "stress", CHECKED_RATES)
     if not (np.diff(g) > 0).all():
         raise refusal("law", law, "the stress must rise with the rate; here it does not.")
-    _agree(law, "stress", "its slope", slope, _difference(lambda x: law.stress(x)[0], CHECKED_RATES))
+    _agree(law, "stress", "its slope", slope, _difference(law.stress, CHECKED_RATES))
     if law.plateau >= CHECKED_RATES[0]:
         low = np.array([1e-3 * law.plateau])
-        _agree(law, "stress", "at low rates the rate, as the viscosity there is that of the contact", law.stress(low)[0], low)
+        _agree(law, "stress", "at low rates the rate, as the viscosity there is that of the contact", law.stress(low), low)
     _agree(law, "rate", "the inverse of stress", law.rate(g), CHECKED_RATES)
     for order, what in ((0, "the integral of x dg"), (1, "the integral of g x dg")):
-        change = _difference(lambda x, k=order: law.moments(x, law.stress(x)[0])[k], CHECKED_RATES)  # type: ignore[misc]
+        change = _difference(lambda x, k=order: law.moments(x, law.stress(x))[k], CHECKED_RATES)  # type: ignore[misc]
         _agree(law, "moments", what, change, CHECKED_RATES * slope * g**order)
     for unit in CHECKED_UNITS:
         scaled = law.scaled(FilmUnits(1.0, unit, 1.0, 1.0))
         _agree(law, "scaled", "in units of time: time over the unit", np.array(scaled.time), np.array(law.time / unit))
-        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(CHECKED_RATES)[0], g)
+        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(CHECKED_RATES), g)
 
 
 def _pressure_law(law: Any, member: str, rest: float) -> None:
     def values(each: Any, pressure: Array) -> tuple[Array, Array]:
-        return _pair(each, member, pressure)
+        return _with_slope(each, member, pressure)
 
     at_rest, [first] = values(law, np.zeros(1))
     _agree(law, member, f"{rest:g} at ambient pressure", at_rest + 1.0, np.array([rest + 1.0]))
@@ -76,19 +77,17 @@ def _pressure_law(law: Any, member: str, rest: float) -> None:
 def _flow_factors(law: FlowFactors) -> None:
     for decay_length in DECAY_LENGTHS:
         first, *others = (law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, decay_length, 1.0)) for unit in (1.0, *CHECKED_UNITS))
-        first_gap = _first_change(lambda h, of=first: _pair(of, "pressure", h)[0] - 1, SEARCHED_SIZES[::-1])  # type: ignore[misc]
+        first_gap = _first_change(lambda h, of=first: of.pressure(h) - 1, SEARCHED_SIZES[::-1])  # type: ignore[misc]
         gaps = np.geomspace(1.0, 30.0, 8) * first_gap
-        of_first = {member: _pair(first, member, gaps) for member in ("pressure", "shear")}
+        of_first = {member: _with_slope(first, member, gaps) for member in ("pressure", "shear")}
         for unit, scaled in zip(CHECKED_UNITS, others, strict=True):
             for member, (value, _) in of_first.items():
-                found, slope = _pair(scaled, member, gaps / unit)
-                change = _difference(lambda h, of=scaled, name=member: _pair(of, name, h)[0], gaps / unit)  # type: ignore[misc]
+                found, slope = _with_slope(scaled, member, gaps / unit)
+                change = _difference(getattr(scaled, member), gaps / unit)
                 size = 1.0 if member == "pressure" else unit
                 largest = float(np.abs(value).max())
                 _agree(law, member, "its slope", slope * size * gaps / unit, change * size * gaps / unit, largest)
                 _agree(law, "scaled", f"in units of length the same {member}", found * size, value, largest)
-            factor, phi = scaled.factor(gaps / unit), _pair(scaled, "pressure", gaps / unit)[0]
-            _agree(law, "factor", "the first of pressure", factor, phi)
 
 
 # Check of each kind of law.
@@ -100,14 +99,21 @@ CHECKS: dict[type, Callable[[Any], None]] = {
 }
 
 
-def _pair(law: Any, member: str, at: Array) -> tuple[Array, Array]:
-    """Return values and slopes of a member; raise InputError unless it returns both at each place."""
-    found = getattr(law, member)(at)
-    shapes = {at.shape, ()} if isinstance(law, FlowFactors) else {at.shape}
-    if not isinstance(found, tuple) or len(found) != 2 or not {np.shape(each) for each in found} <= shapes:
-        raise refusal("law", law, f"{member} must return two arrays, its values and its slopes.")
-    value, slope = (np.broadcast_to(np.asarray(each, dtype=float), at.shape) for each in found)
-    return value, slope
+def _with_slope(law: Any, member: str, at: Array) -> tuple[Array, Array]:
+    """Return values and slopes of a member; raise InputError unless it gives a value at each place, with its derivative."""
+    function = getattr(law, member)
+    found = function(at)
+    if not isinstance(found, np.ndarray) or found.shape != at.shape:
+        raise refusal("law", law, f"{member} must return an array, its value at each of those that it is given.")
+    try:
+        return with_slope(function, at)
+    except TypeError as error:
+        raise refusal(
+            "law",
+            law,
+            f"{member} must be written with functions of numpy that have a derivative, such as exp, log, power, maximum and "
+            f"where, or give it by stribeck.numerics.trace.pointwise; it fails: {error}.",
+        ) from error
 
 
 def _first_change(change: Callable[[Array], Array], sizes: Array) -> float:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import scipy
@@ -99,28 +99,16 @@ class EffectiveMedium(FlowFactors):
         """Return the factors in Hertz units."""
         return with_sigma(self, scaled_roughness(self.alpha, units))
 
-    def pressure(self, gap: Array) -> tuple[Array, Array]:
-        """Return phi_x and its slope."""
-        beyond, sigma = self._gap_above_percolation(gap)
-        phi, slope = _factor_table().with_slope(np.log(beyond))
-        slope *= (beyond > MIN_GAP_ABOVE_PERCOLATION) & (beyond < MAX_GAP_ABOVE_PERCOLATION)
-        slope /= beyond * sigma
-        return phi, slope
-
-    def factor(self, gap: Array) -> Array:
-        """Return phi_x alone, in half the time."""
-        return _factor_table()(np.log(self._gap_above_percolation(gap)[0]))
-
-    def _gap_above_percolation(self, gap: Array) -> tuple[Array, float]:
-        """Return the gap over the roughness beyond the threshold, and the roughness."""
+    def pressure(self, gap: Any) -> Any:
+        """Return phi_x."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        return np.maximum(gap / self.sigma - PERCOLATION, MIN_GAP_ABOVE_PERCOLATION), self.sigma
+        beyond = np.clip(gap / self.sigma - PERCOLATION, MIN_GAP_ABOVE_PERCOLATION, MAX_GAP_ABOVE_PERCOLATION)
+        return _factor_table()(np.log(beyond))
 
-    def shear(self, gap: Array) -> tuple[Array, Array]:
-        """Return zero twice."""
-        nothing = np.zeros(())
-        return nothing, nothing
+    def shear(self, gap: Any) -> Any:
+        """Return zero."""
+        return np.zeros_like(gap)
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether the film falls below the threshold."""
@@ -159,7 +147,7 @@ def _factor_table() -> Cells:
     def factor(logarithm: Array) -> Array:
         width = PERCOLATION + np.exp(logarithm)
         phi = (medium_width(nominal_separation(width))[0] / width) ** 3
-        return add_floor(phi, np.zeros_like(phi))[0]
+        return np.asarray(add_floor(phi))
 
     return Cells.of(
         factor, math.log(MIN_GAP_ABOVE_PERCOLATION), math.log(MAX_GAP_ABOVE_PERCOLATION), FACTOR_CELLS, FACTOR_TERMS

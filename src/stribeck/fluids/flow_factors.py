@@ -17,13 +17,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Literal, Self, TypeVar
+from typing import Any, ClassVar, Literal, Self, TypeVar
 
 import numpy as np
 import scipy
 
-from stribeck._types import Array, Numbers
-from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
+from stribeck._types import Array
+from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.numerics.dual import with_slope
+from stribeck.numerics.trace import pointwise
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "add_floor", "homotopy_roughness", "nominal_separation", "scaled_roughness"]
@@ -154,56 +156,43 @@ class PatirCheng(FlowFactors):
         """Return the factors in Hertz units."""
         return with_sigma(self, scaled_roughness(self.alpha, units))
 
-    def pressure(self, gap: Array) -> tuple[Array, Array]:
-        """Return the flow over that between smooth surfaces at the mean gap, and its slope."""
-        H, by_gap = self._separation(gap)
+    def pressure(self, gap: Any) -> Any:
+        """Return the flow over that between smooth surfaces at the mean gap."""
+        H = self._separation(gap)
         least, C, r = FIT_COEFFICIENTS[self.gamma][:3]
         x = np.minimum(H - least, 0.0)
         zero = 0.0 if self.gamma > 1 else max(0.0, math.log(C) / r)
         short = 1 + (x / (BLEND_FRACTION * (least - zero))) ** BLEND_DERIVATIVES
         y = x * short ** (-1 / BLEND_DERIVATIVES)
-        phi, rate = self._fit(np.maximum(H, least) + y)
-        k, of_y = self._fit(least)[1], short ** (-1 / BLEND_DERIVATIVES - 1)  # y' below H_0, and one above
-        phi = phi * np.exp(k * (x - y))
-        phi, slope = add_floor(phi, (rate * of_y + k * (1 - of_y)) * phi)
-        return phi, slope * by_gap
+        _, [k] = with_slope(lambda at: np.log(self._fit(at)), np.array([least]))
+        return add_floor(self._fit(np.maximum(H, least) + y) * np.exp(k * (x - y)))
 
-    def _fit(self, H: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the flow over that between smooth surfaces as fitted, and the slope of its logarithm by H."""
+    def _fit(self, H: Any) -> Any:
+        """Return the flow over that between smooth surfaces as fitted."""
         _, C, r = FIT_COEFFICIENTS[self.gamma][:3]
-        if self.gamma > 1:
-            phi_x = 1 + C * H**-r
-            steep = -r * (phi_x - 1) / H
-        else:
-            phi_x = 1 - C * np.exp(-r * H)
-            steep = r * (1 - phi_x)
-        width, by_H = self._width(H)
-        return phi_x * (H / width) ** 3, steep / phi_x + 3 * (1 / H - by_H / width)
+        phi_x = 1 + C * H**-r if self.gamma > 1 else 1 - C * np.exp(-r * H)
+        return phi_x * (H / self._width(H)) ** 3
 
-    def shear(self, gap: Array) -> tuple[Array, Array]:
-        """Return sigma phi_s and its slope."""
+    def shear(self, gap: Any) -> Any:
+        """Return sigma phi_s."""
         v = 2 * self.substrate_share - 1
         if v == 0:
-            return np.zeros_like(gap), np.zeros_like(gap)
+            return np.zeros_like(gap)
         assert self.sigma is not None
-        H, by_gap = self._separation(gap)
+        H = self._separation(gap)
         least = FIT_COEFFICIENTS[self.gamma][0]
-        share = self._near(least)[0] / (self.sigma * self._width(least)[0])
-        near, steep = self._near(np.clip(H, least, SHEAR_FIT_END))
-        far = self._far(H)
-        phi = np.where(H > SHEAR_FIT_END, far, np.where(H > least, near, share * gap))
-        slope = np.where(H > SHEAR_FIT_END, -0.25 * far * by_gap, np.where(H > least, steep * by_gap, share))
-        return v * self.sigma * phi, v * self.sigma * slope
+        share = self._near(least) / (self.sigma * self._width(least))
+        near = self._near(np.clip(H, least, SHEAR_FIT_END))
+        return v * self.sigma * np.where(H > SHEAR_FIT_END, self._far(H), np.where(H > least, near, share * gap))
 
-    def _near(self, H: Numbers) -> tuple[Array, Array]:
-        """Return the fit of phi_s up to :data:`SHEAR_FIT_END`, for v = 1, and its slope by H."""
+    def _near(self, H: Any) -> Any:
+        """Return the fit of phi_s up to :data:`SHEAR_FIT_END`, for v = 1."""
         _, _, _, A_1, a_1, a_2, a_3, _ = FIT_COEFFICIENTS[self.gamma]
-        phi = np.asarray(A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H))
-        return phi, phi * (a_1 / H - a_2 + 2 * a_3 * H)
+        return A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H)
 
-    def _far(self, H: Numbers) -> Array:
+    def _far(self, H: Any) -> Any:
         """Return the fit of phi_s beyond, for v = 1."""
-        return np.asarray(FIT_COEFFICIENTS[self.gamma][-1] * np.exp(-0.25 * H))
+        return FIT_COEFFICIENTS[self.gamma][-1] * np.exp(-0.25 * H)
 
     def jump(self, gap: Array, slide: float) -> Array | None:
         """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet."""
@@ -212,68 +201,55 @@ class PatirCheng(FlowFactors):
         v = abs(slide * (2 * self.substrate_share - 1)) * (self.sigma or 0.0)
         if v == 0:
             return None
-        H = self._separation(gap)[0]
+        H = self._separation(gap)
         apart = np.abs(np.diff(H)) / 6
         least = FIT_COEFFICIENTS[self.gamma][0]
-        (near, steep), (last, falls), far = self._near(SHEAR_FIT_END), self._near(least), self._far(SHEAR_FIT_END)
-        width, by_H = self._width(least)
+        (last, near), (falls, steep) = with_slope(self._near, np.array([least, SHEAR_FIT_END]))
+        far, ([width], [by_H]) = self._far(SHEAR_FIT_END), with_slope(self._width, np.array([least]))
         linked, ends = ((H[..., 1:] > at) != (H[..., :-1] > at) for at in (SHEAR_FIT_END, least))
         found = np.zeros_like(gap)
         found[..., :-1] += linked * v * (np.abs(far - near) + np.abs(steep + 0.25 * far) * apart)
         found[..., :-1] += ends * v * np.abs(falls - last * by_H / width) * apart
         return found
 
-    def friction(self, gap: Array) -> FrictionFactors | None:
-        """Return phi_f (of eta s over the mean gap), phi_fs and phi_fp, each with its slope."""
+    def friction(self, gap: Any) -> tuple[Any, Any, Any] | None:
+        """Return phi_f (of eta s over the mean gap), phi_fs and phi_fp."""
         if not self.friction_factors:
             return None
         assert self.sigma is not None
-        H, by_gap = self._separation(gap)
-        inverse, inverse_slope = mean_inverse_width(H)
+        H = self._separation(gap)
         width = gap / self.sigma
         v = 2 * self.substrate_share - 1
         inside = np.clip(H, 0.0, FRICTION_FIT_END)
         fs = v * 11.1 * inside**2.31 * np.exp(-2.38 * inside + 0.11 * inside**2) * (H < FRICTION_FIT_END)
-        fs_slope = fs * (2.31 / np.maximum(inside, 1e-9) - 2.38 + 0.22 * inside) * by_gap * (H > 0)
         # Both are of eta s over the nominal separation.
-        least = FIT_COEFFICIENTS[self.gamma][0]
-        fitted = np.maximum(H, least)
+        fitted = np.maximum(H, FIT_COEFFICIENTS[self.gamma][0])
         ratio = width / fitted
-        ratio_slope = 1 / self.sigma / fitted - np.where(H > least, ratio / fitted * by_gap, 0.0)
-        fp = 1 - 1.4 * np.exp(-0.66 * fitted)
-        fp_slope = np.where(H > least, 0.66 * (1 - fp) * by_gap, 0.0)
-        return FrictionFactors(
-            (width * inverse, inverse / self.sigma + width * inverse_slope * by_gap),
-            (fs * ratio, fs_slope * ratio + fs * ratio_slope),
-            (fp / ratio, (fp_slope - fp * ratio_slope / ratio) / ratio),
-        )
+        return width * pointwise(mean_inverse_width, H), fs * ratio, (1 - 1.4 * np.exp(-0.66 * fitted)) / ratio
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether surfaces are closer than the fits go."""
-        H, least = self._separation(np.atleast_1d(gap.min()))[0][0], FIT_COEFFICIENTS[self.gamma][0]
+        H, least = self._separation(np.atleast_1d(gap.min()))[0], FIT_COEFFICIENTS[self.gamma][0]
         if H >= least:
             return ()
         return (
             f"the surfaces come as near as {H:.2g} rms roughnesses; Patir and Cheng's flow factors are fits above {least:g}",
         )
 
-    def _width(self, H: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the mean gap over the roughness at H, and its derivative."""
-        if self.argument == "mean":
-            return H, 1.0
-        return mean_width(H), scipy.special.ndtr(H)
+    def _width(self, H: Any) -> Any:
+        """Return the mean gap over the roughness at H."""
+        return H if self.argument == "mean" else mean_width(H)
 
-    def _separation(self, gap: Array) -> tuple[Array, Array]:
-        """Return H and its derivative by the mean gap."""
+    def _separation(self, gap: Any) -> Any:
+        """Return H."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
         if self.argument == "mean":
-            return gap / self.sigma, np.full_like(gap, 1 / self.sigma)
-        H = nominal_separation(gap / self.sigma)
-        return H, 1 / (self.sigma * scipy.special.ndtr(H))
+            return gap / self.sigma
+        return pointwise(lambda width: (H := nominal_separation(width), 1 / scipy.special.ndtr(H)), gap / self.sigma)
 
 
-def mean_width(H: Numbers) -> Numbers:
+def mean_width(H: Any) -> Any:
     """Return the mean width between Gaussian surfaces at a separation of their mean planes, both over the roughness."""
     return H * scipy.special.ndtr(H) + np.exp(-0.5 * H * H) / math.sqrt(2 * math.pi)
 
@@ -313,11 +289,9 @@ def mean_inverse_width(H: Array) -> tuple[Array, Array]:
     return value, 0.5 * span * (weights @ density_slope)
 
 
-def add_floor(phi: Array, slope: Array) -> tuple[Array, Array]:
-    """Return a flow factor that stays above zero: itself far above :data:`MIN_FLOW_FACTOR`, and its slope."""
-    root = np.sqrt(phi * phi + 4 * MIN_FLOW_FACTOR**2)
-    found = 0.5 * (phi + root)
-    return found, found / root * slope
+def add_floor(phi: Any) -> Any:
+    """Return a flow factor that stays above zero: itself far above :data:`MIN_FLOW_FACTOR`."""
+    return 0.5 * (phi + np.sqrt(phi * phi + 4 * MIN_FLOW_FACTOR**2))
 
 
 def check_alpha(alpha: float | None) -> float | None:

@@ -1,14 +1,15 @@
 """What a film is put together from: laws of viscosity, density, shear rate and flow between rough surfaces.
 
 Each is a frozen class whose numbers are in SI units, and in a film in Hertz units: :meth:`Law.scaled` goes from the first to
-the second.  A new law is one class with the members of its protocol.
+the second.  A new law is one class with the members of its protocol.  Its functions are written with those of numpy, so that
+they take values, and values with their derivatives (:mod:`stribeck.numerics.dual`): slopes follow.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, Self, runtime_checkable
+from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 
@@ -62,8 +63,8 @@ class ViscosityLaw(Law, Protocol):
     """Viscosity as a function of pressure."""
 
     @abstractmethod
-    def log(self, pressure: Array) -> tuple[Array, Array]:
-        """Return ln(eta/eta0) and its slope."""
+    def log(self, pressure: Any) -> Any:
+        """Return ln(eta/eta0)."""
 
 
 @runtime_checkable
@@ -71,16 +72,8 @@ class DensityLaw(Law, Protocol):
     """Density as a function of pressure."""
 
     @abstractmethod
-    def ratio(self, pressure: Array) -> tuple[Array, Array]:
-        """Return rho/rho0 and its slope."""
-
-
-class FrictionFactors(NamedTuple):
-    """Factors of the drag: phi_f, phi_fs and phi_fp, each with its slope by the gap."""
-
-    shear: tuple[Array, Array]
-    sliding: tuple[Array, Array]
-    pressure: tuple[Array, Array]
+    def ratio(self, pressure: Any) -> Any:
+        """Return rho/rho0."""
 
 
 @runtime_checkable
@@ -88,23 +81,19 @@ class FlowFactors(Law, Protocol):
     """What roughness does to the flow, as a function of the mean gap."""
 
     @abstractmethod
-    def pressure(self, gap: Array) -> tuple[Array, Array]:
-        """Return the flow under a pressure gradient over that between smooth surfaces, phi_x > 0, and its slope."""
-
-    def factor(self, gap: Array) -> Array:
-        """Return phi_x alone, as residuals ask for it."""
-        return self.pressure(gap)[0]
+    def pressure(self, gap: Any) -> Any:
+        """Return the flow under a pressure gradient over that between smooth surfaces, phi_x > 0."""
 
     @abstractmethod
-    def shear(self, gap: Array) -> tuple[Array, Array]:
-        """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
+    def shear(self, gap: Any) -> Any:
+        """Return what sliding carries along in valleys, sigma phi_s [u_Hz]."""
 
     def jump(self, gap: Array, slide: float) -> Array | None:
         """Return by how much ``h + s S``, over phi_x, jumps between each node and the next one, zero mostly; None if never."""
         return None
 
-    def friction(self, gap: Array) -> FrictionFactors | None:
-        """Return the factors of the drag; None where it is that between smooth walls."""
+    def friction(self, gap: Any) -> tuple[Any, Any, Any] | None:
+        """Return the factors phi_f, phi_fs and phi_fp of the drag; None where it is that between smooth walls."""
         return None
 
     @property
@@ -121,13 +110,13 @@ class Smooth(FlowFactors):
         """Return itself: it has no numbers."""
         return self
 
-    def pressure(self, gap: Array) -> tuple[Array, Array]:
-        """Return one and zero."""
-        return np.ones_like(gap), np.zeros_like(gap)
+    def pressure(self, gap: Any) -> Any:
+        """Return one."""
+        return np.ones_like(gap)
 
-    def shear(self, gap: Array) -> tuple[Array, Array]:
-        """Return zero twice."""
-        return np.zeros_like(gap), np.zeros_like(gap)
+    def shear(self, gap: Any) -> Any:
+        """Return zero."""
+        return np.zeros_like(gap)
 
 
 class Profile(NamedTuple):
@@ -167,8 +156,8 @@ class RateLaw(Law, Protocol):
         return 1.0
 
     @abstractmethod
-    def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return g(x) and its slope."""
+    def stress(self, rate: Any) -> Any:
+        """Return g(x)."""
 
     @abstractmethod
     def rate(self, stress: Array) -> Array:

@@ -27,6 +27,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import Profile, RateLaw
+from stribeck.numerics.dual import with_slope
 
 MIN_RATE_RATIO = 0.5  # Least ratio of the wall rates, of one sign, for the Gauss rule; below it the moments serve.
 
@@ -127,7 +128,7 @@ def larger(of_walls: Array) -> Array:
 
 
 def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
-    g, slope = law.stress(np.abs(rate))
+    g, slope = with_slope(law.stress, np.abs(rate))
     return np.copysign(g, rate), slope
 
 
@@ -139,7 +140,7 @@ def _step_rates(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> 
     minor = (size < MIN_RATE_RATIO * size[::-1]) & (np.abs(step) > LINEAR_RATE_BELOW * np.abs(g))
     if minor.any():
         moved = g[minor] + step[minor]
-        largest = law.stress(MAX_RATE_GROWTH * size[::-1][minor])[0]
+        largest = law.stress(MAX_RATE_GROWTH * size[::-1][minor])
         moved = np.clip(moved, -largest, largest)
         linear[minor] = np.copysign(law.rate(np.abs(moved)), moved)
     return linear
@@ -182,7 +183,7 @@ def _by_rule(law: RateLaw, x: Array, g_walls: Array) -> tuple[Array, ...]:
     Q = np.where(flat, 1.0, 2 * half * mean_slope)
     zeta = np.where(flat, 0.5 * GAUSS_NODES[:, None], (g - 0.5 * (g_walls[0] + g_walls[1])) / Q)
     by_mean = 1 / mean_slope
-    slope *= offset  # d zeta is the share of the slope in its mean
+    slope = slope * offset  # d zeta is the share of the slope in its mean
     i_0 = middle + by_mean * (MEAN_WEIGHTS @ slope)
     slope *= zeta
     i_1 = by_mean * (MEAN_WEIGHTS @ slope)  # the mean of zeta is zero

@@ -19,7 +19,8 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.fluid import MAX_CACHED_SHAPES
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
-from stribeck.numerics.trace import pointwise, value_of
+from stribeck.numerics.dual import with_slope
+from stribeck.numerics.trace import mapped, pointwise, value_of
 
 ONE = np.ones(())
 
@@ -96,7 +97,7 @@ class Newtonian:
         if height is None or not height.any():
             return None
         eta = self._of_pressure(pressure)[0]
-        return np.asarray(eta / (self.flow.factor(gap) * gap**3) * height)
+        return np.asarray(eta / (self.flow.pressure(gap) * gap**3) * height)
 
     @property
     def closed_at(self) -> float | None:
@@ -106,17 +107,17 @@ class Newtonian:
     def tractions(self, gap: Any, pressure: Any, flux_gap: Any) -> tuple[Any, Any]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
         rate, pull = self.slide * self._of_pressure(pressure)[0] / gap, 3 * gap * self.gradient(gap, pressure, flux_gap)
-        factors = self.flow.friction(value_of(gap))
+        factors = mapped(self.flow.friction, gap)
         if factors is None:
             return rate + pull, rate - pull
-        f, fs, fp = (pointwise(lambda _, known=known: known, gap) for known in factors)
+        f, fs, fp = factors
         return (f + fs) * rate + fp * pull, (f - fs) * rate - fp * pull
 
     def cavity_traction(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""
         # Shear flow factors can carry more than the gap holds.
         eta, rho = self._of_pressure(pressure)
-        return self.slide * eta / gap * at_most_one(flux_gap / (rho * gap))
+        return self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * gap))
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""
@@ -133,27 +134,15 @@ class Newtonian:
         if known is None or not np.array_equal(known.gap, h):
             if len(self._known) >= MAX_CACHED_SHAPES:
                 self._known.clear()
-            known = self._known[h.size] = _Factors(h, self.flow.pressure(h), self.flow.shear(h))
+            known = self._known[h.size] = _Factors(h, with_slope(self.flow.pressure, h), with_slope(self.flow.shear, h))
         shape = np.shape(value_of(gap))
-        phi, carried = (
-            tuple(np.broadcast_to(each, h.shape).reshape(shape) for each in pair) for pair in (known.pressure, known.shear)
-        )
+        phi, carried = (tuple(each.reshape(shape) for each in pair) for pair in (known.pressure, known.shear))
         return pointwise(lambda _: phi, gap), pointwise(lambda _: carried, gap)
 
 
 def of_pressure(viscosity: ViscosityLaw, density: DensityLaw, pressure: Any) -> tuple[Any, Any]:
     """Return viscosity and density at a pressure."""
-    return exp(pointwise(viscosity.log, pressure)), pointwise(density.ratio, pressure)
-
-
-def exp(x: Any) -> Any:
-    """Return the exponential of values or of their trace."""
-    return pointwise(lambda x: (value := np.exp(x), value), x)
-
-
-def at_most_one(x: Any) -> Any:
-    """Return the smaller of values, or of their trace, and one."""
-    return pointwise(lambda x: (np.minimum(1.0, x), np.where(x < 1.0, 1.0, 0.0)), x)
+    return mapped(lambda p: np.exp(viscosity.log(p)), pressure), mapped(density.ratio, pressure)
 
 
 def flux_gap(gap: Array, weights: Array) -> float:

@@ -24,9 +24,9 @@ from stribeck._types import Array
 from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Decay
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
-from stribeck.fluids.newtonian import Newtonian, at_most_one, of_pressure
+from stribeck.fluids.newtonian import Newtonian, of_pressure
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
-from stribeck.numerics.trace import Trace, pointwise, value_of
+from stribeck.numerics.trace import Trace, mapped, pointwise, value_of
 
 __all__ = ["ShearThinning"]
 
@@ -106,11 +106,10 @@ class ShearThinning:
         """Return the stress at the rate ``s/h`` in the part of the width that is wet."""
         eta, rho, wi = self._of_pressure(gap, pressure)
 
-        def stress(rate: Array) -> tuple[Array, Array]:
-            size, slope = self.law.stress(np.abs(rate))
-            return np.copysign(size, rate), slope
-
-        return eta / wi * pointwise(stress, wi * self.slide / gap) * at_most_one(flux_gap / (rho * gap))
+        # Above zero, where the viscosity of some laws has no slope.
+        size = np.maximum(wi * abs(self.slide) / gap, MIN_WEISSENBERG)
+        wet = np.minimum(1.0, flux_gap / (rho * gap))
+        return math.copysign(1.0, self.slide) * eta / wi * mapped(self.law.stress, size) * wet
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Any) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws, or shears a power law at hardly more than its plateau."""
@@ -128,8 +127,7 @@ class ShearThinning:
         """Return viscosity, density and the relaxation time over that of the film: it grows as the viscosity."""
         one = np.ones_like(value_of(gap))
         eta, rho = of_pressure(self.viscosity, self.density, pressure) if self.uses_pressure else (one, one)
-        rest = pointwise(lambda x: (np.maximum(x, MIN_WEISSENBERG), np.where(x > MIN_WEISSENBERG, 1.0, 0.0)), self._times())
-        return eta, rho, rest * eta
+        return eta, rho, np.maximum(self._times(), MIN_WEISSENBERG) * eta
 
     def _times(self) -> Any:
         """Return the relaxation time at the speed, in units of the film's."""

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
+from stribeck.numerics.dual import Dual
 
 __all__ = ["Cells"]
 
@@ -46,11 +48,14 @@ class Cells:
         place -= cell
         return cell, place
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: Any) -> Any:
         """Return the functions at x, shape (..., *x.shape)."""
+        if isinstance(x, Dual):
+            value, slope = self.with_slope(x.value)
+            return x.scaled(slope, value)
         cell, s = self._place(x)
         rows = self.coefficients.take(cell, axis=-1, mode="clip")
-        found: Array = rows[-1]
+        found = rows[-1]
         for row in rows[-2::-1]:
             found *= s
             found += row

@@ -17,9 +17,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.jets import Jet
 
-__all__ = ["Matrix", "Operator", "Trace", "Value", "act", "matrix_of", "pointwise", "value_of"]
+__all__ = ["Matrix", "Operator", "Trace", "Value", "act", "mapped", "matrix_of", "pointwise", "value_of"]
 
 ZERO = np.zeros(())
 
@@ -78,7 +79,15 @@ class Term(NamedTuple):
 class Trace:
     """A value and its derivatives."""
 
-    __array_ufunc__ = None  # numpy leaves its operators to this class
+    def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
+        """Return what a function of numpy makes of it, beside plain values."""
+        operator = OPERATORS.get(function)
+        if method != "__call__" or options:
+            return NotImplemented
+        if operator is not None:
+            return operator(*given)
+        [place] = [k for k, each in enumerate(given) if isinstance(each, Trace)]
+        return mapped(lambda value: function(*given[:place], value, *given[place + 1 :]), self)
 
     def __init__(
         self, value: Array, terms: Mapping[str, Sequence[Term]] | None = None, columns: Mapping[str, Array] | None = None
@@ -180,10 +189,32 @@ NOTHING = Trace(ZERO)
 
 Value: TypeAlias = Trace | Array | float
 
+# What numpy asks of a trace to the right of an array.
+OPERATORS: dict[Any, Callable[..., Trace]] = {
+    np.add: lambda a, b: b + a if isinstance(b, Trace) else a + b,
+    np.subtract: lambda a, b: a - b if isinstance(a, Trace) else -b + a,
+    np.multiply: lambda a, b: b * a if isinstance(b, Trace) else a * b,
+    np.divide: lambda a, b: a / b if isinstance(a, Trace) else b.__rtruediv__(a),
+    np.negative: lambda a: -a,
+}
+
 
 def value_of(given: Any) -> Any:
-    """Return the value of a trace; what is none of them, as it is."""
-    return given.value if isinstance(given, Trace) else given
+    """Return the value of a trace or of a dual; what is neither, as it is."""
+    return given.value if isinstance(given, Trace | Dual) else given
+
+
+def mapped(function: Callable[[Any], Any], given: Any) -> Any:
+    """Return a function of the value at the same node, which is written with those of numpy, of values or of their trace.
+
+    It may give several values, and no derivatives are taken of what is none of them.
+    """
+    if not isinstance(given, Trace):
+        return function(given)
+    found = function(Dual(given.value, 1.0))
+    several = found if isinstance(found, tuple) else (found,)
+    traces = tuple(given.scaled(each.slope, each.value) if isinstance(each, Dual) else each for each in several)
+    return traces if isinstance(found, tuple) else traces[0]
 
 
 def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
@@ -197,6 +228,9 @@ def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
         if isinstance(each, Trace):
             part = each if slope is None else each.scaled(slope, ZERO)
             found = part._joined(found or NOTHING, value)
+        elif isinstance(each, Dual):
+            by = each.slope if slope is None else slope * each.slope
+            found = Dual(value, by if found is None else found.slope + by)
     return value if found is None else found
 
 

@@ -271,4 +271,4 @@ def smooth_on_cells(function: Callable[[Array], Array]) -> Cells:
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
     """Return k_s at distances of xi thicknesses, ``0 <= xi <= 24``."""
-    return _on_cells(poisson_ratio)(xi)
+    return np.asarray(_on_cells(poisson_ratio)(xi))

@@ -14,6 +14,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.damping import longest_step
 from stribeck.equations.point.mesh_choice import gaps_at
 from stribeck.equations.point.system import LOAD, Operators
+from stribeck.numerics.dual import with_slope
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.quantities.outcome import Outcome
 
@@ -48,7 +49,7 @@ def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12)
         return np.append(y[:n] - y[n] - operators.parabola - deflection @ p, weights @ p - LOAD)
 
     def jacobian(y: Array) -> Array:
-        slope = law.slope(y[:n], law.pressure(y[:n]))
+        slope = with_slope(law.pressure, y[:n])[1]
         matrix = np.zeros((n + 1, n + 1))
         matrix[:n, :n] = np.eye(n) - deflection * slope
         matrix[:n, n] = -1.0

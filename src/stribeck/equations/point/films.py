@@ -124,11 +124,11 @@ class NewtonianPlane:
 
     def filled(self, gap: Array) -> Array:
         """Return the volume that the walls carry where the gap is full of liquid, over the gap."""
-        return np.asarray(1 + self.film.slide * self.film.flow.shear(gap)[0] / gap)
+        return np.asarray(1 + self.film.slide * self.film.flow.shear(gap) / gap)
 
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
-        return np.exp(self.film.viscosity.log(pressure)[0]) if self.film.uses_pressure else np.ones_like(gap)
+        return np.exp(self.film.viscosity.log(pressure)) if self.film.uses_pressure else np.ones_like(gap)
 
     def sheared(self, speed: float, gap: Array) -> Array:
         """Return one."""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import ContactLaw
+from stribeck.contact_laws.law import ContactLaw, local_decay_length
 from stribeck.equations.damping import longest_step
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Unknowns
@@ -62,7 +62,7 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
     size = np.abs(dh) / h
     if np.all(law.decay_length > 0):
         weight = np.minimum(1.0, law.pressure(h) / load_scale)
-        size = np.maximum(size, weight * np.abs(dh) / law.local_decay_length(h))
+        size = np.maximum(size, weight * np.abs(dh) / local_decay_length(law, h))
     return float(size.max())
 
 

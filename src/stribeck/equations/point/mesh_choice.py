@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import ContactLaw
+from stribeck.contact_laws.law import ContactLaw, local_decay_length
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.system import Operators
 from stribeck.equations.state import closed_gap
@@ -169,7 +169,7 @@ def film_speed(speed: float, model: Model) -> float:
     found = speed
     for _ in range(MAX_ROUNDS):  # a thinner film is sheared faster
         rate = np.array([usual_rate(film.law, film.slide, speed, film_scale(found))])
-        found = math.sqrt(found * speed * float(film.law.stress(rate)[0][0] / rate[0]))
+        found = math.sqrt(found * speed * float(film.law.stress(rate)[0] / rate[0]))
     return found
 
 
@@ -199,7 +199,7 @@ def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[fl
     height = film_scale(speed) + cavitation_thickening(speed, model)
     if decay > 0.0:
         at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
-        decay = min(decay, float(np.max(law.local_decay_length(at_edge))))
+        decay = min(decay, float(np.max(local_decay_length(law, at_edge))))
         height = max(height, decay)
     scale = math.sqrt(1.0 + 2.0 * height)
     scale = 1.0 if scale < 1.5 else scale

@@ -26,6 +26,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION_COEFFICIENT, particular, rates
 from stribeck.equations.point.films import ISOVISCOUS_PLANE, OutsideFilm, PlaneFilm
+from stribeck.numerics.dual import with_slope
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.trace import Matrix, Trace, Value, act
 from stribeck.quantities.lazy import cached_property
@@ -198,7 +199,7 @@ class Linear:
     def __init__(self, equations: Equations, y: Unknowns) -> None:
         self.equations, self.y = equations, y
         mesh, speed, h = equations.operators.mesh, equations.speed, y.gap
-        self.contact_slope = equations.law.slope(h, equations.law.pressure(h))
+        self.contact_slope = with_slope(equations.law.pressure, h)[1]
         self.film = equations.film.slopes(mesh, speed, h, y.fluid)
         # At the rim the film is that at ambient pressure.
         mobility, by_gap, carried_by_gap = self.film.rim

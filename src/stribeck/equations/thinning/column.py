@@ -32,6 +32,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import RateLaw
+from stribeck.numerics.dual import with_slope
 
 QUADRATURE_POINTS = (14, 20, 28, 40, 56)  # Gauss points on each side of the smallest stress that are tried for a law
 
@@ -100,12 +101,12 @@ class FlowCurve:
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
     ends = np.array([law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE])
-    lowest, highest = np.log(law.stress(ends)[0])
+    lowest, highest = np.log(law.stress(ends))
     stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
     rate = law.rate(stress)
-    curve = FlowCurve(float(lowest), np.log(rate / stress), stress / (rate * law.stress(rate)[1]) - 1)
+    curve = FlowCurve(float(lowest), np.log(rate / stress), stress / (rate * with_slope(law.stress, rate)[1]) - 1)
     slip, wall, angle = SAMPLE_STATES
-    slope = 2 * law.stress(wall)[0] * np.stack([np.cos(angle), np.sin(angle)])
+    slope = 2 * law.stress(wall) * np.stack([np.cos(angle), np.sin(angle)])
     sample = slope, np.stack([slip, np.zeros_like(slip)])
     found = [_solved(law, replace(curve, points=points), *sample).carried for points in QUADRATURE_POINTS]
     for coarse, fine, points in zip(found, found[2:], QUADRATURE_POINTS, strict=False):
@@ -163,7 +164,7 @@ def first_guess(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array) -> Ar
     """Return a first mean stress, thinned by the larger of slip and pressure gradient."""
     size = np.sqrt((slip * slip).sum(axis=0))
     by_slope = curve((slope * slope).sum(axis=0) / 12)[0]
-    alone = law.stress(size)[0] / np.maximum(size, TINY)
+    alone = law.stress(size) / np.maximum(size, TINY)
     return np.asarray(slip * np.minimum(np.where(size > 0, alone, 1.0), 1 / by_slope))
 
 

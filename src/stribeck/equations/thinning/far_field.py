@@ -35,7 +35,7 @@ UNSEEN_LOSS = math.sqrt(EPSILON)
 
 def lost(law: RateLaw, rate: float) -> float:
     """Return the part of the viscosity that is lost at a rate over that of the relaxation time."""
-    return abs(1.0 - float(law.stress(np.array([rate]))[0][0]) / rate)
+    return abs(1.0 - float(law.stress(np.array([rate]))[0]) / rate)
 
 
 def usual_rate(law: RateLaw, slide: float, speed: float, gap: float) -> float:

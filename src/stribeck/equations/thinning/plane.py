@@ -29,6 +29,7 @@ from stribeck.equations.thinning.column import (
 )
 from stribeck.equations.thinning.far_field import UNSEEN_LOSS, FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.numerics.dual import with_slope
 from stribeck.numerics.fourier_panels import PolarMesh
 
 
@@ -115,7 +116,7 @@ class ThinningPlane:
     def sheared(self, speed: float, gap: Array) -> Array:
         """Return the stress over that of a fluid that does not thin, where the walls alone shear the film."""
         rate = speed * self.film.law.time * abs(self.film.slide) / gap
-        return self.film.law.stress(rate)[0] / rate if self.film.slide else np.ones_like(gap)
+        return self.film.law.stress(rate) / rate if self.film.slide else np.ones_like(gap)
 
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return the amount that the walls carry, which is the same for all laws."""
@@ -165,8 +166,8 @@ def _laws_of_pressure(film: ShearThinning, pressure: Array) -> tuple[Array, Arra
     if not film.uses_pressure:
         one, zero = np.ones_like(pressure), np.zeros_like(pressure)
         return one, zero, one, zero
-    log, log_slope = film.viscosity.log(pressure)
-    return np.exp(log), log_slope, *film.density.ratio(pressure)
+    log, log_slope = with_slope(film.viscosity.log, pressure)
+    return np.exp(log), log_slope, *with_slope(film.density.ratio, pressure)
 
 
 def _by(matrix: Array, vector: Array) -> Array:

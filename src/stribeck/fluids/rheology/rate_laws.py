@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from inspect import cleandoc
-from typing import ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -124,11 +124,10 @@ class Carreau(_BetweenPlateaus):
     name: ClassVar[str] = "carreau"
     label: ClassVar[str] = "Carreau"
 
-    def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return g(x) and its slope."""
-        n, rest, square = self.exponent, self.infinite_viscosity, rate * rate
-        thinning = (1 - rest) * np.exp(0.5 * (n - 1) * np.log1p(square))
-        return rate * (rest + thinning), rest + thinning * (1 + (n - 1) * (square / (1 + square)))
+    def stress(self, rate: Any) -> Any:
+        """Return g(x)."""
+        n, rest = self.exponent, self.infinite_viscosity
+        return rate * (rest + (1 - rest) * np.exp(0.5 * (n - 1) * np.log1p(rate * rate)))
 
     def smallest(self) -> float:
         """Return the logarithm of the rate below which the law is Newtonian to rounding."""
@@ -153,11 +152,10 @@ class Cross(_BetweenPlateaus):
         reason="the viscosity of a Cross fluid falls as the rate to the power -exponent, which of a Carreau fluid is 1 - n",
     )
 
-    def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return g(x) and its slope."""
-        m, rest, power = self.exponent, self.infinite_viscosity, rate**self.exponent
-        thinning = (1 - rest) / (1 + power)
-        return rate * (rest + thinning), rest + thinning * (1 - m * power / (1 + power))
+    def stress(self, rate: Any) -> Any:
+        """Return g(x)."""
+        rest = self.infinite_viscosity
+        return rate * (rest + (1 - rest) / (1 + rate**self.exponent))
 
     def smallest(self) -> float:
         """Return the logarithm of the rate below which the law is Newtonian to rounding."""
@@ -224,12 +222,9 @@ class PowerLaw(RateLaw):
             "its viscosity is constant; take films and load shares, or give Carreau's law for the friction",
         )
 
-    def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return g(x) and its slope."""
-        n, square = self.exponent, rate * rate
-        whole = square + PLATEAU_RATE**2
-        viscosity = whole ** (0.5 * (n - 1))
-        return rate * viscosity, viscosity * (1 + (n - 1) * square / whole)
+    def stress(self, rate: Any) -> Any:
+        """Return g(x)."""
+        return rate * (rate * rate + PLATEAU_RATE**2) ** (0.5 * (self.exponent - 1))
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""

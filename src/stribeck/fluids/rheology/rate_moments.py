@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
 from stribeck.numerics.cells import Cells
+from stribeck.numerics.dual import with_slope
 from stribeck.quantities.lazy import cached_property
 
 PANEL_WIDTH = 0.5  # Width of a panel of the table in the logarithm of the rate.
@@ -36,7 +38,7 @@ INVERSION_STEPS = 3  # Newton steps in the logarithms that find a rate from its 
 class Table:
     """Moments of one flow curve."""
 
-    stress: Callable[[Array], tuple[Array, Array]]
+    stress: Callable[[Any], Any]
     smallest: float  # Natural logarithm of the rate below which the curve is that of viscosity one to rounding
 
     @cached_property
@@ -53,7 +55,7 @@ class Table:
         nodes, weights = legendre.leggauss(PANEL_COEFFICIENTS)
         start = np.array([self.smallest])
         x = np.exp(start)
-        g = self.stress(x)[0]
+        g = self.stress(x)
         first, second = g * x / 2, g * g * x / 3
         for panel in range(self.count):
             left = self.smallest + panel * PANEL_WIDTH
@@ -61,11 +63,11 @@ class Table:
             half = 0.5 * (ends - left)
             at = left + half[:, None] * (1 + nodes)
             x = np.exp(at)
-            g, slope = self.stress(x)
+            g, slope = with_slope(self.stress, x)
             integrand = x * x * slope * weights * half[:, None]
             one, two = first + integrand.sum(axis=1), second + (g * integrand).sum(axis=1)
             x = np.exp(ends)
-            g = self.stress(x)[0]
+            g = self.stress(x)
             ratios = np.stack([one / (g * x), two / (g * g * x)])
             found[panel] = ratios[:, :-1] @ to_coefficients.T
             first, second = one[-1], two[-1]
@@ -95,7 +97,7 @@ class Table:
     def _inverse(self) -> tuple[Array, Array]:
         """Logarithms of stresses and of the rates there, to start from."""
         rate = np.linspace(self.smallest, MAX_LOG_RATE, 4 * self.count)
-        return np.log(self.stress(np.exp(rate))[0]), rate
+        return np.log(self.stress(np.exp(rate))), rate
 
     def rate(self, stress: Array) -> Array:
         """Return the rates at stresses >= 0."""
@@ -107,6 +109,6 @@ class Table:
         log_rate = np.where(wanted > known[-1], rates[-1] + steepest * (wanted - known[-1]), log_rate)
         for _ in range(INVERSION_STEPS):
             x = np.exp(log_rate)
-            g, slope = self.stress(x)
+            g, slope = with_slope(self.stress, x)
             log_rate = log_rate - (np.log(np.maximum(g, 1e-300)) - wanted) * g / (x * slope)
         return np.where(stress > 0, np.exp(log_rate), 0.0)

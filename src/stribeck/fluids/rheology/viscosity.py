@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -51,9 +51,9 @@ class Constant(ViscosityLaw):
         """Return itself: it has no numbers."""
         return self
 
-    def log(self, pressure: Array) -> tuple[Array, Array]:
-        """Return zero twice."""
-        return np.zeros_like(pressure), np.zeros_like(pressure)
+    def log(self, pressure: Any) -> Any:
+        """Return zero."""
+        return np.zeros_like(pressure)
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Barus(ViscosityLaw):
         """Return the law in Hertz units."""
         return type(self)(self.pressure_coefficient * units.pressure)
 
-    def log(self, pressure: Array) -> tuple[Array, Array]:
-        """Return ``a p`` and a."""
-        return self.pressure_coefficient * pressure, np.full_like(pressure, self.pressure_coefficient)
+    def log(self, pressure: Any) -> Any:
+        """Return ``a p``."""
+        return self.pressure_coefficient * pressure
 
 
 @dataclass(frozen=True)
@@ -150,14 +150,13 @@ class Roelands(ViscosityLaw):
             )
         return type(self)(self.pressure_coefficient * units.pressure, self.reference_pressure / units.pressure, ratio)
 
-    def log(self, pressure: Array) -> tuple[Array, Array]:
-        """Return ``S [(1 + p/p_r)**z - 1]`` and its slope; below ``-p_r/2`` the tangent there."""
+    def log(self, pressure: Any) -> Any:
+        """Return ``S [(1 + p/p_r)**z - 1]``; below ``-p_r/2`` the tangent there."""
         p_r, S = self.reference_pressure, -math.log(self.reference_viscosity)
         z = self.pressure_coefficient * p_r / S
         lifted = np.maximum(pressure, -0.5 * p_r)
-        base = np.log1p(lifted / p_r)
-        slope = self.pressure_coefficient * np.exp((z - 1) * base)
-        return S * np.expm1(z * base) + slope * (pressure - lifted), slope
+        slope_there = self.pressure_coefficient * 0.5 ** (z - 1)
+        return S * np.expm1(z * np.log1p(lifted / p_r)) + slope_there * (pressure - lifted)
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether suction leaves the range of the law."""
@@ -174,9 +173,9 @@ class Incompressible(DensityLaw):
         """Return itself: it has no numbers."""
         return self
 
-    def ratio(self, pressure: Array) -> tuple[Array, Array]:
-        """Return one and zero."""
-        return np.ones_like(pressure), np.zeros_like(pressure)
+    def ratio(self, pressure: Any) -> Any:
+        """Return one."""
+        return np.ones_like(pressure)
 
 
 @dataclass(frozen=True)
@@ -232,15 +231,13 @@ class DowsonHigginson(DensityLaw):
         """Return the law in Hertz units."""
         return type(self)(self.density_pressure / units.pressure, self.density_limit)
 
-    def ratio(self, pressure: Array) -> tuple[Array, Array]:
-        """Return rho/rho0 and its slope."""
+    def ratio(self, pressure: Any) -> Any:
+        """Return rho/rho0."""
         c, k = self.density_pressure, self.density_limit
         held = np.maximum(pressure, -MAX_SUCTION_RATIO * c)
-        beyond, above = held - pressure, c + k * held
-        falls = (k - 1) * c / above**2
-        bends = 2 * k * falls / above
-        volume = (c + held) / above + (falls + 0.5 * bends * beyond) * beyond
-        return 1 / volume, (falls + bends * beyond) / volume**2
+        beyond, above = held - pressure, c * (1 - k * MAX_SUCTION_RATIO)
+        falls = (k - 1) * c / above**2  # with the curvature 2 k falls/above, where the parabola begins
+        return 1 / ((c + held) / (c + k * held) + falls * (1 + k / above * beyond) * beyond)
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return whether suction stretches the fluid farther than the law can mean."""

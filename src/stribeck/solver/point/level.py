@@ -86,7 +86,7 @@ class Level:
     @property
     def contact_pressure(self) -> Array:
         """Contact pressure at the nodes [p_Hz]."""
-        return self.equations.law.pressure(self.unknowns.gap)
+        return np.asarray(self.equations.law.pressure(self.unknowns.gap))
 
 
 def band_for(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> int:

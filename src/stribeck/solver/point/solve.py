@@ -174,7 +174,7 @@ def check_model(model: Model) -> None:
 def has_plateau(law: RateLaw) -> bool:
     """Return whether the viscosity of a fluid at low rates is that of the contact."""
     slow = np.array([np.finfo(float).tiny])
-    return bool(np.isclose(law.stress(slow)[0], slow, atol=0.0)[0])
+    return bool(np.isclose(law.stress(slow), slow, atol=0.0)[0])
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:

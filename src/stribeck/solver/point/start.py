@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -67,30 +68,13 @@ class WithCushion:
         """Return the pressure of the cushion, one at the film thickness."""
         return np.asarray(np.exp(CUSHION_STEEPNESS * (1.0 - gap / self.film)))
 
-    def pressure(self, gap: Array) -> Array:
+    def pressure(self, gap: Any) -> Any:
         """Return the sum of both pressures."""
-        return self.law.pressure(gap) + self.cushion(gap)
+        return np.exp(self.log_pressure(gap))
 
-    def log_pressure(self, gap: Array) -> Array:
+    def log_pressure(self, gap: Any) -> Any:
         """Return its logarithm."""
-        return np.asarray(np.logaddexp(self.law.log_pressure(gap), CUSHION_STEEPNESS * (1.0 - gap / self.film)))
-
-    def slope(self, gap: Array, pressure: Array) -> Array:
-        """Return its derivative."""
-        del pressure
-        return self.law.slope(gap, self.law.pressure(gap)) - CUSHION_STEEPNESS / self.film * self.cushion(gap)
-
-    def local_decay_length(self, gap: Array) -> Array:
-        """Return the length over which it falls by a factor e."""
-        with np.errstate(all="ignore"):
-            decay = np.asarray(self.pressure(gap) / -self.slope(gap, gap))
-        return np.where(np.isfinite(decay), decay, self.decay_length)
-
-    def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Refuse: no group moves a first guess."""
-        raise NotImplementedError
-
-    roughness_derivative = load_derivative
+        return np.logaddexp(self.law.log_pressure(gap), CUSHION_STEEPNESS * (1.0 - gap / self.film))
 
 
 def first_guess(

@@ -1,0 +1,150 @@
+r"""First derivatives of functions that are written with those of numpy, exact, as the function is evaluated.
+
+A :class:`Dual` is a value with its derivative by one number, or by several in the first axis.  It goes through sums, products,
+powers, exponentials, choices and the like as an array does, so that a law that is written once brings its slope.  The module
+knows no physics.
+
+Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 3 (forward mode).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+from stribeck._types import Array
+
+__all__ = ["PARTIALS", "Dual", "with_slope"]
+
+
+class Dual(NDArrayOperatorsMixin):
+    """A value and its derivative."""
+
+    def __init__(self, value: Any, slope: Any) -> None:
+        self.value, self.slope = value, slope
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the value."""
+        return np.shape(self.value)
+
+    @property
+    def real(self) -> Any:
+        """The value."""
+        return self.value
+
+    def scaled(self, factor: Any, value: Any) -> Dual:
+        """Return another value, whose derivative is this one times a factor."""
+        return Dual(value, factor * self.slope)
+
+    def __getitem__(self, places: Any) -> Dual:
+        """Return some places; the derivative has the axes of the value."""
+        slope = np.broadcast_to(self.slope, np.shape(self.value)) if np.ndim(self.slope) == 0 else self.slope
+        return Dual(self.value[places], slope[places])
+
+    def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
+        """Return what a function of numpy makes of it: a plain value where its derivative is zero."""
+        values = [value_of(each) for each in given]
+        if method != "__call__" or options:
+            return NotImplemented
+        if function in FLAT:
+            return function(*values)
+        partials = PARTIALS.get(function)
+        if partials is None:
+            return NotImplemented
+        value, slope = function(*values), 0.0
+        for each, partial in zip(given, partials, strict=True):
+            if isinstance(each, Dual):
+                slope = slope + partial(value, *values) * each.slope
+        return Dual(value, slope)
+
+    def __array_function__(self, function: Any, types: Any, given: Any, options: Any) -> Any:
+        """Return a choice or a clipped value, constants of its shape, or the real part."""
+        if function is np.where and len(given) == 3:
+            chosen, first, second = given
+            value = np.where(value_of(chosen), value_of(first), value_of(second))
+            return Dual(value, np.where(value_of(chosen), slope_of(first), slope_of(second)))
+        if function is np.clip:
+            found, low, high = given
+            return np.minimum(np.maximum(found, low), high)
+        if function in (np.zeros_like, np.ones_like, np.full_like, np.shape, np.ndim):
+            return function(given[0].value, *given[1:], **options)
+        return NotImplemented
+
+
+def value_of(given: Any) -> Any:
+    """Return the value of a dual; what is none, as it is."""
+    return given.value if isinstance(given, Dual) else given
+
+
+def slope_of(given: Any) -> Any:
+    """Return the derivative of a dual; zero of what is none."""
+    return given.slope if isinstance(given, Dual) else 0.0
+
+
+def with_slope(function: Callable[[Any], Any], at: Array) -> tuple[Array, Array]:
+    """Return a function of one number at places, and its derivative there."""
+    at = np.asarray(at, dtype=float)
+    found = function(Dual(at, 1.0))
+    value = np.broadcast_to(np.asarray(value_of(found), dtype=float), at.shape)
+    return value, np.broadcast_to(np.asarray(slope_of(found), dtype=float), at.shape)
+
+
+# Functions that are constant but for jumps.
+FLAT = {
+    np.sign,
+    np.isfinite,
+    np.isnan,
+    np.greater,
+    np.greater_equal,
+    np.less,
+    np.less_equal,
+    np.equal,
+    np.not_equal,
+    np.logical_and,
+    np.logical_or,
+    np.logical_not,
+}
+
+Partial = Callable[..., Any]
+
+# Derivatives of each function by what it takes, from its value and that.
+PARTIALS: dict[Any, tuple[Partial, ...]] = {
+    np.add: (lambda v, a, b: 1.0, lambda v, a, b: 1.0),
+    np.subtract: (lambda v, a, b: 1.0, lambda v, a, b: -1.0),
+    np.multiply: (lambda v, a, b: b, lambda v, a, b: a),
+    np.divide: (lambda v, a, b: 1.0 / b, lambda v, a, b: -v / b),
+    np.power: (lambda v, a, b: b * a ** (b - 1.0), lambda v, a, b: v * np.log(a)),
+    np.negative: (lambda v, a: -1.0,),
+    np.positive: (lambda v, a: 1.0,),
+    np.square: (lambda v, a: 2.0 * a,),
+    np.sqrt: (lambda v, a: 0.5 / v,),
+    np.absolute: (lambda v, a: np.sign(a),),
+    np.reciprocal: (lambda v, a: -v * v,),
+    np.exp: (lambda v, a: v,),
+    np.expm1: (lambda v, a: v + 1.0,),
+    np.log: (lambda v, a: 1.0 / a,),
+    np.log1p: (lambda v, a: 1.0 / (1.0 + a),),
+    np.log10: (lambda v, a: 1.0 / (math.log(10.0) * a),),
+    np.logaddexp: (lambda v, a, b: np.exp(a - v), lambda v, a, b: np.exp(b - v)),
+    np.sin: (lambda v, a: np.cos(a),),
+    np.cos: (lambda v, a: -np.sin(a),),
+    np.sinh: (lambda v, a: np.cosh(a),),
+    np.cosh: (lambda v, a: np.sinh(a),),
+    np.tanh: (lambda v, a: 1.0 - v * v,),
+    np.arctan: (lambda v, a: 1.0 / (1.0 + a * a),),
+    np.arcsinh: (lambda v, a: 1.0 / np.hypot(1.0, a),),
+    np.hypot: (lambda v, a, b: a / v, lambda v, a, b: b / v),
+    np.copysign: (lambda v, a, b: np.copysign(1.0, b) * np.sign(a), lambda v, a, b: 0.0),
+    np.maximum: (lambda v, a, b: 1.0 * (a >= b), lambda v, a, b: 1.0 * (a < b)),
+    np.minimum: (lambda v, a, b: 1.0 * (a <= b), lambda v, a, b: 1.0 * (a > b)),
+    scipy.special.ndtr: (lambda v, a: np.exp(-0.5 * a * a) / math.sqrt(2 * math.pi),),
+    scipy.special.erf: (lambda v, a: 2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
+    scipy.special.erfc: (lambda v, a: -2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
+    scipy.special.expit: (lambda v, a: v * (1.0 - v),),
+}
