@@ -40,7 +40,7 @@ def vectors(law, number=60):
     rng = np.random.default_rng(7)
     turn, other = rng.uniform(0, 2 * np.pi, (2, number))
     rates = 10 ** rng.uniform(-2, 3, (2, number))
-    slope = 2 * law.stress(rates[0])[0] * np.stack([np.cos(turn), np.sin(turn)])
+    slope = 2 * law.stress(rates[0]) * np.stack([np.cos(turn), np.sin(turn)])
     return slope, rates[1] * np.stack([np.cos(other), np.sin(other)])
 
 
@@ -173,12 +173,11 @@ def test_a_fluid_that_thins_breaks_behind_the_ball_too():
 
 
 @pytest.mark.quick
-def test_batches_keep_the_friction_of_their_contacts_and_refuse_another_beta_by_name():
+def test_batches_have_the_friction_of_their_states_at_any_beta():
     thinning = sb.Groups(0.1, 1e-3, 1e-3, geometry="point", model=Model(FILMS["carreau"]))
     batch, alone = sb.solve_batch(thinning, rtol=1e-2), sb.solve(thinning, rtol=1e-2)
-    assert batch.friction().fluid == pytest.approx(alone.friction().fluid, rel=1e-12)
-    with pytest.raises(sb.InputError, match="beta = 0.1: the friction of a ball in a fluid that thins .carreau."):
-        batch.friction(beta=0.1)
+    for beta in (None, 0.1):
+        assert batch.friction(beta=beta).fluid == pytest.approx(alone.friction(beta=beta).fluid, rel=1e-12)
 
 
 @pytest.mark.slow

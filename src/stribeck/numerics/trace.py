@@ -223,7 +223,7 @@ def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
     A derivative None stands for one.  Of plain values the function gives its plain value.
     """
     value, *slopes = function(*(value_of(each) for each in given))
-    found = None
+    found: Any = None
     for each, slope in zip(given, slopes, strict=True):
         if isinstance(each, Trace):
             part = each if slope is None else each.scaled(slope, ZERO)
