@@ -1,11 +1,10 @@
-"""Curves of balls: observables off Taylor series, or off solved states with their slopes where films have no series."""
+"""Curves of balls: observables off solved states with their slopes."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,13 +17,9 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.line_source import PathSource
 from stribeck.curves.source import Coefficients, Parts, Progress
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.path.hermite_path import HermitePath, interpolate_to
-from stribeck.solver.path.path import SolvedPath, follow
-from stribeck.solver.point.curve_path import PointProblem
 from stribeck.solver.point.knots import BallKnots
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
@@ -76,42 +71,29 @@ class BallSource(PathSource):
 
     coordinate: Coordinate
     rtol: float
-    path: SolvedPath | HermitePath = field(compare=False)
+    path: HermitePath = field(compare=False)
 
     def read(self, s: Array, rtol: float | None = None) -> BallReadings:
-        """Return the solutions at places; a state is solved where the error of the series exceeds the tolerance."""
-        states = self.path.problem.states_at(self.path, s)  # type: ignore[union-attr]
+        """Return the solutions at places."""
+        problem: BallKnots = self.path.problem
+        states = problem.states_at(self.path, s)
         contacts = map(self.coordinate.contact_at, s.tolist())
         return BallReadings(tuple(solution_of(state, contact) for state, contact in zip(states, contacts, strict=True)))
-
-    def _inputs(self, beta: float) -> dict[str, Any]:
-        """Return what friction hangs on beside the groups, where what varies is one."""
-        contact = self.coordinate.contact_at(0.0)
-        found: dict[str, Any] = {**RULES["point"].of_contact(contact), "beta": beta}
-        if contact is None:
-            found["slide_to_roll"] = 2.0 * self.coordinate.groups_at(0.0).model.film.slide
-        return found
 
     @cached_property
     def sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
-        return float(RULES["point"].sliding_factor(self.coordinate.groups_at(0.0), self._inputs(1.0)))
+        rule, contact, groups = RULES["point"], self.coordinate.contact_at(0.0), self.coordinate.groups_at(0.0)
+        inputs = {**rule.of_contact(contact)}
+        if contact is None:
+            inputs["slide_to_roll"] = 2.0 * groups.model.film.slide
+        return float(rule.sliding_factor(groups, inputs))
 
     def parts(self, s: Array, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction."""
-        boundary_friction, beta, definition = coefficients
-        if isinstance(self.path, HermitePath):
-            found = self.read(s)
-            contact, viscous = found.friction_terms(*coefficients)[:, :2].T
-            return found.values["fluid_load_share"], contact, viscous
-        rule, start, inputs = RULES["point"], self.coordinate.groups_at(0.0), self._inputs(beta)
-        rows = dict(zip(self.path.problem.names, self.path.smooth(s).T, strict=True))  # type: ignore[attr-defined]
-        rates = dict(zip(GROUPS, self.coordinate.direction.tolist(), strict=True))
-        speed, load = (float(getattr(start, name)) * np.exp(rates[name] * s) for name in ("speed", "load"))
-        if math.isfinite(inputs["wetted_radius"]):
-            inputs["wetted_radius"] *= np.exp(rule.exponents["wetted_radius"].get(self.coordinate.over, 0.0) * s)
-        viscous = rule.viscous(rows, speed, load, inputs, definition)
-        return rows["fluid_load_share"], boundary_friction * self.sliding * rows["contact_load_share"], viscous
+        found = self.read(s)
+        contact, viscous = found.friction_terms(*coefficients)[:, :2].T
+        return found.values["fluid_load_share"], contact, viscous
 
     def slopes(self, s: Array, coefficients: Coefficients) -> Array:
         """Return the derivatives of the friction by the coordinate."""
@@ -124,7 +106,8 @@ class BallSource(PathSource):
 
     def solved(self, s: float, rtol: float | None = None) -> PointSolution:
         """Return the solution at a place, solved to a tolerance."""
-        state = self.path.problem.solved_at(self.path, s, rtol)  # type: ignore[union-attr]
+        problem: BallKnots = self.path.problem
+        state = problem.solved_at(self.path, s, rtol)
         return finish_point(state, self.coordinate.contact_at(s))
 
 
@@ -162,17 +145,8 @@ def ball_source(
     start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
     ends = values[[0, -1]] if ends is None else ends
     is_closed = _has_closed_friction(coordinate, ends)
-    has_series = start.speed > 0 and start.model.cavitation is Cavitation.NONE and is_closed and coordinate.is_uniform(ends)
-    progress = Progress(places, on_point)
-    problem: PointProblem | BallKnots
-    path: SolvedPath | HermitePath
-    if has_series:
-        problem = PointProblem(coordinate.groups_at, rtol_of_states)
-        path = follow(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
-    else:
-        cut_offs = None if is_closed else CutOffs(coordinate, beta)
-        problem = BallKnots(coordinate.groups_at, rtol_of_states, cut_offs)
-        path = interpolate_to(problem, float(places[-1]), float(places[0]), rtol_of_states, progress)
+    problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta))
+    path = interpolate_to(problem, float(places[-1]), float(places[0]), rtol_of_states, Progress(places, on_point))
     problem.release()
     if not len(path.coordinates):
         if problem.failure is not None:

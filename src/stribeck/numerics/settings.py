@@ -13,6 +13,16 @@ ROUNDING = (
 HALF_DIGITS = EPSILON**0.5  # What is smaller beside one is known to no digit in a difference quotient, or is no progress
 SAME_PLACE = EPSILON**0.75  # Distance over the scale of a mesh below which two places are one: nodes between are the same
 
+SHARE = 0.5  # Share of a tolerance that each of two causes of error may take: the states of a path and what lies between them
+
+# Paths of states along ln of what varies.
+MIN_LOG_STEP = 0.02  # Shortest step and interval: a path that needs a shorter one ends, an interval keeps its error
+MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that show none
+STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step to the one before that failed
+MAX_PATH_STATES = 400  # Limit on work
+WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes
+INNER_PLACES = (0.25, 0.5, 0.75)  # Parts of an interval where it is checked: laws with kinks may agree by accident at one
+
 # Safety factors of what is stated of balls, by tests/test_ball_errors.py: with less, true errors exceed stated ones.
 # Each pair is the stated error over the difference of two meshes, and the least such difference over the largest of all.
 SMOOTH_SAFETY, SMOOTH_FLOOR = 0.35, 0.1  # Flow that is smooth: errors fall exponentially, the finer mesh has hardly any

@@ -16,22 +16,20 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import weights_through
+from stribeck.numerics.settings import (
+    INNER_PLACES,
+    MAX_LOG_STEP,
+    MAX_PATH_STATES,
+    MIN_LOG_STEP,
+    SAFETY,
+    SHARE,
+    STEP_GROWTH,
+    WINDOW,
+)
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
 __all__ = ["HermitePath", "Knot", "KnotProblem", "interpolate_to"]
-
-WINDOW = 6  # States through which a polynomial goes
-SAFETY = 2.0  # Stated over estimated error of the interpolation: slopes have errors too, see tests/test_point_curve.py
-INSIDE = np.array([0.25, 0.5, 0.75])  # Places of an interval, as parts of its length, at which its error is estimated
-
-FIRST_STEP = 0.5  # Length of the first step; the length of each later one follows from the error of the last interval
-MAX_STEP = 3.0  # Longest step: from farther away the last state is no start for the next one
-MIN_STEP = 0.02  # Shortest step: the path ends where shorter ones would be needed, and an interval keeps its error
-MAX_STEP_GROWTH = 1.4  # Largest ratio of a step to the one before
-STEP_REDUCTION = 0.5  # Ratio of a step to the one before from which no state was found, and least ratio to any
-ERROR_GOAL = 0.5  # Share of the allowed error for the next step: a shorter step costs less than an interval that is halved
-MAX_STATES = 400  # Limit on work
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +76,7 @@ class KnotProblem(Protocol):
 class HermitePath:
     """Solved states along a path, ascending, what lies between them, and how the path ended."""
 
-    problem: KnotProblem
+    problem: Any  # A :class:`KnotProblem`, and what else it offers to who made it
     knots: tuple[Knot, ...]
     outcome: Outcome
 
@@ -120,15 +118,16 @@ class HermitePath:
         That is the error of the polynomial through two states less, as the whole one shows it.
         """
         left, right = self.coordinates[k : k + 2]
-        s = left + INSIDE * (right - left)
+        parts = np.array(INNER_PLACES)
+        s = left + parts * (right - left)
         best = self._through(*self._window(k, WINDOW), s)
         if len(self.knots) > 2:
             less = self._through(*self._window(k, max(2, min(WINDOW, len(self.knots)) - 2)), s)
         else:  # by the slopes alone
             ends = np.stack([self.knots[k].values, self.knots[k + 1].values])
-            less = (ends[:1] + INSIDE[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
+            less = (ends[:1] + parts[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
         with np.errstate(all="ignore"):
-            found = np.abs(best - less) / self.problem.scales(best, s) / _shape(INSIDE)[:, None]
+            found = SAFETY * np.abs(best - less) / self.problem.scales(best, s) / _shape(parts)[:, None]
         return np.asarray(np.nan_to_num(found, nan=math.inf).max(axis=0))
 
     @cached_property
@@ -158,7 +157,7 @@ class HermitePath:
         found, where, parts = self._evaluated(s)
         if len(self.knots) == 1:
             return found, np.repeat(self.knots[0].errors[None], len(s), axis=0)
-        errors = SAFETY * _shape(np.clip(parts, 0.0, 1.0))[:, None] * self._between[where]
+        errors = _shape(np.clip(parts, 0.0, 1.0))[:, None] * self._between[where]
         for k in np.unique(where).tolist():
             errors[where == k] += self._propagated(*self._window(k, WINDOW), s[where == k])
         return found, errors
@@ -189,9 +188,9 @@ class HermitePath:
         return self.knots[int(np.argmin(np.abs(self.coordinates - s)))]
 
     def excess(self, k: int, rtol: float) -> float:
-        """Return the error of interval k over what is allowed: the tolerance, or the errors of its ends."""
+        """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""
         between, ends = self.interpolation_error(k), np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
-        return float((between / np.maximum(rtol, ends))[self.problem.controlled].max())
+        return float((between / np.maximum(SHARE * rtol, ends))[self.problem.controlled].max())
 
 
 def _shape(parts: Array) -> Array:
@@ -216,22 +215,23 @@ def interpolate_to(
         return HermitePath(problem, tuple(knots[s] for s in sorted(knots)), outcome)
 
     try:
-        here, step, sign = start, FIRST_STEP, math.copysign(1.0, end - start)
+        sign = math.copysign(1.0, end - start)
+        here, step = start, MAX_LOG_STEP / WINDOW
         while here not in knots:  # begin at the first state that can be solved
             first = problem.solve(here)
             if not isinstance(first, Outcome):
                 knots[here] = first
-            elif abs(end - here) <= FIRST_STEP:
+            elif abs(end - here) <= step:
                 return HermitePath(problem, (), first)
             else:
-                outcome, here = first, here + sign * FIRST_STEP
+                outcome, here = first, here + sign * step
         while (left := abs(end - here)) > 0 and not (until is not None and until(path())):
-            step = min(step, MAX_STEP, left)
+            step = min(step, MAX_LOG_STEP, left)
             there = end if step == left else here + sign * step
             new = knots.get(there) or problem.solve(there)
             if isinstance(new, Outcome):
-                step *= STEP_REDUCTION
-                if step < MIN_STEP:
+                step /= STEP_GROWTH
+                if step < MIN_LOG_STEP:
                     outcome = new
                     break
                 continue
@@ -243,13 +243,14 @@ def interpolate_to(
                 now = path()
                 k = len(now.knots) - 3 if sign > 0 else 1  # the last interval with states on both sides
                 excess = now.excess(k, rtol)
-                growth = (ERROR_GOAL / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else MAX_STEP_GROWTH
-                growth = min(max(growth, STEP_REDUCTION), MAX_STEP_GROWTH)
+                # A shorter step costs less than an interval that is halved.
+                growth = (SHARE / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else STEP_GROWTH
+                growth = min(max(growth, 1 / STEP_GROWTH), STEP_GROWTH)
                 step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * growth
-        while len(knots) < MAX_STATES:
+        while len(knots) < MAX_PATH_STATES:
             now = path()
-            wide = [k for k in range(len(now.knots) - 1) if now.coordinates[k + 1] - now.coordinates[k] > 2 * MIN_STEP]
-            wrong = [k for k in wide if now.excess(k, rtol) > 1.0]
+            lengths = np.diff(now.coordinates)
+            wrong = [k for k in range(len(lengths)) if lengths[k] > 2 * MIN_LOG_STEP and now.excess(k, rtol) > 1.0]
             if not wrong:
                 break
             for k in wrong[:: int(-sign)]:

@@ -1,4 +1,4 @@
-"""States of a ball along a path with their slopes, for films without a series: cavitated, thinning, at rest."""
+"""States of a ball along a path with their slopes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, FrictionWithin, identity_error, observables
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.settings import HALF_DIGITS, NEGLIGIBLE, SHARE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
-from stribeck.solver.point.curve_path import error_scales, speeds_at
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.sensitivity import derivatives_along
 from stribeck.solver.point.solve import solve_cold, solve_from
@@ -24,15 +24,13 @@ from stribeck.solver.point.state import PointState, ReadState
 
 __all__ = ["BallKnots", "KnotState"]
 
-STATE_RTOL_FRACTION = 0.7  # Share of rtol for solving the states; the rest is for the interpolation
-# Residual of the slopes: GMRES takes two rounds, as one round with a neighbour's preconditioner leaves errors of 1e-4.
-SLOPE_RTOL = 1e-12
-REST_STEP = 1e-3  # Step of the coordinate in central differences between states at rest, which cost next to nothing
-UNIT_STEP = 0.5  # Step of the coordinate in differences of units, which are powers of what varies
-
+UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle")  # Observables whose errors are absolute
 COLUMNS = (*OBSERVABLES, *WITHIN)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))
 POSITIVE = [OBSERVABLES[i] for i in SHARES] + ["central_gap", "central_pressure", "minimum_gap", "minimum_gap_on_axis"]
+ABSOLUTE = [COLUMNS.index(name) for name in UNIT_SCALED]
+OFFSET = COLUMNS.index("offset")
+WHOLE = [COLUMNS.index(name) for name in ("J_balanced", "J_published")]
 FRICTION = [i for i, name in enumerate(COLUMNS) if name.startswith("J_") or name in WITHIN]
 
 CutOffs = Callable[[float], tuple[float, float]]
@@ -48,7 +46,7 @@ class BallKnots:
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None) -> None:
         self.groups_at, self.rtol, self.cut_offs = groups_at, rtol, cut_offs
-        self.neighbours = Neighbours(STATE_RTOL_FRACTION * rtol)
+        self.neighbours = Neighbours(SHARE * rtol)
         self.failure: PointState | None = None
 
     @cached_property
@@ -61,13 +59,22 @@ class BallKnots:
     def units(self, s: Array) -> Array:
         """Return the speeds for the friction integrals, which are proportional to it in boundary lubrication, else one."""
         found = np.ones((len(s), len(COLUMNS)))
-        speeds = speeds_at(self.groups_at, s)
+        speeds = self._speeds(s)
         found[:, FRICTION] = np.where(speeds > 0, speeds, 1.0)[:, None]
         return found
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables, as for a state."""
-        return error_scales(COLUMNS, values, speeds_at(self.groups_at, s))
+        found = np.fmax(np.abs(values), np.finfo(float).tiny)
+        found[:, ABSOLUTE] = 1.0
+        found[:, OFFSET] = np.maximum(found[:, OFFSET], NEGLIGIBLE)  # it crosses zero where films become thick
+        whole = np.abs(values[:, WHOLE]).max(axis=1)
+        found[:, FRICTION] = np.maximum(np.fmax(whole, np.finfo(float).tiny), self._speeds(s))[:, None]
+        return found
+
+    def _speeds(self, s: Array) -> Array:
+        """Return the speed groups at coordinates, shape (len(s),)."""
+        return np.array([float(self.groups_at(each).speed) for each in s.tolist()])
 
     def _measure(self, s: float) -> Callable[[Equations, Unknowns], dict[str, float]]:
         """Return what is measured of a state: its observables, and friction up to the cut-offs where that is a part of it."""
@@ -98,17 +105,18 @@ class BallKnots:
             slopes = {
                 name: float(column[0])
                 for name, column in derivatives_along(
-                    state, {"along": lambda step: self.groups_at(s + step)}, measure, SLOPE_RTOL
+                    state, {"along": lambda step: self.groups_at(s + step)}, measure, HALF_DIGITS
                 ).items()
             }
         else:
             values = dict(state.values)
-            ends = [solve_cold(self.groups_at(s + step), self.rtol) for step in (REST_STEP, -REST_STEP)]
-            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * REST_STEP) for name in values}
+            step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
+            ends = [solve_cold(self.groups_at(s + each), self.rtol) for each in (step, -step)]
+            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * step) for name in values}
         errors = state.errors
         row, slope = (np.array([each.get(name, 0.0) for name in COLUMNS]) for each in (values, slopes))
-        behind, here, ahead = self.units(np.array([s - UNIT_STEP, s, s + UNIT_STEP]))
-        growth = np.log(ahead / behind) / (2 * UNIT_STEP)
+        behind, here, ahead = self.units(np.array([s - 1, s, s + 1]))  # powers of what varies
+        growth = 0.5 * np.log(ahead / behind)
         return Knot(
             s,
             row / here,
