@@ -139,7 +139,7 @@ class PerssonLaw(ByValue):
         index, t = self._locate(position)
         c = self._coefficients[:, index]
         excess = ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0]
-        return np.where(s > 0, np.where(position < self._knots[-1], excess, 0.0) - s, np.inf)
+        return np.where(s > 0, np.where(position < self._knots[-1], excess, 0.0) - s, -np.inf * (s - np.finfo(float).tiny))
 
     def area_fraction(self, separation: Array) -> Array:
         r"""Return the real area of contact over the apparent one.

@@ -251,6 +251,12 @@ class Contact(Parts):
         # Made anew each time: a fluid holds what is computed of it.
         return replace(self._base_groups, model=self.model_in(self.film_units, self.hertz.half_width, self.speed))
 
+    def __copy__(self) -> Self:
+        """Return a copy that keeps no groups: who makes it sets other inputs."""
+        found = object.__new__(type(self))
+        vars(found).update({name: value for name, value in vars(self).items() if name != "_base_groups"})
+        return found
+
     @cached_property
     def _base_groups(self) -> Groups:
         """The groups with the article's model."""
