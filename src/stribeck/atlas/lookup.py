@@ -15,8 +15,9 @@ from stribeck.atlas.table import Values
 from stribeck.atlas.tables import BOX_RTOL, TableRow, table_for
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
+from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
 
@@ -132,14 +133,11 @@ def slopes_of(
     groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition
 ) -> tuple[Array, Array]:
     """Return the derivatives of contact share and viscous friction that were read, zero at rest."""
-    rule, step = RULES[groups.geometry], 1j * COMPLEX_STEP
-    inputs = inputs_for(groups, inputs)
-    viscous = np.empty_like(reading.contact_slopes)
-    for d in range(len(viscous)):
-        moved = {name: value + step * reading.part_slopes[name][d] for name, value in reading.parts.items()}
-        speed, load = (group * (1 + step) if d == axis else group for axis, group in enumerate((reading.speed, reading.load)))
-        viscous[d] = np.imag(rule.viscous(moved, speed, load, inputs, definition)) / COMPLEX_STEP
     contact = reading.contact_slopes.copy()
+    parts = {name: Dual(value, reading.part_slopes[name]) for name, value in reading.parts.items()}
+    speed, load = (Dual(group, np.eye(len(contact), 2)[:, axis, None] * group) for axis, group in enumerate(reading[:2]))
+    rule = RULES[groups.geometry]
+    viscous = np.array(slope_of(rule.viscous(parts, speed, load, inputs_for(groups, inputs), definition)))
     for found in (contact, viscous):
         found[:, reading.speed == 0] = 0.0
     return contact, viscous
@@ -150,8 +148,10 @@ def inputs_for(groups: Groups, inputs: Mapping[str, Any]) -> dict[str, Any]:
     return {name: flat(groups, value) for name, value in inputs.items()} | {"far": far_film(groups.model)}
 
 
-def flat(groups: Groups, value: Any) -> Array:
-    """Return a number or an array that broadcasts with groups as a flat array over their states."""
+def flat(groups: Groups, value: Any) -> Any:
+    """Return a number or an array that broadcasts with groups as a flat array over their states, and its derivative too."""
+    if isinstance(value, Dual):
+        return Dual(flat(groups, value.value), flat(groups, value.slope))
     return np.broadcast_to(np.asarray(value), groups.shape).ravel()
 
 

@@ -132,7 +132,7 @@ def friction_integral(
     each with its logarithm: the force on the flat; published, that on the ball without the contact pressure along x.
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
-    moves = np.real(speed) > 0
+    moves = speed > 0
     at_shear, at_pressure = (np.exp(-2.0 * (_minus_log_cut_off(parts, speed, far) + each)) for each in (by_shear, by_pressure))
     couette = parts["J_couette"] + far.couette * speed * (by_shear + 0.5 * np.log1p(at_shear))
     rest = by_pressure + far.rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
@@ -162,4 +162,4 @@ def is_far(model: Model, wetted_radius: float) -> bool:
 
 def _minus_log_cut_off(parts: Mapping[str, Any], speed: Any, far: FarFilm) -> Any:
     """Return minus the logarithm of the cut-off X_0."""
-    return parts["J_couette"] / np.where(np.real(speed) > 0, far.couette * speed, 1.0)
+    return parts["J_couette"] / np.where(speed > 0, far.couette * speed, 1.0)

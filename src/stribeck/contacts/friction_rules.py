@@ -6,8 +6,8 @@ r"""What friction is made of, by geometry: arrays of states and of the inputs th
     \mu_f = \beta \, \mu_f(\beta = 1) \text{ on the line}, \qquad
     \mu_f = \frac{3}{2\pi} \frac aR J \text{ on the ball}
 
-where the integral J of a ball is that of :mod:`stribeck.contacts.cut_off`.  All of it is analytic in its arguments, which may
-be complex: a step along the imaginary axis gives exact derivatives.
+where the integral J of a ball is that of :mod:`stribeck.contacts.cut_off`.  Its arguments may bring derivatives, see
+:mod:`stribeck.numerics.dual`.
 """
 
 from __future__ import annotations
@@ -26,12 +26,11 @@ from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.scaling import SCALINGS
+from stribeck.numerics.dual import value_of
 
-__all__ = ["COMPLEX_STEP", "RULES", "FrictionRule"]
+__all__ = ["RULES", "FrictionRule"]
 
 Values = Mapping[str, Any]  # Arrays by name
-
-COMPLEX_STEP = 1e-30  # Step along the imaginary axis, whose derivatives are exact
 
 
 class FrictionRule(NamedTuple):
@@ -184,7 +183,7 @@ RULES: dict[Geometry, FrictionRule] = {
         viscous=_ball_viscous,
         far_error=_ball_far_error,
         scale=_ball_scale,
-        sliding_factor=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
+        sliding_factor=lambda groups, inputs: _sliding(value_of(inputs["slide_to_roll"])),
         hersey=lambda each: each.load / each.viscosity / each.radius,
         hersey_exponents={"load": 1.0, "viscosity": -1.0, "radius": -1.0},
         hersey_symbol="ηUR/F_N",

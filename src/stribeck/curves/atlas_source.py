@@ -13,10 +13,11 @@ from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.source import Coefficients, Parts, Source
+from stribeck.numerics.dual import Dual, slope_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE
@@ -127,8 +128,8 @@ class AtlasSource(Source):
         slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition, **motion)
         found = np.tensordot(self.coordinate.direction, slopes, 1)
         for name, power in self._moving.items():
-            moved = {**inputs, name: inputs[name] * (1 + 1j * COMPLEX_STEP)}
-            found = found + power * np.imag(atlas.friction_terms(groups, moved, definition)[1]) / COMPLEX_STEP
+            moved = {**inputs, name: Dual(inputs[name], inputs[name])}
+            found = found + power * slope_of(atlas.friction_terms(groups, moved, definition)[1])
         return np.asarray(found)
 
     def length_at(self, s: float) -> float:

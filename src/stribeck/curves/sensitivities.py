@@ -12,12 +12,13 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.part_inputs import part_names
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
 from stribeck.solver.path.line_path import with_ending_of
@@ -111,8 +112,8 @@ def atlas_sensitivities(contact: Contact, definition: Definition = "balanced") -
     direct = {"boundary_friction": boundary_friction * float(rule.sliding_factor(groups, inputs)) * share}
     for name, value in inputs.items():
         if math.isfinite(value):
-            moved = atlas.friction_terms(groups, {**inputs, name: value * (1 + 1j * COMPLEX_STEP)}, definition)[1]
-            by = direct[name] = direct.get(name, 0.0) + float(np.imag(moved[0])) / COMPLEX_STEP
+            _, moved = atlas.friction_terms(groups, {**inputs, name: Dual(value, value)}, definition)
+            by = direct[name] = direct.get(name, 0.0) + float(slope_of(moved)[0])
             for other, power in rule.exponents.get(name, {}).items():
                 direct[other] = direct.get(other, 0.0) + power * by
     total = (direct["boundary_friction"] + viscous) or math.nan

@@ -20,7 +20,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from stribeck._types import Array, Indices
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES, FrictionRule
+from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import models_at_both_sides, refuse_fixed_memory
@@ -37,6 +36,7 @@ from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states.interpolation import Between
 from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
+from stribeck.numerics.dual import Dual
 
 __all__ = ["FrictionModel", "Prediction"]
 
@@ -207,29 +207,25 @@ class FrictionModel:
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
         fixed = {"far": far_film(self.model)}
-
-        def viscous(values: Any, groups: Any, others: Any) -> Any:
-            """Return the viscous friction after changes of parts, of the logarithms of speed and load, and of inputs."""
-            moved = {name: part + values[i] for i, (name, part) in enumerate(parts.items())}
-            taken = {name: value * np.exp(others[i]) if others[i] else value for i, (name, value) in enumerate(inputs.items())}
-            speed, load = x[:, 0] * np.exp(groups[0]), x[:, 1] * np.exp(groups[1])
-            return self.rule.viscous(moved, speed, load, {**taken, **fixed}, found.definition)
-
-        still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
+        # By the logarithms of the groups, by the numbers of the model, and by the logarithms of the inputs.
+        known = len(found.slopes[0])
+        rows = np.eye(known + len(inputs))[:, :, None]
+        of_inputs = np.zeros((len(inputs), len(x)))
+        by_part = (np.vstack([each, of_inputs]) for each in found.slopes[1:])
+        moved = {name: Dual(part, slopes) for (name, part), slopes in zip(parts.items(), by_part, strict=True)}
+        sizes = (np.where(np.isfinite(value), value, 0.0) for value in inputs.values())
+        taken = {
+            name: Dual(inputs[name], rows[:, known + i] * size)
+            for i, (name, size) in enumerate(zip(inputs, sizes, strict=True))
+        }
+        speed, load = (Dual(x[:, d], rows[:, d] * x[:, d]) for d in range(2))
+        viscous = self.rule.viscous(moved, speed, load, {**taken, **fixed}, found.definition)
         rubbing = self.signs[curve] * x[:, 3]
-        contact, fluid = rubbing * found.values[0], viscous(still, no_group, no_input)
-        step = 1j * COMPLEX_STEP
-        by_groups = [
-            rubbing * found.slopes[0, d]
-            + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / COMPLEX_STEP
-            for d in range(3)
-        ]
+        contact, fluid = rubbing * found.values[0], viscous.value
+        slopes = np.vstack([rubbing * found.slopes[0], of_inputs]) + viscous.slope
         by_model = np.zeros((len(x), len(self.free)))
-        for k in np.nonzero(np.any(found.slopes[:, 3:], axis=(0, 2)))[0].tolist():
-            through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / COMPLEX_STEP
-            by_model[:, k] = rubbing * found.slopes[0, 3 + k] + through
-        by_inputs = [viscous(still, no_group, step * row).imag / COMPLEX_STEP for row in np.eye(len(inputs))]
-        jacobian = np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A) + by_model
+        by_model[:, : known - 3] = slopes[3:known].T
+        jacobian = np.einsum("kn,npk->np", np.array([*slopes[:3], contact, *slopes[known:]]), A) + by_model
         errors, share = dict(zip(names, found.errors[1:], strict=True)), friction_share(contact, fluid)
         return Prediction(
             friction=np.abs(contact + fluid),

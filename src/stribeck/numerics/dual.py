@@ -19,7 +19,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from stribeck._types import Array
 
-__all__ = ["PARTIALS", "Dual", "with_slope"]
+__all__ = ["PARTIALS", "Dual", "slope_of", "value_of", "with_slope"]
 
 
 class Dual(NDArrayOperatorsMixin):

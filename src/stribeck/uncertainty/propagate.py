@@ -12,13 +12,14 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.friction_rules import COMPLEX_STEP, RULES
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import known_names
@@ -217,9 +218,9 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     found = {}
     for name, value in inputs.items():
         if 0 < value < math.inf and groups.speed > 0:
-            moved = {**inputs, name: value * (1 + 1j * COMPLEX_STEP), "far": far_film(groups.model)}
+            moved = {**inputs, name: Dual(value, value), "far": far_film(groups.model)}
             here = rule.viscous(parts, groups.speed, groups.load, moved, definition)
-            found[name] = float(np.imag(here) / COMPLEX_STEP / np.real(here))
+            found[name] = float(here.slope / here.value)
     return found
 
 
