@@ -33,7 +33,7 @@ from stribeck.equations.point.mesh_choice import Resolution, bytes_of
 from stribeck.equations.point.observables import observables
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
-from stribeck.solver.point.level import band_for, solve_level
+from stribeck.solver.point.level import solve_level
 from stribeck.solver.point.solve import _dry_level, solve_cold
 from stribeck.solver.point.state import PointState
 
@@ -80,7 +80,7 @@ def better_values(state: PointState, finer: Resolution) -> dict[str, float] | No
     if speed == 0:
         level = _dry_level(law, 20, TIGHT, state.groups.model, finer.halvings + 1)
     else:
-        level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, TIGHT, largest=math.inf)
+        level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, TIGHT)
     if not level.outcome.ok:
         return None
     found = observables(level.equations, level.unknowns)
@@ -109,7 +109,7 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
     }
     finer = finer_mesh(state)
     row["needs"] = (
-        1e-6 * bytes_of(finer, band_for(float(groups.speed), state.work.fine.equations.law)) if groups.speed else 0.0
+        1e-6 * bytes_of(finer) if groups.speed else 0.0
     )
     exact = better_values(state, finer) if row["needs"] <= largest else None
     if exact is None:

@@ -122,7 +122,7 @@ def better_values(state: PointState, finer: Resolution) -> dict[str, float]:
     fine = state.work.fine
     tolerance = TIGHT_TORN if fine.resolution.model.cavitation is Cavitation.EXIT else TIGHT
     speed, law = fine.equations.speed, fine.equations.law
-    level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, tolerance, largest=math.inf)
+    level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, tolerance)
     if not level.outcome.ok:
         raise ArithmeticError(f"the finer mesh has no state: {level.outcome.name}")
     found = observables(level.equations, level.unknowns)

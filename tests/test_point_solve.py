@@ -181,5 +181,5 @@ def test_a_roughness_lost_to_rounding_is_said_to_be():
 
 
 def test_a_mesh_beyond_the_memory_is_said_to_be(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.point.level.bytes_of", lambda found, band: 1e12)
+    monkeypatch.setattr("stribeck.solver.point.level.bytes_of", lambda found: 1e12)
     assert solve_cold(ball(1e-2, 1e-3, 0.0), 1e-4).outcome is Outcome.MESH_LIMIT

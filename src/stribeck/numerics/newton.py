@@ -27,7 +27,7 @@ from scipy.linalg import lapack
 
 from stribeck._types import Array
 from stribeck.numerics.ending import go_on
-from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS_NEW_MESH
+from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS
 from stribeck.quantities.outcome import Outcome
 
 MAX_CHORD_CONTRACTION = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
@@ -278,7 +278,7 @@ def root_between(function: Callable[[float], float], low: float, high: float, to
     if not values[0] * values[1] < 0:
         return None
     falls = True
-    while high - low > tolerance and len(places) < MAX_STEPS_NEW_MESH:
+    while high - low > tolerance and len(places) < MAX_STEPS:
         c = _where_zero(places[-INVERSE_POINTS:], values[-INVERSE_POINTS:]) if falls else math.nan
         if abs(c - places[-1]) <= tolerance:
             return min(max(c, low), high)

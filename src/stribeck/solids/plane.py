@@ -14,7 +14,9 @@ from stribeck.solids.half_space import deflection_by_mode
 from stribeck.solids.layer import Layer
 from stribeck.solids.layer_plane import layer_by_mode
 
-__all__ = ["BODIES", "PlaneBody"]
+__all__ = ["BODIES", "MIN_LAYER_THICKNESS", "PlaneBody"]
+
+MIN_LAYER_THICKNESS = 0.2  # Thinnest layer under a ball, in Hertz radii of a half-space: thinner ones are not tested
 
 
 @dataclass(frozen=True)

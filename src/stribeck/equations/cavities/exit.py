@@ -21,12 +21,11 @@ from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.cavities.wake import shear_missing
 from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.system import Unknowns
+from stribeck.numerics.settings import NEGLIGIBLE, SAFETY
 from stribeck.numerics.trace import Value
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["CavitatedEquations"]
-
-STREAK_ERROR_FACTOR = 0.18  # Stated error of the shear missing in dry streaks, over the spacing of the angles in half turns
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +75,6 @@ class CavitatedEquations(CavitatedSystem):
         return shear_missing(self.operators.mesh, y.gap, y.fluid, film.filled, partial(film.sheared, self.speed))
 
     def shear_error(self, y: Unknowns) -> float:
-        """Return an estimate of the error of the total shear over h: streaks begin at a line that is known to a spacing."""
+        """Return an estimate of the error of the total shear over h: streaks begin at a line known to a part of a spacing."""
         mesh = self.operators.mesh
-        return STREAK_ERROR_FACTOR / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))
+        return SAFETY * NEGLIGIBLE / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))

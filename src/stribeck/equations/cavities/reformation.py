@@ -25,14 +25,10 @@ from stribeck._types import Array, Flags
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.settings import NEGLIGIBLE, SAFETY
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["ReformingEquations", "outflow"]
-
-
-VOID_ERROR_FACTOR = 0.15  # Stated error of the gas over the outflow from its cell
-
-AREA_ERROR_FACTOR = 0.5  # Stated error of the area of a cavity over that of the cells along its edge
 
 
 def edge_of(cavitated: Flags) -> Flags:
@@ -86,16 +82,17 @@ class ReformingEquations(CavitatedSystem):
 
     def shear_error(self, y: Unknowns) -> float:
         """Return an estimate of the error of the total shear over h, by the void fraction and by the edge of the cavity."""
-        # With shear flow streaks may fill less than the whole width from the rupture line on, which lies between nodes.
+        # With shear flow streaks may fill less than the whole width from the rupture line on, which lies between
+        # nodes: half of the cells there.
         at_edge = np.maximum(0.0, 1.0 - self.film.filled(y.gap)) / y.gap * edge_of(y.fluid <= self.least)
-        return self.gas_error(y) + AREA_ERROR_FACTOR * float((at_edge @ self.operators.mesh.area_weights).sum())
+        return self.gas_error(y) + 0.5 * float((at_edge @ self.operators.mesh.area_weights).sum())
 
     def gas_error(self, y: Unknowns) -> float:
         """Return an estimate of that by the gas: a part of the outflow, as cells do not resolve it."""
         cavitated, mesh = y.fluid <= self.least, self.operators.mesh
         released = np.where(cavitated, self.flow(y.gap, y.fluid, y.offset) / self.passing(cavitated).weights, 0.0)
         lost = self.film.filled(y.gap) * released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
-        return VOID_ERROR_FACTOR * abs(float((lost @ mesh.area_weights).sum()))
+        return SAFETY * NEGLIGIBLE * abs(float((lost @ mesh.area_weights).sum()))
 
     def shear_missing(self, y: Unknowns) -> Array:
         """Return the shear over h missing on each ring in the dry streaks of the cavity, shape (rings,)."""

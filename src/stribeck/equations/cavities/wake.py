@@ -18,8 +18,9 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.settings import MAX_DEGREE
 
-GAUSS_POINTS, GAUSS_WEIGHTS = legendre.leggauss(12)  # Gauss points of an integral over the angles of the wake on one ring
+GAUSS_POINTS, GAUSS_WEIGHTS = legendre.leggauss(MAX_DEGREE)  # Of integrals over the angles of the wake
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,8 @@ from stribeck.equations.point.mesh_choice import gaps_at
 from stribeck.equations.point.system import LOAD, Operators
 from stribeck.numerics.dual import with_slope
 from stribeck.numerics.newton import Dense, StepControl, root_find
+from stribeck.numerics.settings import MAX_STEPS
 from stribeck.quantities.outcome import Outcome
-
-MAX_STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)

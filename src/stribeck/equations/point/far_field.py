@@ -23,11 +23,10 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
+from stribeck.numerics.settings import MAX_DEGREE
 from stribeck.numerics.trace import Value
 
 DEFLECTION_COEFFICIENT = 4.0 / (3.0 * math.pi)  # b: the deflection under the load, far away, times the distance
-
-GAUSS_POINTS = 40  # Gauss points of the integrals from the rim to infinity
 
 
 def particular(
@@ -49,7 +48,7 @@ def rates(modes: int) -> Array:
 @cache
 def _rule() -> tuple[Array, Array]:
     """Return the Gauss rule of the integrals, on 0 to 1."""
-    t, w = legendre.leggauss(GAUSS_POINTS)
+    t, w = legendre.leggauss(2 * MAX_DEGREE)
     return 0.5 * (t + 1.0), 0.5 * w
 
 

@@ -17,66 +17,35 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw, local_decay_length
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.equations.point.system import Operators
-from stribeck.equations.state import closed_gap
+from stribeck.equations.point.system import LOAD, Operators
 from stribeck.equations.thinning.far_field import FarThinned, usual_rate
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.numerics.settings import MAX_ROUNDS
+from stribeck.numerics.settings import (
+    BAND,
+    COARSE_STEP,
+    FAR_GROWTH,
+    HALF_DIGITS,
+    LEGENDRE_DECAY,
+    MAX_BYTES,
+    MAX_MODES,
+    MAX_REFINEMENTS,
+    MAX_STEPS,
+    MODES_RATIO,
+    NEGLIGIBLE,
+    PANEL_GROWTH,
+)
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.plane import BODIES
 
-EDGE_WIDTH_RATIO = 0.6  # Width of the smallest panel over that of the edge layer
+RIM_RADIUS = 2.0 * FAR_GROWTH**2  # Radius of the rim over the scale of the contact
 
-PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
-
-RIM_RADIUS = 50.0  # Radius of the rim over the scale of the contact
-
-FAR_FRICTION_ERROR = 5e-6  # Error of the friction over the speed by what thins beyond the rim, at most
-
-MAX_EXTRA_FAR_PANELS = 6  # Most panels between RIM_RADIUS and the rim
-
-# Smallest pressure at the rim of a cavitated shear-thinning film [p_Hz]: below it rounding would decide which nodes cavitate.
-# The friction that a nearer rim leaves out is stated.
-MIN_RIM_PRESSURE = 1e-9
-
-FAR_PANELS = 2  # Panels in ln r beyond twice the scale
-
-CAVITY_GROWTH = 1.5  # Largest width of far panels over their radius if the film may re-form on them
-
-FAR_PANEL_WIDTH = 4.0  # Width of far panels over the widest panel that the body allows near the contact
-
-FAR_PANEL_GROWTH = 0.6  # Width of far panels over their radius, if that is wider than FAR_PANEL_WIDTH allows
-
-MAX_BYTES = 670_000_000  # Memory that operators and preconditioner of a mesh may take
-
-MAX_CACHED_BYTES = 120_000_000  # Memory of the operators that are kept for later states
-
-EDGE_PRESSURE = 0.2  # Contact pressure at which the decay at the edge is read [p_Hz]
-
-
-# Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4.
-MODES_PER_EDGE_WIDTH = 7.5
-
-MAX_MODES = 200  # The most modes of a mesh
-
-DEGREE_STEP, MODES_RATIO = 2, 1.4  # Degrees by which the finer mesh of a pair exceeds the coarser one, and the ratio of modes
-
-# A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
-# of an edge fall with 4.4**-n on the panels that lead to it.
-MIN_LEGENDRE_DECAY = 2.6
-
-MIN_PANEL_WIDTH = 1e-3  # Width below which panels are not split [a]
-
-MAX_SPLITS = 16  # Most splits of the panels of one mesh
-
-
-KINKED_PANEL_WIDTH = 0.05  # Width to which panels are split on which roughness closes the flow [scale of the contact]
+MIN_PANEL_WIDTH = NEGLIGIBLE * math.pi / MAX_MODES  # Width below which panels are not split [a]: angles would not tell more
 
 
 class MeshTooLargeError(Exception):
-    """A mesh would take more than :data:`MAX_BYTES`."""
+    """A mesh would take more memory than allowed."""
 
     outcome = Outcome.MESH_LIMIT
 
@@ -119,40 +88,41 @@ class Resolution:
 
     def _widest_far(self, radii: Array, widest: float) -> Array:
         """Return the largest width of far panels from these radii on."""
-        of_body = np.maximum(FAR_PANEL_WIDTH * widest, FAR_PANEL_GROWTH * radii)
-        return np.minimum(of_body, self.far_growth * radii)
+        return min(max(widest, PANEL_GROWTH - 1.0), self.far_growth) * radii
 
     @property
     def _far(self) -> Array:
         """Radii of the far panels over the scale."""
-        ratio = (RIM_RADIUS / 2.0) ** (1.0 / FAR_PANELS)
-        return np.append(np.geomspace(2.0, RIM_RADIUS, FAR_PANELS + 1), RIM_RADIUS * ratio ** np.arange(1, self.farther + 1))
+        return np.append(2.0, RIM_RADIUS * FAR_GROWTH ** np.arange(-1, self.farther + 1))
 
     def coarser(self) -> Resolution:
         """Return a resolution coarser in radius and angle, whose results show the error of this one's."""
         modes = max(4, round(self.modes / MODES_RATIO)) if self.is_full else self.modes // 2
-        return replace(self, degree=self.degree - DEGREE_STEP, modes=modes)
+        return replace(self, degree=self.degree - 2, modes=modes)
 
     def finer(self) -> Resolution:
         """Return a resolution finer in radius and angle."""
-        # Errors of a film that ends fall slowly.  The rays along which it ruptures far away lie midway between nodes on any
-        # multiple of five angles, so on ten and on half of them.
+        # Errors of a film that ends fall slowly.
         if not self.is_full:
-            return replace(
-                self, degree=self.degree + 1, modes=max(self.modes + 10, 10 * round(0.1 * MODES_RATIO * self.modes))
-            )
-        return replace(self, degree=self.degree + DEGREE_STEP, modes=2 * math.ceil(0.5 * MODES_RATIO * self.modes))
+            return replace(self, degree=self.degree + 1, modes=max(self.modes + 10, in_tens(MODES_RATIO * self.modes)))
+        return replace(self, degree=self.degree + 2, modes=2 * math.ceil(0.5 * MODES_RATIO * self.modes))
 
     def leaner(self) -> Resolution:
         """Return a resolution that has about this one as its finer one."""
         if self.is_full:
             return self.coarser()
-        return replace(self, degree=self.degree - 1, modes=10 * round(0.1 * self.modes / MODES_RATIO))
+        return replace(self, degree=self.degree - 1, modes=in_tens(self.modes / MODES_RATIO))
 
     @property
     def is_full(self) -> bool:
         """Whether the film is full everywhere."""
         return self.model.cavitation is Cavitation.NONE
+
+
+def in_tens(modes: float) -> int:
+    """Return a number of modes for a film that ends."""
+    # The rays along which it ruptures far away lie midway between nodes on any multiple of five angles, so on ten and on half.
+    return 10 * max(1, round(0.1 * modes))
 
 
 def film_scale(speed: float) -> float:
@@ -167,7 +137,7 @@ def film_speed(speed: float, model: Model) -> float:
     if not isinstance(film, ShearThinning) or not speed > 0.0:
         return speed
     found = speed
-    for _ in range(MAX_ROUNDS):  # a thinner film is sheared faster
+    for _ in range(MAX_STEPS):  # a thinner film is sheared faster
         rate = np.array([usual_rate(film.law, film.slide, speed, film_scale(found))])
         found = math.sqrt(found * speed * float(film.law.stress(rate)[0] / rate[0]))
     return found
@@ -185,83 +155,74 @@ def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
     return low
 
 
-RIGID_CAVITATED = 0.2249  # Height of a rigid ball over the square of the speed group, for a film that ends at ambient pressure
-
-RIGID_SUCTION = 0.1  # Largest suction behind a rigid ball times its height to the power 3/2, over the speed group
-
-RIM_SUCTION = 0.03  # Suction at the rim over that of a cavity, at most
-
-
 def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[float, float]:
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
     speed = film_speed(speed, model)
     decay = float(np.max(law.decay_length))
     height = film_scale(speed) + cavitation_thickening(speed, model)
     if decay > 0.0:
-        at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
+        at_edge = gaps_at(law, np.log(np.array([NEGLIGIBLE])))
         decay = min(decay, float(np.max(local_decay_length(law, at_edge))))
         height = max(height, decay)
     scale = math.sqrt(1.0 + 2.0 * height)
     scale = 1.0 if scale < 1.5 else scale
-    return min(0.5, EDGE_WIDTH_RATIO * max(speed**0.4, decay ** (2.0 / 3.0))), scale
+    return min(0.5, max(speed**0.4, decay ** (2.0 / 3.0)) / MODES_RATIO), scale
 
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
     """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
-    return modes_of_edge(speed, law, BASE_MODEL, 0.1) > MAX_MODES
+    return film_scale(speed) > float(np.max(law.decay_length)) and layout(speed, law)[0] < MIN_PANEL_WIDTH
 
 
-def modes_of_edge(speed: float, law: ContactLaw, model: Model, error: float) -> float:
-    """Return the number of modes with which the minimum of a film that is thicker than roughness has a relative error."""
-    if film_scale(film_speed(speed, model)) <= float(np.max(law.decay_length)):
-        return 0.0
-    width = layout(speed, law, model)[0] / EDGE_WIDTH_RATIO
-    return float(MODES_PER_EDGE_WIDTH * width**-0.675 * math.log(error) / math.log(1e-4))
+def rigid_height(speed: float) -> float:
+    """Return the height of a rigid ball whose film has the pressure of its full film where that is positive."""
+    # The integral of 0.2 speed x/(z + r**2/2)**2 over half the plane is 0.2 speed pi sqrt(2/z).
+    return 2.0 * (0.2 * math.pi * speed / LOAD) ** 2
 
 
 def cavitation_thickening(speed: float, model: Model) -> float:
     """Return an estimate of the factor by which a fast film is thicker because the pressure behind the ball is bounded."""
     if model.cavitation is Cavitation.NONE:
         return 0.0
-    rigid = RIGID_CAVITATED * speed**2
+    rigid = rigid_height(speed)
     if not model.cavity_pressure < 0.0:
         return rigid
-    return float(min(rigid, (RIGID_SUCTION * speed / -model.cavity_pressure) ** (2 / 3)))
+    # Behind a rigid ball at a height z the largest suction is that at r**2 = 2 z/3.
+    suction = 0.2 * speed * math.sqrt(2.0 / 3.0) * 0.75**2
+    return float(min(rigid, (suction / -model.cavity_pressure) ** (2.0 / 3.0)))
 
 
 def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = BASE_MODEL) -> Resolution:
     """Return the resolution of a state."""
     width, scale = layout(speed, law, model)
-    halvings, doublings = math.ceil(-math.log2(1.2 * width)), round(math.log2(scale))
-    growth = CAVITY_GROWTH if model.cavity_pressure < 0.0 else math.inf
+    halvings, doublings = math.ceil(-math.log2(width)), round(math.log2(scale))
+    growth = PANEL_GROWTH - 1.0 if model.cavity_pressure < 0.0 else math.inf
     return Resolution(halvings, doublings, degree, modes, (), model, farther_panels(speed, model), growth)
 
 
 def farther_panels(speed: float, model: Model) -> int:
     """Return the number of panels outside RIM_RADIUS until the film is Newtonian and its suction far from that of a cavity."""
     # Far out the suction is 0.8 speed/r**3.
-    film, needed = model.film, 0.0
+    film, needed = model.film, 0
     if not speed > 0.0:
         return 0
     if isinstance(film, ShearThinning):
-        for needed in range(MAX_EXTRA_FAR_PANELS):
-            rim = RIM_RADIUS * (RIM_RADIUS / 2.0) ** (needed / FAR_PANELS)
-            far = FarThinned(film.law, film.slide, speed, rim, 1)
+        for needed in range(MAX_REFINEMENTS):
+            far = FarThinned(film.law, film.slide, speed, RIM_RADIUS * FAR_GROWTH**needed, 1)
             # A film that ends has no far film that thins.
             left = far.drag if model.cavitation is Cavitation.EXIT else far.friction_error(0.0)
-            if left <= FAR_FRICTION_ERROR * speed:
+            if left <= COARSE_STEP * speed:
                 break
-    if model.cavitation is Cavitation.EXIT:
-        needed = min(needed, math.floor(_panels_to((speed / MIN_RIM_PRESSURE) ** (1 / 3))))
+    if model.cavitation is Cavitation.EXIT:  # rounding would decide which nodes of a lower pressure cavitate
+        needed = min(needed, math.floor(_panels_to((speed / HALF_DIGITS) ** (1 / 3))))
     if model.cavity_pressure < 0.0:
-        radius = (0.8 * speed / (RIM_SUCTION * -model.cavity_pressure)) ** (1 / 3)
-        needed = max(needed, _panels_to(radius))
-    return int(np.clip(math.ceil(needed), 0, MAX_EXTRA_FAR_PANELS))
+        needed = max(needed, math.ceil(_panels_to((0.8 * speed / (NEGLIGIBLE * -model.cavity_pressure)) ** (1 / 3))))
+    return int(np.clip(needed, 0, MAX_REFINEMENTS))
 
 
 def _panels_to(radius: float) -> float:
     """Return how many panels beyond the usual rim reach to a radius."""
-    return FAR_PANELS * math.log(radius / RIM_RADIUS) / math.log(RIM_RADIUS / 2.0)
+    return math.log(radius / RIM_RADIUS) / math.log(FAR_GROWTH)
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
@@ -273,30 +234,22 @@ def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
     return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
 
 
-def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array, gap: Array | None = None) -> Resolution:
+def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:
     """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved."""
     # A law that saturates, or nearly full contact in the middle, has an edge of its own within the contact.
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
     near, widths = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9), np.diff(mesh.edges)
-    is_poor = (tail > MIN_LEGENDRE_DECAY**-mesh.degree) & (widths > MIN_PANEL_WIDTH)
-    closed_at = closed_gap(found.model.film)
-    if closed_at is not None and gap is not None:
-        # The mobility has a kink where roughness closes the flow, whose error polynomials of all degrees share.
-        local = mesh.scattered(gap)
-        crossed = (local.min(axis=(0, 2)) < closed_at) & (local.max(axis=(0, 2)) > closed_at)
-        is_poor = np.where(crossed, widths > KINKED_PANEL_WIDTH * 2.0**found.doublings, is_poor)
-    poor = np.flatnonzero(near & is_poor)
-    if poor.size == 0 or len(found.splits) > MAX_SPLITS:
+    poor = np.flatnonzero(near & (tail > LEGENDRE_DECAY ** (-mesh.degree / MODES_RATIO)) & (widths > MIN_PANEL_WIDTH))
+    if poor.size == 0:
         return found
     middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
     return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
 
 
-def bytes_of(found: Resolution, band: int) -> int:
+def bytes_of(found: Resolution) -> int:
     """Return an estimate of the memory of operators and preconditioner."""
-    rings = found.mesh.rings
-    band = min(band, found.modes - 1)
+    rings, band = found.mesh.rings, min(BAND, found.modes - 1)
     return found.modes * rings * rings * (8 + 4 * (2 * band + 1)) + 5 * (band + 1) ** 2 * rings * rings
 
 
@@ -315,7 +268,7 @@ def operators_of(found: Resolution, mesh: PolarMesh | None = None) -> Operators:
     operators = Operators(found.mesh if mesh is None else mesh, found.model.solid)
     with _lock:
         operators = _kept.setdefault(found, operators)
-        while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > MAX_CACHED_BYTES:
+        while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > NEGLIGIBLE * MAX_BYTES:
             _kept.popitem(last=False)
         return operators
 

@@ -9,12 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
-
-MAX_STEPS = 12  # Newton steps towards a minimum
-
-CONVERGED_STEP = 1e-7  # Length of the last step over the spacing of nodes: the next would change the value by its square only
-
-MAX_CANDIDATES = 3  # Local minima among the nodes from which the search starts, lowest first
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_STEPS, NEAR_MINIMUM
 
 
 @dataclass(frozen=True)
@@ -32,11 +27,9 @@ def minimum_gap(mesh: PolarMesh, h: Array) -> Minimum:
     padded = np.pad(h, 1, constant_values=np.inf)
     padded[0], padded[-1] = padded[1], padded[-2]
     neighbours = [padded[1 + i : h.shape[0] + 1 + i, 1 + j : h.shape[1] + 1 + j] for i in (-1, 0, 1) for j in (-1, 0, 1)]
-    lowest = (h <= np.min(neighbours, axis=0)) & (h < 3.0 * h[angle, radius])
-    places = np.argwhere(lowest)
-    places = places[np.argsort(h[lowest])][:MAX_CANDIDATES]
+    lowest = (h <= np.min(neighbours, axis=0)) & (h < NEAR_MINIMUM * h[angle, radius])
     coefficients = mesh.to_modes @ h
-    found = [_descend(mesh, coefficients, mesh.radii[i], mesh.angles[j], False) for j, i in places]
+    found = [_descend(mesh, coefficients, mesh.radii[i], mesh.angles[j], False) for j, i in np.argwhere(lowest)]
     return min([*found, centre(mesh, h)], key=lambda one: one.gap)
 
 
@@ -89,9 +82,9 @@ def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, 
             slope[1], curvature[0, 1], curvature[1, 0], curvature[1, 1] = 0.0, 0.0, 0.0, 1.0
         scaled = limits[:, None] * curvature * limits
         eigenvalues, vectors = np.linalg.eigh(scaled)
-        downhill = vectors @ ((vectors.T @ (slope * limits)) / np.maximum(np.abs(eigenvalues), 1e-14 * abs(value)))
+        downhill = vectors @ ((vectors.T @ (slope * limits)) / np.maximum(np.abs(eigenvalues), EPSILON * abs(value)))
         length = float(np.abs(downhill).max())
-        if length < CONVERGED_STEP:
+        if length < HALF_DIGITS:
             break
         step = -limits * downhill / max(1.0, length)
         radius = float(radius + step[0])

@@ -27,8 +27,9 @@ class BandedModes:
     def __init__(self, linear: Linear, band: int) -> None:
         operators = linear.equations.operators
         self.shape = (operators.mesh.modes, operators.mesh.rings)
+        self.band = min(band, self.shape[0] - 1)
         coupling = Coupling(linear)
-        self.factors = BlockLU(coupling.columns(min(band, self.shape[0] - 1)), min(band, self.shape[0] - 1), self.shape)
+        self.factors = BlockLU(coupling.columns(self.band), self.band, self.shape)
         self.row = linear.equations.load_row
         self.column = self.factors.solve(coupling.of_offset())
         self.pivot = float(self.row @ self.column[0])

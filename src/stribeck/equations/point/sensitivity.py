@@ -21,8 +21,9 @@ from stribeck.equations.point.observables import observables
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_KRYLOV, NEGLIGIBLE
 
-__all__ = ["MIN_RESIDUAL", "LOG_STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
+__all__ = ["LOG_STEP", "Direction", "Measure", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
@@ -30,17 +31,7 @@ Direction = Callable[[float], Groups]
 Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 """Observables of a state by name."""
 
-LOG_STEP = 1e-4  # Step of the logarithm of a group in the central differences of the residual, whose error is its square
-
-MAX_GAP_CHANGE = 1e-4  # Largest relative change of the gap in the differences of observables
-
-# Preconditioned residual that GMRES leaves in one round: the preconditioner is in single precision, and the next round removes
-# the error that it leaves.
-GMRES_RTOL = 1e-6
-
-MAX_KRYLOV_STEPS = 90  # GMRES steps of one round
-
-MIN_RESIDUAL = 1e-18  # Residual that all rounds together leave
+LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences, whose error is its square
 
 
 def log_derivatives(
@@ -50,7 +41,7 @@ def log_derivatives(
     preconditioner: Callable[[Linear, Any], Apply],
     kept: Any = None,
     measure: Measure = observables,
-    tolerance: float = MIN_RESIDUAL,
+    tolerance: float = EPSILON,
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions."""
     linear = equations.linear(y)
@@ -70,7 +61,7 @@ def log_derivatives(
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])
-        size = MAX_GAP_CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
+        size = LOG_STEP / max(1.0, float(np.abs(dy.gap / y.gap).max()))
         at = [beside(equations, moved(sign * size)) for sign in (1.0, -1.0)]
         values = [
             measure(each, each.with_same_active_set(y.moved(dy, sign * size), y))
@@ -81,16 +72,16 @@ def log_derivatives(
     return {name: np.array(column) for name, column in columns.items()}
 
 
-def solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float = MIN_RESIDUAL) -> Array | None:
+def solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float = EPSILON) -> Array | None:
     """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
     x, rest, left = np.zeros_like(right), right, 1.0
     while True:
-        here = max(GMRES_RTOL, tolerance / left)
-        found = gmres(linear.product, preconditioner, rest, here, MAX_KRYLOV_STEPS)
-        if not found.left <= 100 * here:
+        here = max(LOG_STEP, tolerance / left)  # the preconditioner is in single precision: the next round removes its error
+        found = gmres(linear.product, preconditioner, rest, here, MAX_KRYLOV)
+        if not found.left <= here / NEGLIGIBLE:
             return None
         x, left = x + found.x, left * here
-        if left <= tolerance * (1.0 + 1e-9):
+        if left <= tolerance * (1.0 + HALF_DIGITS):
             return x
         rest = right - linear.product(x)
 

@@ -22,8 +22,9 @@ Source: ours; the generalised Reynolds equation in integrals of the fluidity is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple, cast
 
@@ -33,35 +34,16 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.dual import with_slope
-
-QUADRATURE_POINTS = (14, 20, 28, 40, 56)  # Gauss points on each side of the smallest stress that are tried for a law
-
-QUADRATURE_RTOL = 1e-8  # Relative difference of SAMPLE_STATES to the next rule but one from which a rule serves
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, LEAST_DEGREE, MAX_REFINEMENTS, MAX_STEPS, NEGLIGIBLE
 
 # Columns at which rules are compared: slips, shear rates at the walls by the pressure gradient alone, angles between them.
 SAMPLE_STATES = np.array(
     [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
 ).T
 
-LOG_SPACING = 0.0025  # Spacing of a law's table in ln(stress): cubics between its points are good to 1e-13
+LOG_SPACING = HALF_DIGITS ** (1 / 3)  # Spacing of a law's table in ln(stress): its cubics err with the fourth power
 
-NEWTONIAN_BELOW = 1e-9  # Lowest shear rate of the table over that at which shear-thinning begins: constant viscosity below
-
-NEWTONIAN_BELOW_WITHOUT_PLATEAU = 1e-60  # Lowest shear rate of the table for laws that thin at every rate
-
-MAX_RATE = 1e13  # Highest shear rate of the table
-
-CONVERGED_STEP = 1e-7  # Size of the last step over the largest stress: the next would be below rounding
-
-FIRST_ORDER_STRESS_CHANGE = 0.3  # Change of the stress over the largest stress up to which first order is a good start
-
-MAX_STRESS_STEP = 1.0  # Largest Newton step over the largest stress
-
-OVERSHOOT_FRACTION = 0.9  # Slope of the potential after a step over that before, above which the step is shortened
-
-MAX_STEPS = 80  # Most Newton steps of a column
-
-TINY = 1e-150  # Smallest divisor: its square is a normal number
+TINY = math.sqrt(np.finfo(float).tiny)  # Smallest divisor, and lowest rate of a law without a plateau: its square is normal
 
 
 @lru_cache(maxsize=16)
@@ -79,7 +61,7 @@ class FlowCurve:
     lowest: float  # Logarithm of the smallest stress of the table
     log_fluidity: Array  # `ln(x/g)` at even spacings of `ln g`
     slopes: Array  # Its derivative by `ln g`, constant beyond both ends
-    points: int = QUADRATURE_POINTS[0]  # Of the rule across the film that the law needs
+    points: int  # Gauss points of the rule on each side of the smallest stress that the law needs
 
     def __call__(self, square: Array) -> tuple[Array, Array]:
         """Return ``x/g`` and the derivative of its logarithm by ``ln g`` at squares of stresses."""
@@ -100,19 +82,27 @@ class FlowCurve:
 @lru_cache(maxsize=32)
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
-    ends = np.array([law.plateau * NEWTONIAN_BELOW if law.plateau > 0 else NEWTONIAN_BELOW_WITHOUT_PLATEAU, MAX_RATE])
+    # Below a plateau the viscosity is constant to the square of the rate.
+    ends = np.array([law.plateau * HALF_DIGITS if law.plateau > 0 else TINY, 1 / EPSILON])
     lowest, highest = np.log(law.stress(ends))
     stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
     rate = law.rate(stress)
-    curve = FlowCurve(float(lowest), np.log(rate / stress), stress / (rate * with_slope(law.stress, rate)[1]) - 1)
+    log_fluidity, slopes = np.log(rate / stress), stress / (rate * with_slope(law.stress, rate)[1]) - 1
     slip, wall, angle = SAMPLE_STATES
     slope = 2 * law.stress(wall) * np.stack([np.cos(angle), np.sin(angle)])
-    sample = slope, np.stack([slip, np.zeros_like(slip)])
-    found = [_solved(law, replace(curve, points=points), *sample).carried for points in QUADRATURE_POINTS]
-    for coarse, fine, points in zip(found, found[2:], QUADRATURE_POINTS, strict=False):
-        if (np.hypot(*(coarse - fine)) <= QUADRATURE_RTOL * np.hypot(*fine)).all():
-            return replace(curve, points=points)
-    return replace(curve, points=QUADRATURE_POINTS[-1])
+    slip = np.stack([slip, np.zeros_like(slip)])
+
+    def with_points(points: int) -> FlowCurve:
+        return FlowCurve(float(lowest), log_fluidity, slopes, points)
+
+    def carried(points: int) -> Array:
+        return _solved(law, with_points(points), slope, slip).carried
+
+    for points in range(2 * LEAST_DEGREE, MAX_REFINEMENTS * LEAST_DEGREE, LEAST_DEGREE):
+        fine = carried(2 * points)
+        if (np.hypot(*(carried(points) - fine)) <= HALF_DIGITS * np.hypot(*fine)).all():
+            break
+    return with_points(points)
 
 
 class Column(NamedTuple):
@@ -147,14 +137,14 @@ def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Ar
     for _ in range(MAX_STEPS):
         if not left.size:
             break
-        done = (here.size < CONVERGED_STEP) & (part == 1.0)
+        done = (here.size < HALF_DIGITS) & (part == 1.0)
         if done.any():
             found[:, left[done]] = here.of(done).ending()
             left, here, part = left[~done], here.of(~done), part[~done]
             continue
         there = _Integrals.at(curve, here.mean + part * here.step, here.slope, here.slip)
         before, after = (here.missing * here.step).sum(axis=0), -(there.missing * here.step).sum(axis=0)
-        too_far = ~(after <= OVERSHOOT_FRACTION * before)
+        too_far = ~(after <= (1 - NEGLIGIBLE) * before)
         part = np.where(too_far, 0.5 * part, 1.0)
         here = there if not too_far.any() else here.where(too_far, there)
     return Column(found[:2], found[2:4], found[4:7], found[7:11].reshape(2, 2, n), found[11:])
@@ -210,7 +200,7 @@ class _Integrals(NamedTuple):
         largest = np.sqrt(np.maximum(*(((mean + side * slope) ** 2).sum(axis=0) for side in (-0.5, 0.5))))
         size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
         size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
-        step = step * np.minimum(1.0, MAX_STRESS_STEP / np.maximum(size, TINY))
+        step = step * np.minimum(1.0, 1.0 / np.maximum(size, TINY))
         zeroth, first, second = matrices
         return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, zeroth, first, second, missing, step, size)
 

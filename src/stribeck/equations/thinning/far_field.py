@@ -26,11 +26,8 @@ from stribeck._types import Array
 from stribeck.equations.thinning.column import column, mean_wall_stress
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
-from stribeck.numerics.settings import EPSILON, LEAST_DEGREE, MAX_ROUNDS, NEGLIGIBLE, SAFETY
+from stribeck.numerics.settings import HALF_DIGITS, LEAST_DEGREE, MAX_STEPS, NEGLIGIBLE, SAFETY
 from stribeck.quantities.lazy import cached_property
-
-# The lost fraction of the viscosity is a difference from one: half of its digits tell where it is this small.
-UNSEEN_LOSS = math.sqrt(EPSILON)
 
 
 def lost(law: RateLaw, rate: float) -> float:
@@ -75,7 +72,7 @@ class FarThinned:
     def power(self) -> float:
         """The power of the rate with which it falls."""
         rate = 1.0
-        while lost(self.law, rate) > UNSEEN_LOSS:
+        while lost(self.law, rate) > HALF_DIGITS:
             rate *= NEGLIGIBLE
         return math.log(lost(self.law, rate / NEGLIGIBLE) / lost(self.law, rate)) / -math.log(NEGLIGIBLE)
 
@@ -91,7 +88,7 @@ class FarThinned:
     @property
     def drag(self) -> float:
         """An estimate of the drag that is lost beyond the rim."""
-        return math.pi / 3.0 * self.speed * self.lost / self.power if self.lost > UNSEEN_LOSS else 0.0
+        return math.pi / 3.0 * self.speed * self.lost / self.power if self.lost > HALF_DIGITS else 0.0
 
     def friction_error(self, offset: float) -> float:
         """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
@@ -138,7 +135,7 @@ class FarThinned:
         plain = 0.8 * speed * np.stack([3.0 * along[0], -along[1]])
         slip = (-(2.0 * speed * law.time * self.slide) / scale * along).reshape(2, -1)
         found, start = np.zeros((v.size, count)), None
-        for _ in range(MAX_ROUNDS):
+        for _ in range(MAX_STEPS):
             before = found
             gradient = plain + np.stack([(along_r @ found - 3.0 * found) @ cosines.T, -(found * modes) @ sines.T])
             flow = column(law, (3.0 * law.time / scale * gradient).reshape(2, -1), slip, start)
@@ -147,7 +144,7 @@ class FarThinned:
             leaving = 3.0 * radial + along_r @ radial + modes * angular
             found = np.zeros_like(before)
             found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
-            if np.abs(found - before).max() <= UNSEEN_LOSS * speed:
+            if np.abs(found - before).max() <= HALF_DIGITS * speed:
                 break
         shear = mean_wall_stress(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
         shear *= 0.5 * scale / (law.time * speed) if self.slide else 1.0

@@ -21,16 +21,12 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Fluxes, FluxSlopes, OutsideFilm, weights_of
-from stribeck.equations.thinning.column import (
-    FIRST_ORDER_STRESS_CHANGE,
-    Column,
-    column,
-    mean_wall_stress,
-)
-from stribeck.equations.thinning.far_field import UNSEEN_LOSS, FarThinned
+from stribeck.equations.thinning.column import Column, column, mean_wall_stress
+from stribeck.equations.thinning.far_field import FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.dual import with_slope
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.settings import HALF_DIGITS
 
 
 class _Local(NamedTuple):
@@ -59,7 +55,7 @@ class ThinningPlane:
     def outside_film(self, speed: float, mesh: PolarMesh) -> OutsideFilm | None:
         """Return the film outside the rim less one of constant viscosity; None where the fluid is Newtonian there."""
         found = FarThinned(self.film.law, self.film.slide, speed, mesh.rim, mesh.modes)
-        return found if found.lost > UNSEEN_LOSS else None
+        return found if found.lost > HALF_DIGITS else None
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
@@ -185,5 +181,5 @@ def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
     change = slope - last.slope
     step = _symmetric(last.flow.compliance, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
     largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
-    far = ~(np.hypot(*step) + np.hypot(*change) < FIRST_ORDER_STRESS_CHANGE * largest)
+    far = ~(np.hypot(*step) + np.hypot(*change) < largest)
     return None if far.any() else last.flow.mean + step

@@ -11,23 +11,19 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.model import Model
 from stribeck.equations.cavities.active_set import iterate_cavitated
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
 from stribeck.equations.cavities.system import just_above
-from stribeck.equations.point.iteration import MAX_BAND, Iterated, iterate
-from stribeck.equations.point.mesh_choice import MAX_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
+from stribeck.equations.point.iteration import Iterated, iterate
+from stribeck.equations.point.mesh_choice import MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Operators, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.settings import MAX_BYTES, MAX_STEPS
 from stribeck.quantities.outcome import Outcome
-
-THINNING_BAND = 8  # Angular modes that the preconditioner couples where a fluid thins
-NEWTONIAN_SPEED_RATIO = 0.8  # Speed of an equally thick Newtonian film over the actual one above which a film hardly thins
-CAVITATION_BAND_CUT = 3  # Modes fewer in a cavitated film's band: cavitated nodes take most of the GMRES steps anyhow
-COUPLED_BELOW_SPEED = 1e-2  # The band is not cut below this speed in smooth contacts: GMRES would take 3 to 10 times the steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,18 +85,6 @@ class Level:
         return np.asarray(self.equations.law.pressure(self.unknowns.gap))
 
 
-def band_for(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> int:
-    """Return the band of angular modes that the preconditioner keeps."""
-    # Thin films of smooth contacts couple more modes.
-    like = film_speed(speed, model)
-    band = 5 if like > NEWTONIAN_SPEED_RATIO * speed else THINNING_BAND
-    is_smooth = float(np.max(law.decay_length)) <= like**0.6
-    if is_smooth and like < 1e-3:
-        band = max(band, int(min(MAX_BAND, round(5.0 * (1e-3 / like) ** 0.17))))
-    narrows = model.cavitation is not Cavitation.NONE and not (is_smooth and like < COUPLED_BELOW_SPEED)
-    return band - CAVITATION_BAND_CUT if narrows else band
-
-
 def transfer(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
     """Return unknowns on another mesh, with nodes cavitated where the nearest old one has the pressure ``least``."""
     # Beyond the rim of the old mesh the gap grows as r**2 and the pressure falls as r**-3.
@@ -126,12 +110,10 @@ def solve_level(
     start_mesh: PolarMesh,
     tolerance: float,
     kept: Any = None,
-    max_steps: int = 40,
-    largest: float = MAX_BYTES,
+    max_steps: int = MAX_STEPS,
 ) -> Level:
     """Return the state on a mesh, from unknowns on any mesh."""
-    band = band_for(speed, law, resolution.model)
-    if bytes_of(resolution, band) > largest:
+    if bytes_of(resolution) > MAX_BYTES:
         raise MeshTooLargeError
     operators = operators_of(resolution)
     kind, iteration = PROBLEMS[resolution.model.cavitation]
@@ -141,7 +123,7 @@ def solve_level(
     guess = transfer(start, start_mesh, operators.mesh, equations.least)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
-    return Level(resolution, equations, iteration(equations, guess, tolerance, band, kept, max_steps))
+    return Level(resolution, equations, iteration(equations, guess, tolerance, kept, max_steps))
 
 
 # The equations and the iteration that solves them, by cavitation.

@@ -16,44 +16,37 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
-from stribeck.equations.cavities.active_set import STRICT_RTOL
 from stribeck.equations.cavities.system import just_above
 from stribeck.equations.point.mesh_choice import (
-    MAX_BYTES,
-    MAX_MODES,
-    MODES_RATIO,
-    RIGID_CAVITATED,
     MeshTooLargeError,
     Resolution,
     bytes_of,
     fits,
-    modes_of_edge,
+    in_tens,
     operators_of,
     resolution,
+    rigid_height,
     split_where_poor,
 )
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import (
-    DEGREE_LOG_GAIN,
-    DROP_FACTORS_ABOVE_BYTES,
-    FIRST_DEGREES,
-    FIRST_ERROR,
-    FIRST_MODES,
+    COARSE_RTOL,
+    LEAST_DEGREE,
+    LEAST_MODES,
+    LEGENDRE_DECAY,
+    MAX_BYTES,
     MAX_DEGREE,
+    MAX_MODES,
     MAX_REFINEMENTS,
-    MAX_STEPS_FROM_NEIGHBOUR,
-    MAX_STEPS_NEW_MESH,
     MINIMUM_RTOL_FACTOR,
-    RIGID_START_SPEED,
-    ROUNDING_RTOL_FRACTION,
-    SMALL_TAIL,
-    SMOOTH_BELOW_PRESSURE,
+    MODES_RATIO,
+    NEGLIGIBLE,
 )
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.estimate import Pair, pair_of
-from stribeck.solver.point.level import PROBLEMS, Level, band_for, extrapolate_levels, solve_level, transfer
+from stribeck.solver.point.level import PROBLEMS, Level, extrapolate_levels, solve_level, transfer
 from stribeck.solver.refinement import newton_tolerance
 
 __all__ = ["follow", "holds", "is_cavitated", "refine"]
@@ -75,22 +68,22 @@ def refine(
 ) -> Pair | Outcome:
     """Return a state that holds a tolerance, or the best found, from a coarse state or from a ``known`` one."""
     rtol = max(rtol, PROBLEMS[model.cavitation][0].finest)
-    tolerance, band = level_tolerance(rtol, model), band_for(speed, law, model)
+    tolerance = newton_tolerance(rtol)
     best, coarse, failure = known, None, Outcome.REFINEMENT_LIMIT
     try:
         if known is None:
             wanted, start, mesh = first_mesh(speed, law, guess, rtol, model)
         else:
-            (wanted, coarse), start, mesh = next_mesh(known, band), known.fine.unknowns, known.fine.mesh
+            (wanted, coarse), start, mesh = next_mesh(known), known.fine.unknowns, known.fine.mesh
         for _ in range(MAX_REFINEMENTS):
             if coarse is None:
-                coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance, max_steps=MAX_STEPS_NEW_MESH)
+                coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance)
                 start, mesh = coarse.unknowns, coarse.mesh
-            if coarse.outcome.ok and bytes_of(wanted, band) > DROP_FACTORS_ABOVE_BYTES:
+            if coarse.outcome.ok and bytes_of(wanted) > NEGLIGIBLE * MAX_BYTES:
                 coarse, best = without_preconditioner(coarse), best and best.without_operators()
             fine = coarse
             if coarse.outcome.ok:
-                fine = solve_level(wanted, speed, law, start, mesh, tolerance, max_steps=MAX_STEPS_NEW_MESH)
+                fine = solve_level(wanted, speed, law, start, mesh, tolerance)
             if not fine.outcome.ok:
                 failure = fine.outcome
                 break
@@ -100,7 +93,7 @@ def refine(
             if holds(pair, rtol):
                 return pair
             before, start, mesh = wanted, fine.unknowns, fine.mesh
-            wanted, coarse = next_mesh(pair, band)
+            wanted, coarse = next_mesh(pair)
             if wanted == before:
                 break
     except MeshTooLargeError as problem:
@@ -111,13 +104,7 @@ def refine(
     if best.total <= rtol:
         return best
     lost = float(np.finfo(float).eps) / best.scales["J_pcx"]
-    return replace(best, outcome=Outcome.ROUNDING if lost > ROUNDING_RTOL_FRACTION * rtol else failure)
-
-
-def level_tolerance(rtol: float, model: Model) -> float:
-    """Return the relative error of the gap that the iteration may leave."""
-    strictest = math.inf if model.cavitation is Cavitation.NONE else STRICT_RTOL
-    return min(newton_tolerance(rtol), strictest)
+    return replace(best, outcome=Outcome.ROUNDING if lost > NEGLIGIBLE * rtol else failure)
 
 
 def without_preconditioner(level: Level) -> Level:
@@ -129,40 +116,36 @@ def first_mesh(
     speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model
 ) -> tuple[Resolution, Unknowns, PolarMesh]:
     """Return the first mesh from cold, and a guess with its mesh."""
-    breaks = model.cavitation is not Cavitation.NONE
     guess = solve_on_split_panels(guess, speed, law)
     start, mesh = guess.unknowns, guess.mesh
-    if not breaks:
+    if model.cavitation is Cavitation.NONE:
         amplitudes = modal_amplitudes(guess)
-        degree = math.ceil(math.log(FIRST_ERROR / rtol) / DEGREE_LOG_GAIN)
-        of_minimum = 0.1 * min(1.0, MINIMUM_RTOL_FACTOR * rtol)
-        modes = max(1.4 * modes_for(amplitudes, math.sqrt(rtol)), modes_for(amplitudes, 0.1 * of_minimum))
-        if guess.contact_pressure.max() < SMOOTH_BELOW_PRESSURE:
-            modes = max(modes, modes_of_edge(speed, law, model, of_minimum))
+        # Pressures at an edge fall by this factor a degree.
+        degree = math.ceil(math.log(LEGENDRE_DECAY / rtol) / math.log(LEGENDRE_DECAY))
+        of_minimum = NEGLIGIBLE * min(1.0, MINIMUM_RTOL_FACTOR * rtol)
+        modes = max(MODES_RATIO * modes_for(amplitudes, math.sqrt(rtol)), modes_for(amplitudes, NEGLIGIBLE * of_minimum))
         wanted = replace(
             guess.resolution,
-            degree=min(MAX_DEGREE, max(FIRST_DEGREES[0], degree)),
-            modes=2 * math.ceil(0.5 * max(modes, FIRST_MODES[0])),
+            degree=min(MAX_DEGREE, max(LEAST_DEGREE, degree)),
+            modes=2 * math.ceil(0.5 * max(modes, LEAST_MODES)),
         )
-        return limit_modes(wanted, band_for(speed, law, model)), start, mesh
-    wanted = resolution(speed, law, FIRST_DEGREES[1], FIRST_MODES[1], model)
-    if modes_of_edge(speed, law, model, 0.1) > wanted.coarser().modes:  # so few would tell nothing of the error
-        wanted = wanted.finer()
+        return limit_modes(wanted), start, mesh
+    wanted = resolution(speed, law, LEAST_DEGREE + 1, in_tens(LEAST_MODES), model)
     if wanted.doublings == guess.resolution.doublings:
         wanted = replace(wanted, splits=guess.resolution.splits)
-    if speed >= RIGID_START_SPEED and model.cavitation is Cavitation.EXIT:
+    if rigid_height(speed) > 1.0 and model.cavitation is Cavitation.EXIT:
         mesh = operators_of(wanted).mesh
         start = guess_from_rigid_ball(mesh, speed)
     if guess.resolution.model.film != model.film:  # the film ruptures first, then the fluid changes
         plain = replace(wanted.coarser(), model=replace(model, film=guess.resolution.model.film))
-        first = solve_level(plain, speed, law, start, mesh, level_tolerance(rtol, model), max_steps=MAX_STEPS_NEW_MESH)
+        first = solve_level(plain, speed, law, start, mesh, newton_tolerance(rtol))
         start, mesh = (first.unknowns, first.mesh) if first.outcome.ok else (start, mesh)
     return wanted, start, mesh
 
 
 def guess_from_rigid_ball(mesh: PolarMesh, speed: float) -> Unknowns:
     """Return the guess from a rigid ball, whose film has half the pressure of its full film."""
-    offset = RIGID_CAVITATED * speed**2
+    offset = rigid_height(speed)
     gap = np.tile(offset + 0.5 * mesh.radii**2, (mesh.modes, 1))
     x = mesh.radii * np.cos(mesh.angles)[:, None]
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
@@ -174,7 +157,7 @@ def solve_on_split_panels(guess: Level, speed: float, law: ContactLaw) -> Level:
         better = improved_panels(guess)
         if better == guess.resolution:
             break
-        on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
+        on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, NEGLIGIBLE * COARSE_RTOL)
         if not on_more.outcome.ok:
             break
         guess = on_more
@@ -186,10 +169,10 @@ def improved_panels(level: Level) -> Resolution:
     # The pressure of a film has a kink at its line of rupture, which moves from angle to angle: no panel resolves it.
     breaks = not level.resolution.is_full
     fluid = np.zeros_like(level.unknowns.fluid) if breaks else level.unknowns.fluid
-    return split_where_poor(level.resolution, level.mesh, fluid, level.contact_pressure, level.unknowns.gap)
+    return split_where_poor(level.resolution, level.mesh, fluid, level.contact_pressure)
 
 
-def next_mesh(pair: Pair, band: int) -> tuple[Resolution, Level | None]:
+def next_mesh(pair: Pair) -> tuple[Resolution, Level | None]:
     """Return the next finer mesh within the limits, and the state on its coarser companion if that is solved already."""
     now = pair.fine.resolution
     wanted = improved_panels(pair.fine)
@@ -198,9 +181,9 @@ def next_mesh(pair: Pair, band: int) -> tuple[Resolution, Level | None]:
     finer = now.finer()
     if now.is_full:
         radial, angular = gap_tails(pair.fine)
-        degree = now.degree if radial < SMALL_TAIL * angular else max(now.degree, min(finer.degree, MAX_DEGREE))
-        finer = replace(finer, degree=degree, modes=now.modes if angular < SMALL_TAIL * radial else finer.modes)
-    limited = limit_modes(finer, band)
+        degree = now.degree if radial < NEGLIGIBLE * angular else max(now.degree, min(finer.degree, MAX_DEGREE))
+        finer = replace(finer, degree=degree, modes=now.modes if angular < NEGLIGIBLE * radial else finer.modes)
+    limited = limit_modes(finer)
     if limited.modes < now.modes:
         return now, None
     return limited, pair.fine if now.is_full and limited == now.finer() else None
@@ -213,10 +196,10 @@ def gap_tails(level: Level) -> tuple[float, float]:
     return float(np.abs(mesh.legendre(log_gap)[:, near, -2:]).max()), float(modal_amplitudes(level)[-2:].max())
 
 
-def limit_modes(wanted: Resolution, band: int) -> Resolution:
+def limit_modes(wanted: Resolution) -> Resolution:
     """Return a resolution with at most as many modes as memory and :data:`MAX_MODES` allow."""
     wanted = replace(wanted, modes=min(wanted.modes, MAX_MODES))
-    while bytes_of(wanted, band) > MAX_BYTES and wanted.modes > 16:
+    while bytes_of(wanted) > MAX_BYTES and wanted.modes > LEAST_MODES:
         wanted = replace(wanted, modes=2 * ((wanted.modes - 1) // 2))
     return wanted
 
@@ -254,30 +237,29 @@ def follow(
     """
     rtol = max(rtol, neighbour.fine.equations.finest)
     now, weights = neighbour.fine.resolution, [weight for weight, _ in line]
-    tolerance, wanted = level_tolerance(rtol, now.model), mesh_for_neighbour(speed, law, neighbour, rtol)
+    tolerance, wanted = newton_tolerance(rtol), mesh_for_neighbour(speed, law, neighbour, rtol)
     start, mesh = predicted, neighbour.fine.mesh
     if start is None:
         start = extrapolate_levels(weights, [each.fine for _, each in line], mesh) if line else neighbour.fine.unknowns
     if wanted != now:
-        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance, max_steps=MAX_STEPS_NEW_MESH)
+        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance)
         if not coarse.outcome.ok:
             return None
-        fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance, max_steps=MAX_STEPS_NEW_MESH)
+        fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
     old = neighbour.coarse
     if predicted is not None:
         guess = transfer(predicted, mesh, old.mesh)
     else:
         guess = extrapolate_levels(weights, [each.coarse for _, each in line], old.mesh) if line else old.unknowns
-    steps = MAX_STEPS_FROM_NEIGHBOUR
-    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, steps)
+    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner)
     if not coarse.outcome.ok:
         return None
     if not (line and not now.is_full):
         start = guess_from_coarse(coarse, neighbour)
     # A state that is predicted from afar is to be expanded with the factors of its own Jacobian.
     kept = None if predicted is not None else neighbour.fine.iterated.preconditioner
-    fine = solve_level(now, speed, law, start, mesh, tolerance, kept, steps)
+    fine = solve_level(now, speed, law, start, mesh, tolerance, kept)
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
@@ -306,7 +288,7 @@ def mesh_for_neighbour(speed: float, law: ContactLaw, neighbour: Pair, rtol: flo
     wanted = now
     if is_waste:
         leaner = now.leaner()
-        degree, modes = max(leaner.degree, FIRST_DEGREES[breaks]), max(leaner.modes, FIRST_MODES[breaks])
+        degree, modes = max(leaner.degree, LEAST_DEGREE + breaks), max(leaner.modes, LEAST_MODES)
         wanted = replace(now, degree=min(now.degree, degree), modes=min(now.modes, modes))
     if fits(now, speed, law):
         return wanted

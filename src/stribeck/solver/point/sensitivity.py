@@ -16,19 +16,19 @@ from stribeck.equations.cavities.capacitance import Capacitance
 from stribeck.equations.cavities.system import CavitatedLinear
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.sensitivity import MIN_RESIDUAL, Direction, Measure, log_derivatives
+from stribeck.equations.point.sensitivity import Direction, Measure, log_derivatives
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.krylov import Apply
+from stribeck.numerics.settings import EPSILON, MAX_BAND
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
-from stribeck.solver.point.level import band_for
 from stribeck.solver.point.state import PointState
 
 __all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
 
 
 def state_derivatives(
-    state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables, tolerance: float = MIN_RESIDUAL
+    state: PointState, by: Sequence[str] = GROUPS, measure: Measure = observables, tolerance: float = EPSILON
 ) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness)."""
     groups = state.groups
@@ -42,18 +42,17 @@ def state_derivatives(
 
 
 def derivatives_along(
-    state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = MIN_RESIDUAL
+    state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = EPSILON
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions, to a relative tolerance."""
     pair = state.work
     assert isinstance(pair, Pair)
     level = pair.fine
-    band = band_for(level.equations.speed, level.equations.law)
 
     def preconditioner(linear: Linear, kept: Any) -> Apply:
         if not isinstance(linear, CavitatedLinear):
-            return BandedModes(linear, band) if kept is None else kept
-        found = Capacitance(BandedModes(linear, band), level.mesh, linear.cavitated.shape) if kept is None else kept
+            return BandedModes(linear, MAX_BAND) if kept is None else kept
+        found = Capacitance(BandedModes(linear, MAX_BAND), level.mesh, linear.cavitated.shape) if kept is None else kept
         return found.of(linear)
 
     kept = level.iterated.preconditioner

@@ -27,9 +27,10 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.numerics.settings import MAX_DEGREE, MAX_RTOL, MIN_RTOL_OF_BALLS, NEGLIGIBLE, SAFETY
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solids.plane import BODIES
+from stribeck.solids.plane import BODIES, MIN_LAYER_THICKNESS
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cavities.reforming import follow_reforming, full_model, refine_reforming
 from stribeck.solver.point.estimate import Pair, pair_of
@@ -39,11 +40,8 @@ from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import PointFields, PointState
 from stribeck.solver.refinement import newton_tolerance
 
-RTOL_RANGE = (1e-8, 1e-2)  # Smallest and largest tolerance for a ball
-AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)  # Degrees of the panels tried for contacts at rest, a problem in the radius alone
-MIN_LAYER_THICKNESS = 0.2  # Thinnest layer under a ball, in Hertz radii of a half-space: thinner ones are not tested
-COLD_START_WIDTH_RATIO = 1.5  # Ratio of edge widths to a neighbour's above which a start from it costs up to 5 cold starts
-MIN_ESTIMATE_RTOL_FRACTION = 0.01  # Least stated error over rtol
+RTOL_RANGE = (MIN_RTOL_OF_BALLS, MAX_RTOL)
+MIN_ESTIMATE_RTOL_FRACTION = NEGLIGIBLE**2  # Least stated error over rtol
 
 
 def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
@@ -117,7 +115,7 @@ def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
     """Return whether a neighbour is so far that its panels do not serve and a cold start is cheaper."""
     fine, model = neighbour.fine, neighbour.fine.resolution.model
     here, there = layout(speed, law, model)[0], layout(fine.equations.speed, fine.equations.law, model)[0]
-    return max(here, there) > COLD_START_WIDTH_RATIO * min(here, there) and not fits(fine.resolution, speed, law)
+    return max(here, there) > SAFETY * min(here, there) and not fits(fine.resolution, speed, law)
 
 
 def same_kinds(model: Model, other: Model) -> bool:
@@ -244,7 +242,7 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
     coarse: Level | None = None
     outcome = Outcome.REFINEMENT_LIMIT
     found: Pair | None = None
-    for degree in AT_REST_DEGREES:
+    for degree in range(MAX_DEGREE // 2, MAX_DEGREE + 2, 2):  # a problem in the radius alone
         fine = _dry_level(law, degree, newton_tolerance(rtol), model)
         if not fine.outcome.ok:
             # A gap of order kappa is a difference of terms of order one.

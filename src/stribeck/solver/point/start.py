@@ -30,22 +30,11 @@ from stribeck.equations.point.mesh_choice import (
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.blend import blend
 from stribeck.numerics.continuation import Steps, extrapolation_weights, march
+from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, MAX_REFINEMENTS, NEGLIGIBLE, SAFETY
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
-DEGREE = 8  # Degree of the panels of a first state
-
-TOLERANCE = 1e-4  # Relative error of the gap that its iteration may leave
-
-MODES = 8  # Angular modes of a first state: refinement reads off it how many more a tolerance needs
-
-MAX_STEPS = 25  # Newton steps after which a first guess is given up
-
-CUSHION_STEEPNESS = 4.0  # Film thickness over the decay of the cushion that stands for the film in a first guess
-
-THICKER = 1.5  # Film thickness of a second guess over that of the first
-
-MAX_PANEL_SPLITS = 8  # Most times that the panels of a first guess are split
+TOLERANCE = NEGLIGIBLE * COARSE_RTOL  # Relative error of the gap that the iteration of a first state may leave
 
 HOMOTOPY_STEPS = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own flow
 
@@ -60,13 +49,18 @@ class WithCushion:
     constant_decay: bool = False
 
     @property
+    def own_decay(self) -> float:
+        """The decay of the cushion: what flows in a film goes as the third power of its thickness."""
+        return self.film / 3.0
+
+    @property
     def decay_length(self) -> float:
         """The longer of the two decays."""
-        return max(float(np.max(self.law.decay_length)), self.film / CUSHION_STEEPNESS)
+        return max(float(np.max(self.law.decay_length)), self.own_decay)
 
     def cushion(self, gap: Array) -> Array:
         """Return the pressure of the cushion, one at the film thickness."""
-        return np.asarray(np.exp(CUSHION_STEEPNESS * (1.0 - gap / self.film)))
+        return np.asarray(np.exp((self.film - gap) / self.own_decay))
 
     def pressure(self, gap: Any) -> Any:
         """Return the sum of both pressures."""
@@ -74,7 +68,7 @@ class WithCushion:
 
     def log_pressure(self, gap: Any) -> Any:
         """Return its logarithm."""
-        return np.logaddexp(self.law.log_pressure(gap), CUSHION_STEEPNESS * (1.0 - gap / self.film))
+        return np.logaddexp(self.law.log_pressure(gap), (self.film - gap) / self.own_decay)
 
 
 def first_guess(
@@ -82,9 +76,9 @@ def first_guess(
 ) -> tuple[Resolution, Unknowns] | None:
     """Return the first guess and a mesh for it; None if the dry contact fails."""
     cushioned = WithCushion(law, thickness_ratio * film_scale(film_speed(speed, found.model)))
-    for _ in range(MAX_PANEL_SPLITS):
+    for _ in range(MAX_REFINEMENTS):
         solved, operators = found, operators_of(found)
-        dry = dry_contact(operators, cushioned, 1e-6)
+        dry = dry_contact(operators, cushioned, TOLERANCE)
         if not dry.outcome.ok or not dry.gap.min() > 0:
             return None
         fluid = cushioned.cushion(dry.gap)
@@ -113,18 +107,18 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
 
 
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    for thickness_ratio in (1.0, THICKER):
-        guess = first_guess(resolution(speed, law, DEGREE, MODES, model), speed, law, thickness_ratio)
+    for thickness_ratio in (1.0, SAFETY):
+        guess = first_guess(resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model), speed, law, thickness_ratio)
         if guess is not None:
             found, y = guess
-            yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
+            yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE)
 
 
 def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
     if model.film == BASE_MODEL.film:
         return
-    here = resolution(speed, law, DEGREE, MODES, model)
+    here = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model)
 
     def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
         if not history:
@@ -134,7 +128,7 @@ def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Lev
         on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=blend(model.film, part)))
         mesh = operators_of(on).mesh
         guess = extrapolate_levels(weights, [level for _, level in history], mesh)
-        return solve_level(on, speed, law, guess, mesh, TOLERANCE, max_steps=12)
+        return solve_level(on, speed, law, guess, mesh, TOLERANCE)
 
     found = march(correct, 0.0, 1.0, HOMOTOPY_STEPS)
     if found.outcome.ok:
