@@ -108,9 +108,7 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
         "identity": abs(state.identity_error) / friction,
     }
     finer = finer_mesh(state)
-    row["needs"] = (
-        1e-6 * bytes_of(finer) if groups.speed else 0.0
-    )
+    row["needs"] = 1e-6 * bytes_of(finer) if groups.speed else 0.0
     exact = better_values(state, finer) if row["needs"] <= largest else None
     if exact is None:
         row["needs"] = row["needs"] if row["needs"] > largest else math.inf
