@@ -31,7 +31,6 @@ from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answerer, Pinned
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.history import History
-from stribeck.explorer.inputs.tables import MODEL_TABLES
 from stribeck.explorer.measured import fit_measured, read_measured
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
@@ -72,6 +71,11 @@ def saved_case(shown):
 
 def reopened(query, start=START):
     return url.decode(parse_qsl(query, keep_blank_values=True), start)
+
+
+def others(shown):
+    """Return the tables of a case beside those that any has."""
+    return shown.tables.keys() - {"title", "contact", "solver"}
 
 
 # --- inputs ---
@@ -282,8 +286,8 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
                 shown = inputs.from_case(case)
                 same_contact(shown.contact, case.contact)
                 assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
-                pin = replace(START, title="kept ~ once", definition="published"), replace(shown, title="law")
-                assert all(name in shown.tables for name in case.tables if name in MODEL_TABLES)
+                pin = START.replace(title="kept ~ once", definition="published"), shown.replace(title="law")
+                assert case.tables.keys() - shown.tables.keys() <= {"asperities"}  # whose numbers are others
                 opened = reopened(url.encode(shown, pin))
                 assert opened.problems == {}
                 assert opened.inputs == shown and opened.pins == pin
@@ -308,24 +312,22 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
 
 def test_what_an_address_cannot_mean_is_told(subtests):
     for query, sentence in [
-        ("tables=x", "tables = 'x' is not valid JSON."),
-        ("tables=[1]", "must be an object of geometry, law, surface, table, fluid"),
-        ('tables={"law":"table","table":{"file":"/etc/passwd"}}', "a link contains its rows instead"),
-        ('tables={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link contains its rows instead"),
-        ('tables={"law":"hertz"}', "law = 'hertz' must be one of"),
-        ('tables={"fit":{"free":["x"]}}', "which cannot be fitted"),
-        ('tables={"points":NaN}', "is not valid JSON"),
-        ('tables={"errors":{"load":-1.0}}', "no relative errors"),
-        ("rtol=2", "rtol"),
+        ("tables=x", "tables = 'x' is not a known key"),
+        ("law=table&table.file=/etc/passwd", "a link contains its rows instead"),
+        ("law=persson&surface.spectrum=x.csv", "a link contains its rows instead"),
+        ("law=hertz", "law = 'hertz' must be one of"),
+        ('fit.free=["x"]', "which cannot be fitted"),
+        ("curve.points=NaN", "must be a whole number"),
+        ("load=3+N/m+%2B-+-1+%25", "load = '3 N/m +- -1 %'"),
+        ("fluid=[", "fluid = '[' is not a known key"),
+        ("solver.rtol=2", "rtol"),
         ("pin=x", "in pin, x = '' is not a known key"),
-        ("pin=load%3D-1", "in pin, load = '-1 N/m' must be positive."),
-        ("pin=tables%3D%5B", "in pin, tables = '[' is not valid JSON"),
+        ("pin=load%3D-1", "in pin, load = -1 must be positive."),
     ]:
         with subtests.test(query=query, sentence=sentence):
             opened = reopened(query)
             assert opened.inputs == START
-            [(_, said)] = opened.problems.values()
-            assert sentence in said
+            assert any(sentence in said for _, said in opened.problems.values())
 
 
 def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
@@ -368,7 +370,7 @@ def test_a_cylinder_becomes_a_ball_of_the_same_pressure_and_back():
     assert isinstance(BALL.contact, sb.PointContact) and set(BALL.fields) == set(sb.PointContact.INPUTS.names)
     assert BALL.contact.hertz.pressure == pytest.approx(START.contact.hertz.pressure, rel=1e-12)
     back = choices.choose(BALL, "geometry", "line")
-    assert back.contact.load == pytest.approx(START.contact.load, rel=1e-12) and back.tables == ""
+    assert back.contact.load == pytest.approx(START.contact.load, rel=1e-12) and others(back) == set()
     assert back.contact.replace(load=START.contact.load) == START.contact
 
 
@@ -417,7 +419,7 @@ def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(subtests):
                 shown = choices.choose(START, name, value)
                 assert choices.list_of(shown, name)["value"] == ("" if name == "preset" else value)
                 check_link_and_saved_case(shown)
-                assert choices.choose(shown, name, choices.CHOICES[name].first).tables in ("", shown.tables)
+                assert others(choices.choose(shown, name, choices.CHOICES[name].first)) in (set(), others(shown))
 
 
 def test_a_law_that_is_chosen_presses_as_the_one_before_at_a_gap_of_one_h_rms():
@@ -436,8 +438,7 @@ def test_what_many_changes_lead_to_goes_through_link_and_saved_case(subtests):
             first = BALL if "ball" in start else START
             first = with_scan(first, read_scan("profile.csv", PROFILE)) if "surface" in start else first
             for _ in range(2 if "surface" in start else 12):  # the law of a surface takes half a second
-                shown = replace(
-                    first,
+                shown = first.replace(
                     abscissa=random.choice(["speed", "hersey"]).item(),
                     definition=random.choice(sorted(charts.DEFINITION_LABELS)).item(),
                 )
@@ -476,7 +477,7 @@ def test_a_preset_is_a_viscosity_and_a_fluid():
         and shown.contact.fluid == sb.fluids.PRESETS["pao-10"]().fluid
     )
     shown = choices.choose(shown, "preset", "water")
-    assert shown.contact.fluid == sb.fluids.Fluid() and shown.tables == ""
+    assert shown.contact.fluid == sb.fluids.Fluid() and others(shown) == set()
 
 
 def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
@@ -657,8 +658,8 @@ def test_an_address_brings_back_the_very_inputs_and_pins():
     moved = inputs.with_slider(inputs.with_slider(START, "load_group", -1.37), "speed", -3.41)
     moved = inputs.with_slider(moved, "roughness_group", -2.22)
     assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
-    moved = replace(inputs.in_unit(moved, "radius", "cm"), definition="balanced", abscissa="hersey", title="a & b = ü #1")
-    pins = [replace(START, title="load 3 N/m ~ twice", definition="published"), replace(moved, title="two")]
+    moved = inputs.in_unit(moved, "radius", "cm").replace(definition="balanced", abscissa="hersey", title="a & b = ü #1")
+    pins = [START.replace(title="load 3 N/m ~ twice", definition="published"), moved.replace(title="two")]
     opened = reopened(url.encode(moved, pins))
     assert opened.problems == {}
     assert opened.inputs == moved
@@ -666,11 +667,11 @@ def test_an_address_brings_back_the_very_inputs_and_pins():
 
 
 def test_an_address_says_what_is_wrong_with_it_and_takes_the_rest():
-    opened = reopened("load=-1+N/m&speed=2+mm/s&colour=red&definition=mine&pin=speed%3Dfast&radius=1")
+    opened = reopened("load=-1+N/m&speed=2+mm/s&colour=red&solver.definition=mine&pin=speed%3Dfast&radius=1+mm")
     assert opened.inputs.contact == START.contact.replace(speed="2 mm/s", radius="1 mm")
     assert opened.problems["load"] == ("-1 N/m", "load = '-1 N/m' must be positive.")
     assert "colour = 'red' is not a known key" in opened.problems["colour"][1]
-    assert "'balanced' or 'published'" in opened.problems["definition"][1]
+    assert "'balanced' or 'published'" in opened.problems["solver.definition"][1]
     assert "in pin, speed = 'fast'" in opened.problems["pin"][1]
 
 
@@ -682,16 +683,13 @@ def test_an_empty_address_is_the_start():
 
 
 def test_dry_friction_changes_no_film_of_a_ball(monkeypatch):
-    ball = replace(
-        START,
-        contact=sb.load_case(EXAMPLES / "rubber_ball.toml").contact.replace(cavitation="none", cavity_pressure=0.0),
-        rtol=1e-4,
-    )
+    rubber = inputs.from_case(sb.load_case(EXAMPLES / "rubber_ball.toml"))
+    ball = choices.choose(rubber, "cavitation", "none").replace(rtol=1e-4)
     model = Answerer()
     model(ball)
     for name in ("solve_from", "solve_cold"):  # not asked
         monkeypatch.setattr(f"stribeck.solver.neighbours.{name}", None)
-    drier = replace(ball, contact=ball.contact.replace(boundary_friction=0.3, speed=ball.contact.speed))
+    drier = ball.replace(boundary_friction=0.3, speed=ball.contact.speed)
     found = model(drier).solution
     assert found.contact == drier.contact
     assert found.friction().total == pytest.approx(sb.solve(drier.contact, rtol=1e-4).friction().total, rel=1e-4)
@@ -705,11 +703,10 @@ def test_the_colours_of_a_film_are_those_of_its_picture():
 
 
 def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
-    contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact.replace(speed="0.3 mm/s")
-    answer = Answerer()(replace(START, contact=contact))
+    answer = Answerer()(inputs.from_case(sb.load_case(EXAMPLES / "pdms_ball.toml")).replace(speed="0.3 mm/s"))
     assert answer.plane is not None
     drawn = charts.plane_chart(answer.plane, answer)
-    least = answer.solution.minimum_gap * contact.hertz.indentation
+    least = answer.solution.minimum_gap * answer.inputs.contact.hertz.indentation
     [film] = drawn["series"]
     assert film["low"] == math.log10(least) <= min(film["data"]) + 1e-3 and film["high"] >= max(film["data"]) - 1e-3
 
@@ -740,7 +737,7 @@ def test_the_numbers_are_those_of_solve_within_their_errors(subtests):
 def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(subtests):
     for cavitation, ends in [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])]:
         with subtests.test(cavitation=cavitation, ends=ends):
-            shown = choices.choose(replace(START, contact=START.contact.replace(speed="100 mm/s")), "cavitation", cavitation)
+            shown = choices.choose(START.replace(speed="100 mm/s"), "cavitation", cavitation)
             shown = choices.with_detail(shown, "cavitation", "cavity_pressure", "-10 kPa") if cavitation == "reform" else shown
             rows = {row.key: row for row in table.numbers(Answerer()(shown))}
             assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
@@ -836,7 +833,7 @@ def test_the_solved_curve_of_a_ball_is_within_a_per_cent_of_its_states_between_i
 def test_rest_smooth_and_frictionless_contacts_are_shown(subtests):
     for change in [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}]:
         with subtests.test(change=change):
-            shown = Answerer()(replace(START, contact=START.contact.replace(**change)))
+            shown = Answerer()(START.replace(**change))
             rows = {row.key: row for row in table.numbers(shown)}
             assert rows["friction_balanced"].value == pytest.approx(sb.solve(shown.inputs.contact).friction().total, rel=1e-6)
             assert set(charts.all_charts(shown)) == {"friction", "gap", "pressure", "diagram"}
@@ -917,7 +914,7 @@ def test_lines_and_text_stand_out_from_their_ground(subtests):
 
 
 def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
-    odd = replace(inputs.with_slider(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
+    odd = inputs.with_slider(START, "load_group", -1.37).replace(definition="balanced", title='a "quoted" \\ title')
     shown = Answerer()(odd)
     path = tmp_path / "case.toml"
     path.write_bytes(files.content("toml", shown))
@@ -1199,7 +1196,7 @@ def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
 def test_history_goes_back_and_forth_and_forgets_what_was_undone_before_a_change():
     states = [server.example()]
     for speed in (2e-3, 3e-3, 4e-3):
-        states.append(replace(states[0], contact=states[0].contact.replace(speed=speed)))
+        states.append(states[0].replace(speed=speed))
     past = History(states[0])
     assert past.steps == {"undo": False, "redo": False} and past.step(-1, states[0]) is None
     past.rest(states[1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ from stribeck.cases.tables import AS_GIVEN, NUMBERS, TRUTH, Key, Keys, one_of
 from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.greenwood import SUMMITS
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contact_laws.persson import GAMMA, persson_law
+from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
 from stribeck.contact_laws.scaled import NAMED_LAWS, named_law
 from stribeck.contact_laws.spectrum import Spectrum
 from stribeck.contact_laws.table import TableLaw
@@ -104,10 +105,22 @@ def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], fold
         if extra:
             source = "the file of the spectrum" if "spectrum" in entries else "the spectrum"
             raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from {source}; remove one of them.")
-        full = persson_law(Spectrum(*_of_spectrum(entries, folder)), entries.get("gamma", GAMMA))
+        wavenumber, density = _of_spectrum(entries, folder)
+        full = _law_of_spectrum(tuple(wavenumber.tolist()), tuple(density.tolist()), entries.get("gamma", GAMMA))
     else:
-        full = RoughSurface(**entries).law
+        full = _law_of_roughness(RoughSurface(**entries))
     return (full if law == "persson" else SpectralExponential(full.area_slope), full.coefficients)
+
+
+# A law takes half a second, and a page reads its case at each move of a slider.
+@functools.lru_cache(maxsize=16)
+def _law_of_spectrum(wavenumber: tuple[float, ...], density: tuple[float, ...], gamma: float) -> PerssonLaw:
+    return persson_law(Spectrum(np.array(wavenumber), np.array(density)), gamma)
+
+
+@functools.lru_cache(maxsize=16)
+def _law_of_roughness(surface: RoughSurface) -> PerssonLaw:
+    return surface.law
 
 
 def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:

@@ -123,7 +123,7 @@ class Answerer:
         curve, is_old = self._newest("curve", geometry, found)
         if marks is None:
             ends = decades_around(_ends_of(curve, contact), places)
-        curve_band = self._kept.get(("band", _key(contact), definition, inputs.tables))
+        curve_band = self._kept.get(("band", _key(contact), definition, inputs.known))
         if curve is not None:
             curve = replace(curve, marks={}) if is_old else curve if curve_band is None else replace(curve, band=curve_band)
         key = _diagram_key(inputs, _ends_of(found, contact) if marks is None else ends)
@@ -132,7 +132,7 @@ class Answerer:
         diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
         margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_margins_key(inputs)))
         old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins}
-        checks = self._keep(("checks", contact, inputs.tables), lambda: checks_of(_subject(inputs, solution), "state"))
+        checks = self._keep(("checks", contact, inputs.known), lambda: checks_of(_subject(inputs, solution), "state"))
         plane = None
         if isinstance(solution, PointSolution):
             side = np.linspace(-MAP_HALF_SIDE, MAP_HALF_SIDE, MAP_POINTS)
@@ -211,14 +211,14 @@ class Answerer:
             if inputs.table.geometry == "point":
                 raise InputError(NO_MARGINS_OF_BALLS)
             found = regime_margins(contact, definition=definition, on_point=_parts(report))
-            self._put(key, with_intervals(contact, found, inputs.errors, definition) if inputs.errors else found)
+            self._put(key, with_intervals(contact, found, inputs.case.errors, definition) if inputs.case.errors else found)
         except (InputError, SolveError) as problem:
             self._put(key, str(problem))
         yield
 
     def _find_spread(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Find what the errors of the inputs leave open in the state, and then along the curve."""
-        errors, contact, definition = inputs.errors, inputs.contact, inputs.definition
+        errors, contact, definition = inputs.case.errors, inputs.contact, inputs.definition
         if not errors or _spread_key(inputs) in self._kept:
             return
         self._put(_spread_key(inputs), propagate(contact, errors, definition=definition))
@@ -227,12 +227,12 @@ class Answerer:
         curve = self.curve(contact, definition, speeds)
         if curve is not None:
             band = friction_band(contact, errors, curve.speed[[0, -1]], definition, on_point=_parts(report))
-            self._put(("band", _key(contact), definition, inputs.tables), band)
+            self._put(("band", _key(contact), definition, inputs.known), band)
             yield
 
     def _find_checks(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Make the checks that need the curve, or another one."""
-        key, last = ("checks", inputs.contact, inputs.tables), self._last_state
+        key, last = ("checks", inputs.contact, inputs.known), self._last_state
         if ("all", *key) not in self._kept:
             solution = last[1] if last is not None and last[0] == inputs.contact else None
             self._put(key, checks_of(_subject(inputs, solution, report)))
@@ -279,7 +279,7 @@ class Answerer:
 
 def _subject(inputs: Inputs, solution: Any, report: Report = lambda part: None) -> Subject:
     """Return what is checked of inputs, whose state may be known."""
-    return Subject(inputs.contact, inputs.facts, inputs.definition, solution, on_point=_parts(report))
+    return Subject(inputs.contact, inputs.case.facts, inputs.definition, solution, on_point=_parts(report))
 
 
 def _parts(report: Report) -> Callable[..., object]:
@@ -294,12 +294,12 @@ def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
 
 def _spread_key(inputs: Inputs) -> tuple[Any, ...]:
     """Return what the propagated errors of a state depend on."""
-    return ("spread", inputs.contact, inputs.definition, inputs.tables)
+    return ("spread", inputs.contact, inputs.definition, inputs.known)
 
 
 def _margins_key(inputs: Inputs) -> tuple[Any, ...]:
     """Return what margins depend on."""
-    return ("margins", inputs.contact, inputs.definition, inputs.tables)
+    return ("margins", inputs.contact, inputs.definition, inputs.known)
 
 
 def _diagram_key(inputs: Inputs, speeds: tuple[float, float]) -> tuple[Any, ...]:

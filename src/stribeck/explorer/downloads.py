@@ -13,17 +13,16 @@ from typing import Any
 import numpy as np
 
 from stribeck.cases.case import Case
-from stribeck.cases.law import SOURCES
 from stribeck.cases.reading import check_case
 from stribeck.contacts.contact import model_words
 from stribeck.curves.result import with_contact
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import hersey_scale
-from stribeck.explorer.inputs.inputs import Inputs, case_tables
+from stribeck.explorer.inputs.inputs import Inputs, refuse_files
 from stribeck.files.datasets import write_csv
 from stribeck.files.toml import parse_toml, toml_text
 from stribeck.plot.style import INK, SERIES
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError
 
 __all__ = ["KINDS", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
 
@@ -45,13 +44,10 @@ def read_case(name: str, content: bytes) -> Case:
     """Return a case from the content of its file."""
     path = Path(shown_name(name))
     tables = parse_toml(content, path)
-    for table, source in SOURCES.items():
-        key, entries = source.file, tables.get(table)
-        if isinstance(entries, dict) and key in entries:
-            raise InputError(
-                f"{path}: [{table}] {key} = {show(entries[key])} is a file that the browser did not send; "
-                f"start with 'stribeck explore {path}', or write its rows into the case."
-            )
+    try:
+        refuse_files(tables, f"start with 'stribeck explore {path}', or write its rows into the case")
+    except InputError as problem:
+        raise InputError(f"{path}: {problem}") from None
     return check_case(tables, path)
 
 
@@ -122,7 +118,7 @@ def content(kind: str, shown: Answer) -> bytes:
 
 def case_text(shown: Answer) -> str:
     """Return the case file of the present state, with everything that the page keeps for it."""
-    tables = case_tables(shown.inputs)
+    tables = shown.inputs.tables
     if "curve" not in tables and shown.curve is not None and "curve" not in shown.stale:
         ends = shown.curve.speed[[0, -1]].tolist()
         tables["curve"] = {"over": "speed", "range": ends, "points": len(shown.curve.speed)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from stribeck._types import Array
@@ -13,7 +13,6 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs
-from stribeck.explorer.inputs.tables import tables_of
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.units import InputError
@@ -51,11 +50,10 @@ class Fitted:
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
     """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones."""
-    settings = tables_of(now.tables).get("fit", {})
+    settings = now.tables.get("fit", {})
     found = fit(measured.source, now.contact, free=settings.get("free"), intervals=False, on_step=on_step)
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
-    contact = now.contact.replace(**values)
-    after = replace(now, contact=contact)
+    after = now.edited(values)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stribeck.cases.law import law_of_file
+from stribeck.cases.law import SOURCES, law_of_file
 from stribeck.explorer.downloads import shown_name
-from stribeck.explorer.inputs.inputs import Inputs, with_tables
-from stribeck.explorer.inputs.tables import json_text, tables_of
+from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
@@ -58,13 +57,9 @@ def _without_options(sentence: str) -> str:
 
 def with_scan(now: Inputs, scan: Scan) -> Inputs:
     """Return the inputs on a measured surface: its roughness and Persson's law, with alpha and beta of its spectrum."""
-    tables = {name: table for name, table in tables_of(now.tables).items() if name != "table"}
-    tables |= {"law": "persson", "surface": scan.table}
+    tables = {name: table for name, table in now.tables.items() if name not in SOURCES}
+    tables["contact"] |= {"law": "persson"}
+    tables["surface"] = scan.table | {"shape_only": True}
     _, found = law_of_file("persson", {}, {"surface": scan.table}, Path())
-    return with_tables(
-        now,
-        json_text(tables),
-        roughness=now.table.checked("roughness", scan.table["h_rms"]),
-        alpha=found["alpha"],
-        beta=found["beta"],
-    )
+    roughness = now.table.checked("roughness", scan.table["h_rms"])
+    return now.edited({"roughness": roughness, "alpha": found["alpha"], "beta": found["beta"]}, tables)

@@ -87,7 +87,7 @@ class Tab:
             "unit": lambda name, unit: self.attempt(name, "", unit, inputs.in_unit, name, str(unit)),
             "pick": lambda name, value: self.attempt(name, "", "", choices.choose, name, str(value)),
             "detail": lambda name, key, text: self.attempt(name, key, text, choices.with_detail, name, key, str(text)),
-            "choose": lambda name, value: self.change(replace(self.inputs, **{name: value})),
+            "choose": lambda name, value: self.change(self.inputs.replace(**{name: value})),
             "undo": lambda: self.step(-1),
             "redo": lambda: self.step(1),
             "retry": self.request,
@@ -145,7 +145,7 @@ class Tab:
     def pin(self) -> None:
         """Keep the present curve."""
         name = files.pin_name(self.inputs, self.start, [pin.title for pin in self.pins])
-        pins = [*self.pins, replace(self.inputs, title=name)]
+        pins = [*self.pins, self.inputs.replace(title=name)]
         try:
             if len(pins) > url.MAX_PINS:
                 raise InputError(f"Up to {url.MAX_PINS} curves can be pinned; remove one first.")

@@ -9,22 +9,22 @@ import functools
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
-from stribeck.cases.law import LAWS, law_of_file
+from stribeck.cases.law import LAWS, SOURCES, law_of_file
 from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
+from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.model import Model
 from stribeck.contacts.part_inputs import KINDS, LAW_NUMBERS
-from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_tables
-from stribeck.explorer.inputs.tables import case_of, fluid_table, json_text, tables_of
+from stribeck.explorer.inputs.inputs import Inputs, exact_text, fluid_table
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
@@ -61,7 +61,7 @@ class Choice:
 
     name: str  # Its name on the page
     label: str  # What is chosen
-    table: str  # The table of the case; empty for a key at the top
+    table: str  # The table of the case; empty for what becomes other tables
     key: str  # The key that is chosen; empty where the table alone is the choice
     options: Mapping[str, Option]
 
@@ -105,11 +105,17 @@ def _of_kind(name: str) -> Choice:
 CHOICES = {
     each.name: each
     for each in (
-        Choice("geometry", "Geometry", "", "geometry", {"line": Option("cylinder on flat"), "point": Option("ball on flat")}),
+        Choice(
+            "geometry",
+            "Geometry",
+            "contact",
+            "geometry",
+            {"line": Option("cylinder on flat"), "point": Option("ball on flat")},
+        ),
         Choice(
             "law",
             "Contact law",
-            "",
+            "contact",
             "law",
             {
                 law: (SURFACE if law == "persson" else Option(""))._replace(
@@ -156,7 +162,7 @@ CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
 
 def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
     """Return what is chosen in tables."""
-    given = tables.get(choice.table, {}) if choice.table else tables
+    given = tables.get(choice.table, {})
     if not choice.key:
         return [name for name, option in choice.options.items() if set(option.needed) <= given.keys()][
             -1 if choice.table else 0
@@ -168,12 +174,13 @@ def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
 @functools.cache
 def available_values(name: str, geometry: str) -> tuple[str, ...]:
     """Return what contacts of a geometry can have of a choice."""
-    choice, tables = CHOICES[name], json_text({"geometry": geometry})
-    if geometry not in CHECKS or not choice.table:
+    choice = CHOICES[name]
+    if geometry not in CHECKS or choice.table in ("", "contact"):
         return tuple(choice.options)
     if choice.table == "motion":  # of a ball the slide-to-roll ratio is one of its inputs
         return (choice.first,)
-    typical = Inputs(case_of(tables).contact, tables=tables)
+    numbers = {key: row.typical_value for key, row in INPUT_TABLES[geometry].kept.items() if not row.optional}
+    typical = Inputs.of({"contact": {"geometry": geometry, **numbers}})
     return tuple(value for value in choice.options if _can_have(typical, name, value))
 
 
@@ -197,7 +204,7 @@ def _if_empty(row: Input) -> str:
 
 def list_of(now: Inputs, name: str) -> dict[str, Any]:
     """Return what a list and the fields of its choice show."""
-    choice, tables = CHOICES[name], tables_of(now.tables)
+    choice, tables = CHOICES[name], now.tables
     value, given = chosen_value(choice, tables), tables.get(choice.where, {})
     keys = choice.options[value].keys
     if name == "law" and keys:
@@ -215,7 +222,7 @@ def list_of(now: Inputs, name: str) -> dict[str, Any]:
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:
     """Return the inputs after something was chosen; what it needs has typical values."""
-    choice, tables = CHOICES[name], tables_of(now.tables)
+    choice, tables = CHOICES[name], now.tables
     checked_word(name, value, choice.options)
     if name == "preset":
         if not value:
@@ -224,15 +231,24 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         return _with(now, tables | {"fluid": fluid_table(liquid.fluid)}, viscosity=liquid.viscosity)
     old = chosen_value(choice, tables)
     needed = {key: first_value(key) for key in choice.options[value].needed}
+    contact = tables["contact"]
     if name == "law":
-        tables = {key: table for key, table in tables.items() if key not in ("surface", "table")} | {"law": value}
+        tables = {key: table for key, table in tables.items() if key not in SOURCES} | {"contact": contact | {"law": value}}
         if needed:
             return _of_surface(now, tables | {"surface": needed})
         return _with(now, tables, **_same_pressure(now, named_law(value)))
     if name == "geometry":
+        if value == old:
+            return now
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
-        motion, rtol = tables.pop("motion", {}), DEFAULT_POINTS_AND_RTOL[value][1]
-        return replace(_with(now, tables | {name: value}, **motion), rtol=rtol, title=now.title if value == old else "")
+        known, before = INPUT_TABLES[value].quantities, now.contact
+        contact = {key: each for key, each in contact.items() if key in known} | {name: value} | tables.pop("motion", {})
+        solver = tables.pop("solver", {}) | {"rtol": DEFAULT_POINTS_AND_RTOL[value][1]}
+        tables.pop("title", None)
+        R, E, p = before.radius, before.modulus, before.hertz.pressure
+        load = math.pi**3 * p**3 * R**2 / (6 * E**2) if value == "point" else math.pi * R * p**2 / E
+        numbers = {"load": load} | ({"speed": before.speed} if value == "line" else {})
+        return _with(now, tables | {"contact": contact, "solver": solver}, **numbers)
     kept = {key: each for key, each in tables.get(choice.where, {}).items() if key not in choice.options[old].keys}
     if choice.key:
         kept |= {choice.key: value}
@@ -257,7 +273,7 @@ def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
 
 def with_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed for a key of a choice."""
-    choice, tables, text = CHOICES[name], tables_of(now.tables), text.strip()
+    choice, tables, text = CHOICES[name], now.tables, text.strip()
     table = {each: value for each, value in tables.get(choice.where, {}).items() if each != key}
     if text:
         several = isinstance(first_value(key), list)
@@ -285,15 +301,14 @@ def _number(key: str, text: str) -> float | str:
 def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
     """Return the inputs on the surface of these tables with the present roughness, alpha and beta being those of it."""
     surface = {key: value for key, value in tables["surface"].items() if key != "shape_only"}
-    surface["h_rms"] = exact_text(now, "roughness")
-    _, found = law_of_file(tables["law"], {}, {"surface": dict(surface)}, Path())
-    return _with(now, tables | {"surface": surface}, alpha=found["alpha"], beta=found["beta"])
+    surface["h_rms"] = exact_text(now.contact.roughness, "length", now.units["roughness"])
+    _, found = law_of_file(tables["contact"]["law"], {}, {"surface": dict(surface)}, Path())
+    return _with(now, tables | {"surface": surface | {"shape_only": True}}, alpha=found["alpha"], beta=found["beta"])
 
 
-def _with(now: Inputs, tables: Mapping[str, Any], **numbers: float) -> Inputs:
-    """Return the inputs with other tables, of which nothing is kept that is as in the article."""
-    kept = {name: value for name, value in tables.items() if value and value not in ("line", "exponential")}
-    found = with_tables(now, json_text(kept), **numbers)
+def _with(now: Inputs, tables: dict[str, Any], **numbers: float) -> Inputs:
+    """Return the inputs with other tables and numbers, if the equations of their geometry have such a model."""
+    found = now.edited(numbers, tables)
     if found.table.geometry in CHECKS:
         CHECKS[found.table.geometry](found.contact.groups.model)
     return found

@@ -1,4 +1,4 @@
-"""The inputs of a tab: a contact in SI units and as groups, linked both ways, and the unit of each field.
+"""The inputs of a tab: one case, whose tables are its form, its address, its saved file and each step of undo.
 
 The fields are the rows of the package's tables of inputs. Every change makes new inputs from old ones, or raises the sentence
 that the command line prints; nothing is half changed.
@@ -7,22 +7,29 @@ that the command line prints; nothing is half changed.
 from __future__ import annotations
 
 import functools
+import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from decimal import Context
 from fractions import Fraction
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
+from stribeck.cases.law import INPUTS_OF_SURFACES, SOURCES, self_contained
+from stribeck.cases.model_parts import FLUID_KINDS, preset_facts
+from stribeck.cases.reading import check_case
+from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.inputs import InputTable
-from stribeck.explorer.inputs.tables import case_of, contact_of, geometry_of, tables_of, tables_of_case
+from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.fluids.description import Fluid
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
 __all__ = [
@@ -30,19 +37,16 @@ __all__ = [
     "GROUP_FIELDS",
     "Abscissa",
     "Inputs",
-    "NAMES",
-    "case_tables",
     "exact_text",
+    "fluid_table",
     "from_case",
     "in_unit",
     "number_text",
     "position",
-    "read_field",
+    "refuse_files",
     "row_of",
-    "units_of",
     "value_of",
     "with_slider",
-    "with_tables",
     "with_text",
 ]
 
@@ -69,25 +73,76 @@ GROUP_FIELDS = {
 }
 """The groups: moving one moves speed, load and roughness so that the other two stay."""
 
-NAMES = tuple(dict.fromkeys(name for fields in FIELDS.values() for name in fields))
-"""The inputs of all geometries."""
-
 GREEK = {"eta": "η", "alpha": "α", "beta": "β", "mu": "µ"}
 
 SLIDER_DIGITS = 3  # Digits to which a slider rounds, so that its value can be read and typed.
 
+SETTINGS = ("definition", "rtol")  # Keys of the table [solver]
+
+CASE = Path("case")  # What the case of a page is called in sentences
+_UNIT = re.compile(r"[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*([^+±]*?)\s*(?:(?:\+\s*/?\s*-|±).*)?", re.DOTALL)
+
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a tab shows."""
+    """What a tab shows: a case, and what its curve is drawn over."""
 
-    contact: Contact  # The contact
-    units: Mapping[str, str] = field(default_factory=dict)  # The unit of each field that has one
-    definition: Definition = "balanced"  # The friction by which curves, regimes and margins go
-    abscissa: Abscissa = "speed"  # What the curve is drawn over
-    title: str = ""  # Headline
-    rtol: float = 1e-6  # Relative tolerance of the states
-    tables: str = ""  # The other tables of its case, as in :mod:`stribeck.explorer.inputs.tables`
+    text: str  # The tables of the case as JSON, which compares by value
+    abscissa: Abscissa = "speed"
+
+    @classmethod
+    def of(cls, tables: Mapping[str, Any], abscissa: Abscissa = "speed") -> Self:
+        """Return the inputs of tables; what is empty or as without it is left out."""
+        kept = {name: table for name, table in tables.items() if table not in ({}, "")}
+        usual = {"geometry": "line", "law": "exponential"}
+        if isinstance(kept.get("contact"), dict):
+            kept["contact"] = {key: value for key, value in kept["contact"].items() if usual.get(key) != value}
+        made = cls(json.dumps(kept, sort_keys=True, separators=(",", ":"), ensure_ascii=False), abscissa)
+        if made.contact.boundary_friction > MAX_FRICTION:
+            raise InputError(
+                f"{FRICTION} = {made.contact.boundary_friction:g} is above {MAX_FRICTION:g}, the largest the explorer takes; "
+                f"write {made.contact.boundary_friction / 100:g} for {made.contact.boundary_friction:g} %."
+            )
+        return made
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables of the case, those of ``[contact]`` in the order of the fields; the caller may change them."""
+        found: dict[str, Any] = json.loads(self.text)
+        contact, order = found.pop("contact"), ["geometry", "law", *FIELDS["point"]]
+        names = sorted(contact, key=lambda name: order.index(name) if name in order else len(order))
+        head = {name: found.pop(name) for name in ("title", "notes") if name in found}
+        return head | {"contact": {name: contact[name] for name in names}} | found
+
+    @property
+    def case(self) -> Case:
+        """The case, checked."""
+        return _case_of(self.text)
+
+    @property
+    def contact(self) -> Contact:
+        """The contact."""
+        return self.case.contact
+
+    @property
+    def definition(self) -> Definition:
+        """The friction by which curves, regimes and margins go."""
+        return self.case.definition
+
+    @property
+    def rtol(self) -> float:
+        """Relative tolerance of the states."""
+        return self.case.rtol
+
+    @property
+    def title(self) -> str:
+        """Headline."""
+        return self.case.title
+
+    @property
+    def known(self) -> tuple[Any, ...]:
+        """What is known beside the contact: errors of inputs and facts."""
+        return tuple(self.case.errors.items()), tuple(self.case.facts.items())
 
     @property
     def table(self) -> InputTable:
@@ -100,75 +155,128 @@ class Inputs:
         return FIELDS[self.table.geometry]
 
     @property
-    def errors(self) -> dict[str, float]:
-        """Relative standard errors of the inputs that have one."""
-        return case_of(self.tables).errors
+    def units(self) -> dict[str, str]:
+        """The unit of each field that has one: that in which the case gives it, else the one in which it reads best."""
+        return _units_of(self.text)
 
-    @property
-    def facts(self) -> dict[str, float]:
-        """The facts of its table ``[check]`` in SI units."""
-        return case_of(self.tables).facts
+    def replace(self, **changes: Any) -> Inputs:
+        """Return the inputs with another title, abscissa, definition or tolerance, or with other inputs of the contact."""
+        tables = self.tables
+        abscissa = changes.pop("abscissa", self.abscissa)
+        tables |= {name: changes.pop(name) for name in ("title", "notes") if name in changes}
+        settings = {name: changes.pop(name) for name in SETTINGS if name in changes}
+        tables["solver"] = tables.get("solver", {}) | settings
+        return replace(self.edited(changes, tables), abscissa=abscissa)
 
-
-def from_case(case: Case) -> Inputs:
-    """Return the inputs of a case, each in the unit in which it reads best."""
-    tables = tables_of_case(case)
-    contact = contact_of(tables, {name: getattr(case.contact, name) for name in case.contact.INPUTS.names})
-    check_friction(contact.boundary_friction)
-    return Inputs(contact, units_of(contact), case.definition, title=case.title, rtol=case.rtol, tables=tables)
-
-
-def case_tables(inputs: Inputs) -> dict[str, Any]:
-    """Return all tables of the case of inputs: :func:`from_case` gives the same inputs."""
-    tables = tables_of(inputs.tables)
-    errors = tables.pop("errors", {})
-    contact: dict[str, Any] = {name: tables.pop(name) for name in ("geometry", "law") if name in tables}
-    # A ball and a disc that both move have the mean of their speeds in a case.
-    rolls = inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2
-    for name, row in inputs.fields.items():
-        kept, of = ("entrainment_speed", 0.5) if name == "speed" and rolls else (name, 1.0)
-        text = exact_text(inputs, name, of)
-        if text:
-            error = f" +- {100 * errors[name]!r} %" if name in errors else ""
-            contact[kept] = f"{text}{error}" if row.units or error else float(text)
-    if "surface" in tables:
-        tables["surface"] = {"shape_only": True, **tables["surface"]}  # alpha, beta and roughness stand in [contact]
-    head = {"title": inputs.title} if inputs.title else {}
-    head |= {"notes": tables.pop("notes")} if "notes" in tables else {}
-    return head | {"contact": contact} | tables | {"solver": {"rtol": inputs.rtol, "definition": inputs.definition}}
-
-
-def with_tables(inputs: Inputs, tables: str, **numbers: float | None) -> Inputs:
-    """Return the inputs with other tables, and with some of their numbers changed."""
-    before, geometry = inputs.contact, geometry_of(tables)
-    kept = {name: getattr(before, name) for name in INPUT_TABLES[geometry].names if name in before.INPUTS.names}
-    units = dict(inputs.units)
-    if geometry != before.INPUTS.geometry:
-        R, E, p = before.radius, before.modulus, before.hertz.pressure
-        kept["load"] = math.pi**3 * p**3 * R**2 / (6 * E**2) if geometry == "point" else math.pi * R * p**2 / E
-        units.pop("load", None)
-    contact = contact_of(tables, kept | numbers)
-    known = units_of(contact)
-    return replace(inputs, contact=contact, tables=tables, units={name: units.get(name, known[name]) for name in known})
+    def edited(self, entries: Mapping[str, str | float | None], tables: dict[str, Any] | None = None) -> Inputs:
+        """Return the inputs with other inputs of the contact, which keep their units and errors, and with other tables."""
+        tables = self.tables if tables is None else tables
+        contact = tables["contact"] = dict(tables["contact"])
+        known, errors = INPUT_TABLES[contact.get("geometry", "line")], self.case.errors
+        rolls = False
+        if known.geometry == "point":
+            ratio = entries.get("slide_to_roll", contact.get("slide_to_roll"))
+            rolls = ratio is not None and float(ratio) != PURE_SLIDING
+            # Of a ball and a disc that both move a case has the mean of their speeds.
+            if "speed" not in entries and rolls == ("speed" in contact):
+                entries = {**entries, "speed": float(self.contact.speed)}
+        for name, entry in entries.items():
+            for key in [key for key in contact if known.stands_for.get(key, key) == name]:
+                del contact[key]
+            if entry is None:
+                continue
+            row, unit = known.quantities[name], self.units.get(name, "")
+            value = row.checked(entry)
+            of = 0.5 if name == "speed" and rolls else 1.0
+            if row.units and (of != 1.0 or not isinstance(entry, str)):
+                entry = exact_text(of * value, row.dimension, unit if row.dimension == _dimension(self, name) else "")
+            if name in errors and value:
+                entry = f"{entry} +- {100 * errors[name]!r} %"
+            contact["entrainment_speed" if of != 1.0 else name] = entry
+        return type(self).of(tables, self.abscissa)
 
 
-def check_friction(value: float) -> None:
-    """Refuse a friction coefficient that looks like per cent."""
-    if value > MAX_FRICTION:
-        raise InputError(
-            f"{FRICTION} = {value:g} is above {MAX_FRICTION:g}, the largest the explorer takes; "
-            f"write {value / 100:g} for {value:g} %."
-        )
+def _dimension(inputs: Inputs, name: str) -> str:
+    return inputs.fields[name].dimension if name in inputs.fields else ""
 
 
-def units_of(contact: Contact) -> dict[str, str]:
-    """Return for each field with a unit the one in which its value reads best."""
-    found = {}
-    for name, row in FIELDS[contact.INPUTS.geometry].items():
+@functools.lru_cache(maxsize=64)
+def _case_of(text: str) -> Case:
+    """Return the case of tables, or the sentences of the command line about it."""
+    try:
+        return check_case(json.loads(text), CASE)
+    except InputError as problem:
+        lines = [line.removeprefix(f"{CASE}: ").removeprefix("[contact] ") for line in str(problem).splitlines()]
+        raise InputError("\n".join(lines)) from None
+
+
+@functools.lru_cache(maxsize=64)
+def _units_of(text: str) -> dict[str, str]:
+    contact = _case_of(text).contact
+    table, found = contact.INPUTS, {}
+    for name, row in FIELDS[table.geometry].items():
         if row.units:
             value = getattr(contact, name)
             found[name] = row.units[0] if value is None else format_si(value, row.dimension).partition(" ")[2]
+    for key, entry in json.loads(text)["contact"].items():
+        name = table.stands_for.get(key, key)
+        if name in found and table.quantities[key].dimension == table.quantities[name].dimension:
+            entry = entry["value"] if isinstance(entry, dict) else entry
+            given = _UNIT.fullmatch(entry.strip()) if isinstance(entry, str) else None
+            if given is not None and given[2]:
+                found[name] = _known_unit(table.quantities[name], given[2])
     return found
+
+
+def _known_unit(row: Input, unit: str) -> str:
+    return next((known for known in row.units if known.replace("µ", "u") == unit), unit)
+
+
+def from_case(case: Case) -> Inputs:
+    """Return the inputs of a case, with the numbers of files, surfaces and presets that it names."""
+    tables = {name: dict(table) if isinstance(table, dict) else table for name, table in case.tables.items()}
+    contact, geometry = tables["contact"], case.contact.groups.geometry
+    tables |= self_contained(case.law, case.tables, case.path.parent, case.contact.law)
+    own: list[str] = []
+    if "surface" in tables or hasattr(NAMED_LAWS.get(case.law), "coefficients"):
+        tables.pop("asperities", None)
+        stands_for = case.contact.INPUTS.stands_for
+        own += [name for name in INPUTS_OF_SURFACES if all(stands_for.get(key, key) != name for key in contact)]
+    if "surface" in tables:
+        rough = {} if "wavenumber" in tables["surface"] else {"h_rms": exact_text(case.contact.roughness, "length", "um")}
+        tables["surface"] = rough | tables["surface"] | {"shape_only": True}
+    if "preset" in tables.get("fluid", {}):
+        tables["fluid"] = fluid_table(case.contact.fluid)
+        tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
+        own.append("viscosity")
+    if geometry == "point":
+        contact |= tables.pop("motion", {})
+    elif "slide_to_roll" in contact:
+        tables["motion"] = {"slide_to_roll": contact.pop("slide_to_roll")}
+    for name in own:
+        row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
+        contact[name] = exact_text(value, row.dimension, format_si(value, row.dimension).partition(" ")[2])
+        if not row.units:
+            contact[name] = value
+    return Inputs.of(tables)
+
+
+def fluid_table(fluid: Fluid) -> dict[str, Any]:
+    """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
+    found: dict[str, Any] = {}
+    for name, kind in FLUID_KINDS.items():
+        law = getattr(fluid, name)
+        if law is not None:
+            found |= {kind.key: law.name} | {each: getattr(law, each) for each in numbers_of(type(law))}
+    return found
+
+
+def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
+    """Refuse tables that name files, which are not at hand where the tables were sent."""
+    for name, source in SOURCES.items():
+        table = tables.get(name)
+        if isinstance(table, dict) and source.file in table:
+            raise InputError(f"[{name}] {source.file} = {show(table[source.file])} is a file; {instead}.")
 
 
 def value_of(inputs: Inputs, name: str) -> float:
@@ -181,24 +289,15 @@ def value_of(inputs: Inputs, name: str) -> float:
 
 def with_text(inputs: Inputs, name: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed into a field."""
+    text = _with_point(name, text.strip())
     if name in GROUP_FIELDS:
-        return _with_group(inputs, name, read_number(name, _with_point(name, _present(name, text))))
-    value, unit = read_field(inputs, name, text)
-    units = {**inputs.units, name: unit} if unit else inputs.units
-    return replace(inputs, contact=inputs.contact.replace(**{name: value}), units=units)
-
-
-def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]:
-    """Return the value in SI units of what was typed into a field, and its unit."""
-    text, row, table = _with_point(name, text.strip()), inputs.fields[name], inputs.table
+        return _with_group(inputs, name, read_number(name, _present(name, text)))
+    row = inputs.fields[name]
     if not text and row.optional:
-        return row.default, inputs.units.get(name, "")
+        return inputs.edited({name: None})
     _present(name, text)
     if not row.units:
-        value = table.checked(name, read_number(name, text))
-        if name == FRICTION:
-            check_friction(value)
-        return value, ""
+        return inputs.edited({name: read_number(name, text)})
     unit = inputs.units[name]
     try:
         float(text)
@@ -206,12 +305,13 @@ def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]
     except ValueError:
         pass
     try:
-        value = table.checked(name, text)
+        row.checked(text)
     except InputError as problem:
         bare = "or a bare number in {}.".format
         raise InputError(str(problem).replace(bare(DIMENSIONS[row.dimension].unit), bare(unit))) from None
-    unit = re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
-    return value, next((known for known in row.units if known.replace("µ", "u") == unit), unit)
+    given = _UNIT.fullmatch(text)
+    typed = text if given is None else text.removesuffix(given[2]) + _known_unit(row, given[2])
+    return inputs.edited({name: typed})
 
 
 def with_slider(inputs: Inputs, name: str, place: float) -> Inputs:
@@ -223,8 +323,8 @@ def with_slider(inputs: Inputs, name: str, place: float) -> Inputs:
 
 def in_unit(inputs: Inputs, name: str, unit: str) -> Inputs:
     """Return the inputs with a field shown in another unit, its value kept."""
-    _unit_factor(inputs.fields[name].dimension, unit)
-    return replace(inputs, units={**inputs.units, name: unit})
+    value = getattr(inputs.contact, name)
+    return inputs if value is None else inputs.edited({name: exact_text(value, inputs.fields[name].dimension, unit)})
 
 
 def position(inputs: Inputs, name: str) -> float:
@@ -256,24 +356,17 @@ def row_of(inputs: Inputs, name: str) -> dict[str, Any]:
     }
 
 
-def exact_text(inputs: Inputs, name: str, of: float = 1.0) -> str:
-    """Return the shortest text that gives back the very value times ``of``, with its unit; empty for what is not there."""
-    kept = getattr(inputs.contact, name)
-    if kept is None:
-        return ""
-    value = of * float(kept)
-    unit = inputs.units.get(name, "")
-    if not unit:
-        return repr(value)
-    dimension = inputs.fields[name].dimension
-    # Through exact numbers, because the quotient of two doubles may not lead back in any number of digits.
-    quotient = Fraction(value) / Fraction(repr(_unit_factor(dimension, unit)))
-    for digits in range(3, 30):
-        number = Context(prec=digits).divide(quotient.numerator, quotient.denominator).normalize()
-        text = f"{number:f} {unit}" if -6 < number.adjusted() < 16 else f"{number} {unit}"
-        if to_si(text, dimension, name) == value:
-            return text
-    return f"{value!r} {DIMENSIONS[dimension].unit}"
+def exact_text(value: float, dimension: str, unit: str = "") -> str:
+    """Return the shortest text in a unit that gives back the very value in SI units."""
+    if unit:
+        # Through exact numbers, because the quotient of two doubles may not lead back in any number of digits.
+        quotient = Fraction(value) / Fraction(repr(_unit_factor(dimension, unit)))
+        for digits in range(3, 30):
+            number = Context(prec=digits).divide(quotient.numerator, quotient.denominator).normalize()
+            text = f"{number:f} {unit}" if -6 < number.adjusted() < 16 else f"{number} {unit}"
+            if to_si(text, dimension, dimension) == value:
+                return text
+    return f"{value!r} {DIMENSIONS[dimension].unit}".rstrip()
 
 
 _COMMA = re.compile(r"([-+\N{MINUS SIGN}]?[0-9]{0,40}),([0-9]{1,40})((?:[eE][-+]?[0-9]+)?(?:\s.*|[^0-9.,].*)?)", re.DOTALL)
@@ -290,7 +383,7 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     groups = replace(contact.groups, **change)
     kept = {key: getattr(contact, key) for key in inputs.table.names if key not in moved}
     found = CONTACTS[inputs.table.geometry].from_groups(groups, **kept)
-    return replace(inputs, contact=contact.replace(**{key: getattr(found, key) for key in moved}))
+    return inputs.edited({key: getattr(found, key) for key in moved})
 
 
 def _with_point(name: str, text: str) -> str:
@@ -307,9 +400,9 @@ def _with_point(name: str, text: str) -> str:
 
 def _present(name: str, text: str) -> str:
     """Return the text of a field that must hold a number."""
-    if not text.strip():
+    if not text:
         raise InputError(f"{name} is empty; type a number, or press Escape for the one before.")
-    return text.strip()
+    return text
 
 
 def _factor(inputs: Inputs, name: str) -> float:
