@@ -80,7 +80,7 @@ def open_page(chromium, address):
         page.on("request", lambda request: asked.append(request.url))
         page.goto(f"{address}&{query.lstrip('?')}")
         page.wait_for_selector(".numbers [data-key=regime]")
-        page.wait_for_function("location.search.includes('definition=')")  # it rests
+        page.wait_for_function("location.search.includes('abscissa=')")  # it rests
         return page
 
     yield go
@@ -580,7 +580,7 @@ class Firefox:
         self.page = self.send("browsingContext.create", type="tab")["context"]
         self.send("browsingContext.setViewport", context=self.page, viewport={"width": width, "height": height})
         self.send("browsingContext.navigate", context=self.page, url=address, wait="complete")
-        self.wait("location.search.includes('definition=')")
+        self.wait("location.search.includes('abscissa=')")
 
     def evaluate(self, expression):
         """Return what an expression gives, as JSON."""

@@ -272,11 +272,11 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
 
 
 def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
-    """Refuse tables that name files, which are not at hand where the tables were sent."""
+    """Refuse tables that name files, which did not come with them; ``instead`` is what to do."""
     for name, source in SOURCES.items():
         table = tables.get(name)
         if isinstance(table, dict) and source.file in table:
-            raise InputError(f"[{name}] {source.file} = {show(table[source.file])} is a file; {instead}.")
+            raise InputError(f"[{name}] {source.file} = {show(table[source.file])} is a file that the browser did not send; {instead}.")
 
 
 def value_of(inputs: Inputs, name: str) -> float:
