@@ -114,7 +114,17 @@ def test_it_listens_on_this_machine_alone(server):
 
 
 def test_no_address_brings_the_server_down(subtests, server):
-    for query in ["pin=x", "pin=", "fluid=x", "fluid.model=[", "contact=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]:
+    for query in [
+        "pin=x",
+        "pin=",
+        "fluid=x",
+        "fluid.model=[",
+        "contact=1",
+        "load=%00",
+        "=&&=",
+        "speed=1e999+m%2Fs",
+        "rtol=nan",
+    ]:
         with subtests.test(query=query):
             assert ask(server, f"/?{query}")[0] == 200
 

@@ -185,19 +185,22 @@ class Inputs:
                 del contact[key]
             if entry is None:
                 continue
-            row, unit = known.quantities[name], self.units.get(name, "")
+            row = known.quantities[name]
             value = row.checked(entry)
             of = 0.5 if name == "speed" and rolls else 1.0
             if row.units and (of != 1.0 or not isinstance(entry, str)):
-                entry = exact_text(of * value, row.dimension, unit if row.dimension == _dimension(self, name) else "")
+                kept = name in self.fields and self.fields[name].dimension == row.dimension
+                unit = self.units[name] if kept else _best_unit(value, row)
+                entry = exact_text(of * value, row.dimension, unit)
             if name in errors and value:
                 entry = f"{entry} +- {100 * errors[name]!r} %"
             contact["entrainment_speed" if of != 1.0 else name] = entry
         return type(self).of(tables, self.abscissa)
 
 
-def _dimension(inputs: Inputs, name: str) -> str:
-    return inputs.fields[name].dimension if name in inputs.fields else ""
+def _best_unit(value: float, row: Input) -> str:
+    """Return the unit in which a value reads best."""
+    return format_si(value, row.dimension).partition(" ")[2]
 
 
 @functools.lru_cache(maxsize=64)
@@ -217,7 +220,7 @@ def _units_of(text: str) -> dict[str, str]:
     for name, row in FIELDS[table.geometry].items():
         if row.units:
             value = getattr(contact, name)
-            found[name] = row.units[0] if value is None else format_si(value, row.dimension).partition(" ")[2]
+            found[name] = row.units[0] if value is None else _best_unit(value, row)
     for key, entry in json.loads(text)["contact"].items():
         name = table.stands_for.get(key, key)
         if name in found and table.quantities[key].dimension == table.quantities[name].dimension:
@@ -255,9 +258,7 @@ def from_case(case: Case) -> Inputs:
         tables["motion"] = {"slide_to_roll": contact.pop("slide_to_roll")}
     for name in own:
         row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
-        contact[name] = exact_text(value, row.dimension, format_si(value, row.dimension).partition(" ")[2])
-        if not row.units:
-            contact[name] = value
+        contact[name] = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value
     return Inputs.of(tables)
 
 
@@ -276,7 +277,9 @@ def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
     for name, source in SOURCES.items():
         table = tables.get(name)
         if isinstance(table, dict) and source.file in table:
-            raise InputError(f"[{name}] {source.file} = {show(table[source.file])} is a file that the browser did not send; {instead}.")
+            raise InputError(
+                f"[{name}] {source.file} = {show(table[source.file])} is a file that the browser did not send; {instead}."
+            )
 
 
 def value_of(inputs: Inputs, name: str) -> float:
