@@ -125,7 +125,7 @@ def test_steps_that_fail_are_taken_shorter():
 def test_a_lost_path_reaches_as_far_as_it_was_solved():
     path = follow(Known(fails_below=-2.0), 3.0, -9.0, 1e-6)
     assert path.outcome is Outcome.STEP_LIMIT
-    assert -2.0 <= path.coordinates[0] < -1.99
+    assert -2.0 <= path.coordinates[0] < -1.95
     assert follow(Known(fails_below=5.0), 3.0, -9.0, 1e-6).expansions == ()
 
 
@@ -145,8 +145,8 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.path.path.MAX_INTERVALS", 50)
-    monkeypatch.setattr("stribeck.solver.path.path.MAX_STEP", 0.2)
+    monkeypatch.setattr("stribeck.solver.path.path.MAX_PATH_STATES", 50)
+    monkeypatch.setattr("stribeck.solver.path.path.MAX_LOG_STEP", 0.2)
 
     class Doubted(Known):
         def checked_error(self, left, right, parts, values):

@@ -194,17 +194,3 @@ def test_a_prediction_beyond_the_radius_knows_about_its_error():
     for t in (0.5, 1.2, 2.0):
         found, doubt = beyond(series, t)
         assert np.abs(found - exact(t)).max() <= doubt + 1e-12 and doubt < 0.1 * t
-
-
-def test_a_polynomial_of_few_degrees_leaves_out_what_is_not_smooth():
-    """The cusp of a fluid without a plateau passes through a node between the samples."""
-    true = 1.0 / np.cumprod([1.0, *range(1, 12)])
-    worst = []
-    for degree in (None, 7):
-        samples = interval(0.3, degree=degree)
-        cusps = [np.exp(samples.places) + 1e-6 * np.abs(samples.places - place) ** 0.7 for place in np.linspace(-0.3, 0.3, 41)]
-        found = samples.taylor(np.stack(cusps, axis=1), 6)
-        worst.append(np.abs(found - true[:7, None]).max(axis=1))
-    assert (worst[1][3:] < 0.3 * worst[0][3:]).all()
-    smooth = interval(0.3, degree=7)
-    assert smooth.taylor(np.exp(smooth.places), 5) == pytest.approx(true[:6], rel=1e-5)

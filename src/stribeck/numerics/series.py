@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
-from stribeck.numerics.settings import EPSILON, HALF_DIGITS, ROUNDING
+from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP, ROUNDING, SAMPLES
 
 __all__ = [
     "Samples",
@@ -35,20 +35,6 @@ __all__ = [
     "interval",
     "radius",
 ]
-
-
-MAX_RADIUS = 6.0  # Radius of series whose higher coefficients vanish
-
-# Rounding of sampled values over the unknowns, magnified by solving for the coefficients.
-COEFFICIENT_NOISE = EPSILON**0.75
-
-CIRCLE_NOISE = ROUNDING  # Rounding of coefficients from values on a circle, over the largest times powers of its radius
-
-REFINED_ORDERS = 2  # Orders that are refined with their residual: rounding of thin films shows in the first ones
-
-INTERVAL_ORDER = 12  # Values on an interval, unless more are asked for
-
-PADE_DENOMINATOR_DEGREE = 6  # Highest degree of the denominator of an extrapolation
 
 
 def along(rate: float, order: int) -> Array:
@@ -71,7 +57,7 @@ class Samples:
         if np.iscomplexobj(self.places):  # what rounding leaves of a coefficient is none
             reach = np.abs(self.places[0]) ** np.arange(order + 1.0)
             sizes = np.abs(found.T) * reach
-            found.T[sizes < CIRCLE_NOISE * sizes.max(axis=-1, keepdims=True)] = 0.0
+            found.T[sizes < ROUNDING * sizes.max(axis=-1, keepdims=True)] = 0.0
         return np.asarray(found)
 
     def powers(self, order: int) -> Array:
@@ -79,12 +65,11 @@ class Samples:
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
 
 
-def interval(reach: float, count: int = INTERVAL_ORDER, degree: int | None = None) -> Samples:
-    """Return samples of a real function up to a distance ``reach``, for the polynomial of a degree nearest to its values."""
-    # A degree hardly above the orders asked for leaves out more of what is not smooth; by default the polynomial interpolates.
-    matrix = _to_taylor(count)[-1 if degree is None else degree]
+def interval(reach: float) -> Samples:
+    """Return samples of a real function up to a distance ``reach``, for the polynomial that goes through its values."""
+    matrix = _to_taylor()
     orders = np.arange(len(matrix))
-    return Samples(reach * chebyshev.chebpts1(count), matrix * reach ** -orders[:, None].astype(float))
+    return Samples(reach * chebyshev.chebpts1(SAMPLES), matrix * reach ** -orders[:, None].astype(float))
 
 
 def circle(reach: float, order: int) -> Samples:
@@ -96,16 +81,16 @@ def circle(reach: float, order: int) -> Samples:
     return Samples(reach * np.exp(1j * angles), weights)
 
 
-@lru_cache(maxsize=4)
-def _to_taylor(count: int) -> list[Array]:
-    """Matrices from values at Chebyshev points to the Taylor coefficients about zero of polynomials, by their degrees."""
-    degrees = np.arange(count)
-    values = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1).T
-    to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / count
-    to_powers = np.zeros((count, count))
+@lru_cache(maxsize=1)
+def _to_taylor() -> Array:
+    """Matrix from values at Chebyshev points to the Taylor coefficients about zero of the polynomial through them."""
+    degrees = np.arange(SAMPLES)
+    values = chebyshev.chebvander(chebyshev.chebpts1(SAMPLES), SAMPLES - 1).T
+    to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / SAMPLES
+    to_powers = np.zeros((SAMPLES, SAMPLES))
     for n in degrees:
-        to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
-    return [to_powers[: n + 1, : n + 1] @ to_chebyshev[: n + 1] for n in degrees]
+        to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(SAMPLES)[n, : n + 1])
+    return np.asarray(to_powers @ to_chebyshev)
 
 
 def implicit_series(
@@ -118,10 +103,10 @@ def implicit_series(
     is_old = False
     for k in range(1, len(found)):
         found[k] = inverse(coefficient(k))
-        if refines and (k <= REFINED_ORDERS or is_old):
+        if refines and (k == 1 or is_old):
             change = inverse(coefficient(k))
             # Factors that change the first order too much are too old: every order is refined.
-            is_old = is_old or (k == 1 and np.abs(change).max() > HALF_DIGITS * np.abs(found[1]).max())
+            is_old = is_old or bool(np.abs(change).max() > HALF_DIGITS * np.abs(found[1]).max())
             found[k] += change
 
 
@@ -132,7 +117,7 @@ def radius(coefficients: Array, reach: float = 1.0, rounding: float = COEFFICIEN
     k = np.arange(order // 2 + 1, order + 1)
     told = k[size[k - 1] > rounding * reach ** -k.astype(float)]
     return float(
-        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=MAX_RADIUS)
+        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=MAX_LOG_STEP)
     )
 
 
@@ -141,7 +126,7 @@ def beyond(series: Array, t: float) -> tuple[Array, float]:
     # The denominators, of two degrees, make the highest coefficients vanish.
     order = len(series) - 1
     scaled = series * (t ** np.arange(order + 1.0))[:, None]
-    degree = min(PADE_DENOMINATOR_DEGREE, (order - 1) // 2)
+    degree = order // 3
     if degree < 2:
         return np.asarray(scaled.sum(axis=0)), 0.0
     best, other = _rational(scaled, degree, products := scaled @ scaled.T), _rational(scaled, degree - 1, products)

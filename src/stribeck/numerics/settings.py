@@ -21,6 +21,12 @@ MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that sho
 STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step to the one before that failed
 MAX_PATH_STATES = 400  # Limit on work
 WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes
+SERIES_ORDER = 18  # Orders of series by formulas, and values of a polynomial between states
+SAMPLED_ORDER = 9  # Orders of series of sampled functions, whose rounding grows with the order
+CAVITY_ORDER = 2  # Orders of series of films that re-form, whose nodes pass through the inlet
+SAMPLES = 12  # Places of a sampled function: a few more than orders, so that what it has beyond them does not count as theirs
+COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
+SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence
 INNER_PLACES = (0.25, 0.5, 0.75)  # Parts of an interval where it is checked: laws with kinks may agree by accident at one
 
 # Of balls: what two meshes tell of errors, by tests/test_ball_errors.py.

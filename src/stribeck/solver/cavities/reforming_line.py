@@ -23,28 +23,31 @@ from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.series import interval, radius
+from stribeck.numerics.settings import (
+    CAVITY_ORDER,
+    EPSILON,
+    HALF_DIGITS,
+    MIN_LOG_STEP,
+    NEGLIGIBLE,
+    SAFETY,
+    SAMPLE_RADIUS_RATIO,
+    SAMPLED_ORDER,
+    STEP_GROWTH,
+)
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import shift_along
 from stribeck.solver.path.expansion import Direction, Expanded, expand
 from stribeck.solver.path.line_path import (
-    MAX_SAMPLE_RADIUS_RATIO,
     POSITION,
     READ_COLUMNS,
-    SAMPLE_RADIUS_RATIO,
     SERIES_COLUMNS,
     LineProblem,
     with_ending_of,
 )
-from stribeck.solver.path.path import MAX_EXPANSIONS, SAFETY_CORRECTION, Expansion
+from stribeck.solver.path.path import Expansion
 from stribeck.solver.refinement import RefinedState, converge
 
 __all__ = ["line_problem"]
-
-SAMPLE_ORDERS = ((2e-3, 3), (0.0, 2))  # Smallest distance of the samples, and the order of series that rounding allows for it
-MIN_SAMPLE_DISTANCE = 5e-5
-SAMPLE_SHRINK = 0.2  # Smallest ratio of a distance of the samples to the one tried before
-MAX_LOG_LENGTH_CHANGE = 0.6  # Largest change of the logarithm of a cavity's length that is predicted
-SLOPE_STEP = 1e-5  # Step of the difference for the slope of the gap along x
 
 
 def line_problem(
@@ -92,14 +95,14 @@ class ReformingLine(LineProblem):
 
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool) -> None:
         super().__init__(groups_at, direction, rtol, uniform)
-        self.reach = SAMPLE_ORDERS[0][0]
+        self.reach = NEGLIGIBLE * MIN_LOG_STEP
         self.known: dict[float, RefinedState | None] = {}
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``."""
         refined = self._solved(s, near)
         if refined is not None and refined.state is not None:
-            self.order = SAMPLE_ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
+            self.order = CAVITY_ORDER if has_cavity(refined.state) else SAMPLED_ORDER
         return self._accepted(s, refined, near)
 
     def _solved(self, s: float, near: Sequence[Expansion]) -> RefinedState | None:
@@ -117,9 +120,8 @@ class ReformingLine(LineProblem):
         """Return the series of a film with a cavity, and the radius of the observables' series alone."""
         if not has_cavity(state):
             return super()._sampled(s, state, inverse, near)
-        reach = self.reach
-        for _ in range(MAX_EXPANSIONS):
-            self.order = next(order for least, order in SAMPLE_ORDERS if reach >= least)
+        reach, shortest = self.reach, HALF_DIGITS**0.5
+        while True:
             samples = interval(reach)
             direction = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
             models = (
@@ -127,10 +129,12 @@ class ReformingLine(LineProblem):
             )
             found = expand(state.equations, state.y, inverse, state.groups, *direction, self.order, samples, models)
             own = radius(found.unknowns[:, : state.mesh.size], reach)
-            if np.isfinite(own) and np.isfinite(found.unknowns).all() and reach < MAX_SAMPLE_RADIUS_RATIO * own:
+            if not (np.isfinite(own) and np.isfinite(found.unknowns).all()):
+                own = 0.0
+            if reach <= max(shortest, STEP_GROWTH * SAMPLE_RADIUS_RATIO * own):
                 break
-            reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_SHRINK * reach, SAMPLE_RADIUS_RATIO * own if np.isfinite(own) else 0.0)
-        self.reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * own)
+            reach = max(shortest, NEGLIGIBLE * reach, SAMPLE_RADIUS_RATIO * own)
+        self.reach = max(shortest, SAMPLE_RADIUS_RATIO * own)
         columns = [*SERIES_COLUMNS, ROW["minimum_gap"], ROW["exit_position"], ROW["reformation_position"]]
         of_values = found.observables[:, columns] / self.scales(found.observables[:1], np.array([s]))[:, columns]
         return found, radius(of_values, reach)
@@ -149,7 +153,7 @@ class ReformingLine(LineProblem):
         known = values()[int(np.argmin(np.abs(parts - 0.5)))]
         scales = self.scales(known[None], np.array([place]))[0]
         wrong = np.abs(middle - known) / scales
-        found[:POSITION] = SAFETY_CORRECTION * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
+        found[:POSITION] = SAFETY * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
         return found
 
     def _middle(self, left: Expansion, right: Expansion) -> Array | None:
@@ -257,10 +261,11 @@ def _predict_at_same_places(last: Expansion, s: float) -> _ShiftedGuess | None:
     slope = last.point.unknowns[1]
     exit_slope, stretch_slope = slope[at.exit][0], slope[at.cavity_stretch][0]
     length = distance * stretch_slope / state.cavity_stretch
-    if abs(length) > MAX_LOG_LENGTH_CHANGE:
+    if abs(length) > 1:
         return None
-    ahead, behind = (state.fields(mesh.nodes + step)[0] for step in (SLOPE_STEP, -SLOPE_STEP))
-    along = (ahead - behind) / (2 * SLOPE_STEP)
+    step = EPSILON ** (1 / 3)  # where truncation and rounding of a central difference are alike
+    ahead, behind = (state.fields(mesh.nodes + each)[0] for each in (step, -step))
+    along = (ahead - behind) / (2 * step)
     moved = along * (exit_slope + stretch_slope * mesh.nodes) / state.cavity_stretch
     change = distance * (slope[at.gap] - moved)
     flux = state.flux_gap * float(np.exp(distance * slope[at.flux_gap][0] / state.flux_gap))

@@ -13,18 +13,10 @@ from stribeck.equations.line import Operators
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
+from stribeck.numerics.settings import MAX_BYTES, MAX_STEPS, NEGLIGIBLE, SHARE, STEP_GROWTH
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
-
-MAX_STEPS_ON_KEPT_MESH = 16  # Newton and chord steps after which the current mesh is given up
-COARSE_RTOL = 1e-4  # Newton tolerance of a state that only decides whether the mesh serves
-COARSE_FIRST_ABOVE = 1e-3  # Prediction error above which such a coarse state is judged before Newton's iteration goes on
-CACHED_ENTRIES = 2e7  # Matrix entries kept of former meshes' operators: those of a long curve would fill gigabytes
-RTOL_FRACTION_ON_PATH = 0.4  # While stepping, a kept mesh must resolve the gap to this fraction of rtol
-RELAX_FACTOR = 3.0  # Growth of mesh tolerances back to the usual ones after each new mesh
-FIRST_MINIMUM_SHIFT = 0.1  # Distance from its minimum up to which a first mesh resolves the gap: the minimum moves
-MOVING_TAIL_RATIO = 0.5  # Mesh tolerances over the usual ones where the mesh moves with the exit and the contact through it
 
 
 class Corrector:
@@ -33,9 +25,8 @@ class Corrector:
     # The operators of the mesh cost as much as several states.  The inverse of a neighbour's Jacobian, with which the
     # iteration ends, may misjudge a defect by half: with ``own_inverse`` states are verified with their own.
 
-    def __init__(self, rtol: float, gap_part: float = 1.0, own_inverse: bool = False) -> None:
+    def __init__(self, rtol: float, own_inverse: bool = False) -> None:
         self.rtol = rtol
-        self.gap_part = gap_part
         self.own_inverse = own_inverse
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
@@ -51,7 +42,7 @@ class Corrector:
         if not path.outcome.ok:
             return None
         return self._adopt(
-            converge(path.states[-1], groups, self.rtol, spread=FIRST_MINIMUM_SHIFT, own_inverse=self.own_inverse)
+            converge(path.states[-1], groups, self.rtol, self.tolerances, spread=NEGLIGIBLE, own_inverse=self.own_inverse)
         )
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
@@ -80,7 +71,14 @@ class Corrector:
         if self.operators is not None and self.fine is not None:
             if base.model != self.operators.model:
                 self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
-            state = self._on_kept_mesh(guess, base, spread)
+            state = solve_state(
+                base,
+                self.operators,
+                guess,
+                newton_tolerance(self.rtol, self.own_inverse),
+                MAX_STEPS,
+                self.inverse,
+            )
             if state.outcome.ok:
                 if self._is_resolved(state, spread):
                     own = state.corrected() if self.own_inverse else state
@@ -89,29 +87,11 @@ class Corrector:
                         kept = self._kept(point)
                         return point if self.own_inverse else kept
                 guess = state
-        part = 1.0 if base.model.cavitation is Cavitation.NONE else MOVING_TAIL_RATIO
-        tail, gap_tail = self.tolerances
-        tolerances = part * tail, part * gap_tail
-        return self._adopt(converge(guess, groups, self.rtol, tolerances, spread=spread, own_inverse=self.own_inverse))
-
-    def _on_kept_mesh(self, guess: Guess, base: Groups, spread: float) -> State:
-        """Return the state on the current mesh, or a coarse one that shows that the mesh does not serve."""
-        assert self.operators is not None
-        rough = solve_state(base, self.operators, guess, COARSE_RTOL, MAX_STEPS_ON_KEPT_MESH, self.inverse)
-        if not rough.outcome.ok:
-            return rough
-        if rough.prediction_error > COARSE_FIRST_ABOVE and not self._is_resolved(rough, spread):
-            return rough
-        if self.own_inverse and rough.root.last_step * rough.root.contraction <= newton_tolerance(self.rtol, own_inverse=True):
-            return rough
-        state = solve_state(
-            base, self.operators, rough, newton_tolerance(self.rtol), MAX_STEPS_ON_KEPT_MESH, rough.root.inverse
-        )
-        return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
+        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread, own_inverse=self.own_inverse))
 
     def _is_resolved(self, state: State, spread: float) -> bool:
         centre = -state.exit / state.cavity_stretch
-        part = RTOL_FRACTION_ON_PATH if spread > 0 else 1.0
+        part = SHARE if spread > 0 else 1.0
         return gap_is_resolved(state.mesh, state.gap, part * self.rtol, centre=centre, spread=spread)
 
     def _kept(self, point: RefinedState) -> RefinedState:
@@ -124,21 +104,21 @@ class Corrector:
 
     @property
     def _widest(self) -> tuple[float, float]:
-        """Mesh tolerances of a first mesh."""
+        """Mesh tolerances of a first mesh; that of a path resolves the minimum of neighbouring gaps too."""
         tail, gap_tail = mesh_tolerances_for(self.rtol)
-        return tail, self.gap_part * gap_tail
+        return tail, NEGLIGIBLE * gap_tail if self.own_inverse else gap_tail
 
     def _relax(self) -> None:
         """Widen the mesh tolerances by a factor, up to those of a first mesh."""
         tail, gap_tail = self._widest
-        self.tolerances = min(tail, RELAX_FACTOR * self.tolerances[0]), min(gap_tail, RELAX_FACTOR * self.tolerances[1])
+        self.tolerances = min(tail, STEP_GROWTH * self.tolerances[0]), min(gap_tail, STEP_GROWTH * self.tolerances[1])
 
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
         """Take another mesh, and drop the largest operators of the meshes left longest ago."""
         if self.operators is not None:
             vars(self.operators).pop("deflecting", None)
             self.left.append((self.operators, self.fine))
-        while sum(each.mesh.size**2 for each, _ in self.left) > CACHED_ENTRIES:
+        while sum(each.mesh.nodes.nbytes * each.mesh.size for each, _ in self.left) > MAX_BYTES:
             for operators_left in filter(None, self.left.popleft()):
                 for name in ("deflection", "_of_highest"):
                     vars(operators_left).pop(name, None)

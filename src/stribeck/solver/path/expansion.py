@@ -27,6 +27,7 @@ from stribeck.equations.operators import Operators, OperatorsOfRows
 from stribeck.numerics.jets import Tape
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.series import Samples, circle, implicit_series, radius
+from stribeck.numerics.settings import SAMPLE_RADIUS_RATIO
 from stribeck.numerics.trace import act
 from stribeck.quantities.outputs import ALL_NAMES
 
@@ -41,7 +42,6 @@ __all__ = [
 ]
 
 SHIFTED_COLUMNS = [ROW["central_gap"], ROW["offset"]]
-CIRCLE_RADIUS_RATIO = 0.25  # Radius of the circle on which observables are sampled, over that of convergence
 Direction = tuple[float, float, float]  # Derivatives of ln(speed), ln(load), ln(roughness) along a curve
 
 
@@ -95,7 +95,7 @@ def expand(
         tape = Tape(order)
         here, _ = along(equations, law, groups, direction, tape.growth)
         gap, contact, logs[:, ROW["contact_load_share"]] = _by_jets(here, tape, w, lambda r: units * inverse(r))
-        samples = circle(CIRCLE_RADIUS_RATIO * radius(w[:, at.gap]), order)
+        samples = circle(SAMPLE_RADIUS_RATIO * radius(w[:, at.gap]), order)
         powers = samples.powers(order)
         around, load = around_state(equations, _Known(powers @ contact), groups, direction, samples.places, models)
         y = powers @ w

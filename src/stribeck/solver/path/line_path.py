@@ -15,13 +15,24 @@ from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_ROWS, FineOperators
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
-from stribeck.equations.state import State, decay_of, is_thinning, solve_state
+from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
 from stribeck.numerics.newton import Inverse, Root
-from stribeck.numerics.series import COEFFICIENT_NOISE, beyond, interval, radius
-from stribeck.numerics.settings import FLOOR
+from stribeck.numerics.series import beyond, interval, radius
+from stribeck.numerics.settings import (
+    COEFFICIENT_NOISE,
+    FLOOR,
+    MIN_LOG_STEP,
+    NEGLIGIBLE,
+    SAFETY,
+    SAMPLE_RADIUS_RATIO,
+    SAMPLED_ORDER,
+    SERIES_ORDER,
+    SHARE,
+    STEP_GROWTH,
+)
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
@@ -37,38 +48,9 @@ from stribeck.solver.path.expansion import (
     residuals,
 )
 from stribeck.solver.path.interpolation import LinePoint, between, minimum_between, on
-from stribeck.solver.path.path import (
-    BETWEEN_RTOL_FRACTION,
-    MAX_EXPANSIONS,
-    MIN_OFFSET_SCALE,
-    SAFETY_CORRECTION,
-    SAFETY_TRUNCATION,
-    STATE_RTOL_FRACTION,
-    Expansion,
-)
+from stribeck.solver.path.path import Expansion
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
-EXACT_ORDERS = (18, 18)  # Orders of series for rtol >= 1e-7 and below, base model with a law that has an exact series
-POLYNOMIAL_ORDERS = (14, 16)  # Orders for rtol >= 1e-7 and below, base model with a law that is a polynomial near a separation
-SAMPLED_ORDER = 9  # Order of series of films that are sampled
-CUSP_ORDER = 6  # Order where the flow has a cusp at zero shear rate: it moves through the nodes, and high orders amplify it
-SAMPLE_RADIUS_RATIO = 0.2  # Distance of the samples over the radius of convergence
-MAX_SAMPLE_RADIUS_RATIO = 0.27  # Samples farther than this are taken once more
-# A node at which the shear rate of a power law passes zero turns sharply with the speed: at twice this distance series were
-# wrong from order two on.
-CUSP_SAMPLE_RATIO = 0.7  # Distance of the samples over that of other films, where the flow has a cusp
-STATE_RTOL_FRACTION_THINNING = 0.3  # Share of rtol for the states of thinning fluids, whose errors differ between meshes
-STATE_RTOL_FRACTION_CUSP = 0.1  # Share of rtol for the states of fluids without a plateau, whose cusp moves through the nodes
-MIN_SAMPLE_DISTANCE = 0.02  # Shortest distance of the samples: rounding grows as they come closer
-# Series coefficients below this fraction of rtol are noise and do not count for the radius of convergence: where asperities
-# hardly touch, their pressure converges on a hundredth of the interval on which it begins to count.
-NOISE_RTOL_FRACTION = 1e-4
-GAP_TAIL_RATIO = 0.2  # Tail of the gap over the usual one where the minimum is read, as neighbouring states use the mesh
-MAX_LAW_MISFIT = 1e-3  # Misfit of a law's local polynomial over rtol above which its series are checked between states
-ERROR_FLOOR_RATIO = 0.25  # Least error of an observable over the largest: one estimate may vanish by accident
-KEPT_INVERSES = 3  # Inverses held at a time, for both ends of an interval and a state between; each fills a matrix
-NEGLIGIBLE_RTOL_FRACTION = 0.1  # Error of the minimum gap's polynomial over rtol up to which it replaces the reading
-MAX_PREDICTION_DOUBT = 0.8  # Uncertainty of a prediction's log unknowns above which Newton's iteration does not start
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
 READ_COLUMNS = [ROW["minimum_gap"], POSITION]
 SERIES_COLUMNS = [ROW[name] for name in NAMES if name != "minimum_gap"]
@@ -88,28 +70,15 @@ class LineProblem:
     ) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
-        film = start.model.film
-        fractional = decay_of(film, 1.0).fractional
-        part = (
-            STATE_RTOL_FRACTION_CUSP
-            if fractional
-            else STATE_RTOL_FRACTION_THINNING
-            if is_thinning(film)
-            else STATE_RTOL_FRACTION
-        )
-        self.tolerance, self.rtol = rtol, part * rtol
+        self.tolerance, self.rtol = rtol, SHARE * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and has_formulas(start.model)
         exact = self.analytic and is_exponential(start.law)
-        orders = EXACT_ORDERS if exact else POLYNOMIAL_ORDERS
-        self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= MAX_LAW_MISFIT * rtol)
-        self.order_if_sampled = CUSP_ORDER if fractional else SAMPLED_ORDER
-        self.interval = CUSP_SAMPLE_RATIO if fractional else 1.0
-        self.degree = CUSP_ORDER + 1 if fractional else None
-        self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
-        self.corrector = Corrector(self.rtol, GAP_TAIL_RATIO, own_inverse=True)
+        self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= NEGLIGIBLE * rtol)
+        self.order = SERIES_ORDER if self.analytic else SAMPLED_ORDER
+        self.corrector = Corrector(self.rtol, own_inverse=True)
         self.failure: RefinedState | None = None
-        self._inverses: list[tuple[State, Inverse]] = []
+        self._last: tuple[State, Inverse] | None = None
 
     @cached_property
     def controlled(self) -> Flags:
@@ -126,7 +95,7 @@ class LineProblem:
         found = np.abs(values)
         found[:, SHARE_COLUMNS] = 1.0
         found[:, ROW["exit_position"] :] = 1.0
-        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], MIN_OFFSET_SCALE)
+        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], NEGLIGIBLE)
         found[:, DRAG_ROWS] = drag_scales(values)
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
@@ -137,7 +106,7 @@ class LineProblem:
     @property
     def negligible(self) -> float:
         """Error that the polynomial of the minimum gap may add."""
-        return NEGLIGIBLE_RTOL_FRACTION * self.tolerance
+        return NEGLIGIBLE * self.tolerance
 
     def read_scales(self, values: Array) -> Array:
         """Return the lowest minimum gap, and the half-width for its position."""
@@ -149,7 +118,7 @@ class LineProblem:
         refined: RefinedState | None
         if near and same_unknowns(*near):
             guess, doubt = self._guess(s, groups, near)
-            if not doubt <= MAX_PREDICTION_DOUBT:
+            if not doubt < 1:
                 return Outcome.PATH_LOST
             gap = guess.y[guess.equations.layout.gap]
             if not (np.isfinite(gap).all() and gap.min() > 0 and guess.cavity_stretch > 0):
@@ -177,7 +146,7 @@ class LineProblem:
             self.failure = refined
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
-        return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
+        return self._expanded(s, refined, min((one.radius for one in near), default=1.0))
 
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate
@@ -204,35 +173,29 @@ class LineProblem:
         positive = np.isfinite(logs[0]) & (series[0] > 0)
         logs[0, positive] = np.log(series[0, positive])
         errors = np.full(POSITION + 1, np.nan)
-        errors[: len(estimate.relative)] = np.maximum(estimate.relative, ERROR_FLOOR_RATIO * estimate.total)
+        errors[: len(estimate.relative)] = np.maximum(estimate.relative, NEGLIGIBLE * estimate.total)
         errors[POSITION] = estimate.minimum_position
-        self._keep(state, inverse)
+        self._last = state, inverse
         point = LinePoint(replace(refined, state=state), state, unknowns, refined.fine)
         return Expansion(s, point, series, logs, errors, known)
 
-    def _keep(self, state: State, inverse: Inverse) -> None:
-        """Keep the inverse of a state for its neighbours, and drop the oldest."""
-        self._inverses = [*self._inverses[1 - KEPT_INVERSES :], (state, inverse)]
-
     def _inverse_of(self, state: State) -> Inverse:
-        """Return the inverse of the Jacobian at a state, computed if it is not kept."""
-        known = next((inverse for each, inverse in self._inverses if each is state), None)
-        if known is None:
-            known = state.equations.inverse(state.y)
-            self._keep(state, known)
-        return known
+        """Return the inverse of the Jacobian at a state, computed if it is not the last one."""
+        if self._last is None or self._last[0] is not state:
+            self._last = state, state.equations.inverse(state.y)
+        return self._last[1]
 
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
         """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SERIES_COLUMNS] / self.scales(found.observables[:1], np.array([s]))[:, SERIES_COLUMNS]
-        rounding = max(COEFFICIENT_NOISE, NOISE_RTOL_FRACTION * self.tolerance)
+        rounding = max(COEFFICIENT_NOISE, NEGLIGIBLE * self.tolerance)
         return min(radius(each, reach, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
         """Return the series of a film from samples, and its radius of convergence."""
-        reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * near)
-        for _ in range(MAX_EXPANSIONS):
-            samples = interval(self.interval * reach, degree=self.degree)
+        reach = max(MIN_LOG_STEP, SAMPLE_RADIUS_RATIO * near)
+        while True:
+            samples = interval(reach)
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.places) - 1)
             models = (
                 [] if self.uniform else [with_ending_of(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
@@ -240,16 +203,11 @@ class LineProblem:
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
             found = expand(*around, self.order, samples, models)
             known = self._radius(s, state, found, reach)
-            if not (
-                np.isfinite(found.unknowns).all() and np.isfinite(known)
-            ):  # the law is too steep for so wide a neighbourhood
+            if not (np.isfinite(found.unknowns).all() and np.isfinite(known)):  # the law is too steep for such a neighbourhood
                 known = reach
-                reach = 0.25 * reach
-            elif reach > MAX_SAMPLE_RADIUS_RATIO * known:
-                reach = max(MIN_SAMPLE_DISTANCE, SAMPLE_RADIUS_RATIO * known)
-            else:
-                break
-        return found, known
+            if reach <= max(MIN_LOG_STEP, STEP_GROWTH * SAMPLE_RADIUS_RATIO * known):
+                return found, known
+            reach = max(MIN_LOG_STEP, SAMPLE_RADIUS_RATIO * known)
 
     def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> tuple[State, float]:
         """Return a guess of the state at ``s``, and the uncertainty of the logarithms of its unknowns."""
@@ -295,8 +253,7 @@ class LineProblem:
             point = self._verified(guess, guess.groups, groups, end.fine, rtol)
             if point is not None:
                 return point
-        tail, gap_tail = mesh_tolerances_for(rtol)
-        tolerances = tail, GAP_TAIL_RATIO * gap_tail
+        tolerances = mesh_tolerances_for(rtol)
         if guess.groups.model.cavitation is groups.model.cavitation:
             return converge(guess, groups, rtol, tolerances)
         point = converge(guess, replace(groups, model=guess.groups.model), rtol, tolerances)
@@ -329,9 +286,7 @@ class LineProblem:
     def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
         """Return the largest difference of ``values()`` from corrected states, where the law is not smooth."""
         same = left.point.state.mesh is right.point.state.mesh
-        found = (
-            np.zeros(POSITION + 1) if same else BETWEEN_RTOL_FRACTION * self.tolerance + self.mesh_disagreement(left, right)
-        )
+        found = np.zeros(POSITION + 1) if same else NEGLIGIBLE * self.tolerance + self.mesh_disagreement(left, right)
         if self.certain or not self.moves or not same_unknowns(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
@@ -342,7 +297,7 @@ class LineProblem:
             wrong = np.abs(corrected - known) / scales
         wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf, posinf=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
-        found[:POSITION] += SAFETY_CORRECTION * np.where(beyond > 0, beyond, 0.0)
+        found[:POSITION] += SAFETY * np.where(beyond > 0, beyond, 0.0)
         return found
 
     def mesh_disagreement(self, left: Expansion, right: Expansion) -> Array:
@@ -354,7 +309,7 @@ class LineProblem:
         terms = np.stack([left.series[: order + 1], right.series[: order + 1]]) * steps[:, :, None]
         values = terms.sum(axis=1)
         with np.errstate(all="ignore"):  # a series may lead to no number
-            apart = np.abs(values[1] - values[0]) - SAFETY_TRUNCATION * np.abs(terms[:, -2:]).max(axis=1).sum(axis=0)
+            apart = np.abs(values[1] - values[0]) - SAFETY * np.abs(terms[:, -2:]).max(axis=1).sum(axis=0)
         scales = self.scales(values.mean(axis=0)[None], np.array([0.5 * (left.coordinate + right.coordinate)]))[0]
         found = 0.5 * np.maximum(np.nan_to_num(apart), 0.0) / scales
         found[READ_COLUMNS] = found[ROW["central_gap"]], 0.0  # the minimum has no series

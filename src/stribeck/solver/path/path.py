@@ -19,33 +19,18 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
+from stribeck.numerics.settings import (
+    INNER_PLACES,
+    MAX_LOG_STEP,
+    MAX_PATH_STATES,
+    MIN_LOG_STEP,
+    NEGLIGIBLE,
+    SAFETY,
+    SERIES_ORDER,
+    STEP_GROWTH,
+)
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-
-MAX_STEP = 7.0  # Longest step in the logarithm of the varied quantity
-MIN_STEP = 1e-3  # Shortest step; a path that needs a shorter one is lost
-RETRY_STEP_RATIO = 0.75  # Length of a step over that of the failed one before
-MAX_STEP_RADIUS_RATIO = 1.2  # Longest step over the radius of convergence
-FIRST_STEP_RATIO = 0.83  # First step as a fraction of the later ones: radii fall from where a path begins
-STATE_RTOL_FRACTION = 0.75  # Share of rtol for solving the states; the rest is for interpolation
-BRANCH_JUMP = 1.0  # An interpolant that leaves the range of both ends by more than this many scales joins two branches
-CHECKED_RTOL_FRACTION = 0.85  # Share of rtol that an interval must hold at the checked places, as others are not checked
-SPLIT_RTOL_FRACTION = 0.25  # Interpolation error over rtol above which splitting helps; errors of the ends do not fall
-CHECK_POINTS = 24  # Places of an interval where errors are checked and observables without series are read
-SAFETY_TAIL = 3.0  # Error of a polynomial over the largest of its last three coefficients
-SAFETY_TRUNCATION = 2.0  # Error of a truncated series over its last term: later terms count about as much
-LOG_INTERPOLATE_BELOW = 1e3  # A share smaller than this many interpolation errors is interpolated by its logarithm
-MIN_LENGTH = 1e-300  # Keeps the single state of a path of length zero from dividing by zero
-INNER_PLACES = np.array([0.25, 0.5, 0.75])  # Where the equations are checked: laws with kinks may agree by accident at one
-MAX_END_INTERVAL = 0.05  # Longest interval on which an observable may cease to exist
-MIN_INTERVAL = 0.01  # Intervals are not split below this length: where a film ruptures no series converges
-ROUNDING_LENGTH = 0.4  # Length below which an error that a shorter interval does not reduce is rounding
-MAX_HALVING_RATIO = 0.6  # Error of a half over that of the whole above which splitting does not reduce the error
-MAX_INTERVALS = 500
-MAX_EXPANSIONS = 4  # Expansions of one state, each with a new distance of the samples
-BETWEEN_RTOL_FRACTION = 0.2  # Share of rtol for states between two others, which lie on meshes made for those
-SAFETY_CORRECTION = 2.0  # Stated error over a Newton correction with a neighbour's Jacobian, which misses part of the error
-MIN_OFFSET_SCALE = 0.1  # Least scale of the offset's error: the offset crosses zero where films become thick
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,9 +118,7 @@ class Interval:
     @cached_property
     def interpolation_error(self) -> Array:
         """Error of the interpolated observables by their highest orders, over ``(tau (1 - tau))**K``."""
-        return SAFETY_TRUNCATION * missed_by(
-            self.order, self.ends[:, : self.left.series.shape[1]], change_ratio(self.left, self.right)
-        )
+        return SAFETY * missed_by(self.order, self.ends[:, : self.left.series.shape[1]], change_ratio(self.left, self.right))
 
     @cached_property
     def at_ends(self) -> Array:
@@ -154,20 +137,21 @@ class Interval:
         """Largest difference of the interpolant from the equations within the interval."""
 
         def values() -> Array:
-            where = np.zeros(len(INNER_PLACES), dtype=int)
-            found, _, basis = self._alone.smooth(where, INNER_PLACES)
-            self._alone.read(found, where, INNER_PLACES, basis)
+            where = np.zeros(len(places), dtype=int)
+            found, _, basis = self._alone.smooth(where, places)
+            self._alone.read(found, where, places, basis)
             return found
 
-        return self.problem.checked_error(self.left, self.right, INNER_PLACES, values)
+        places = np.array(INNER_PLACES)
+        return self.problem.checked_error(self.left, self.right, places, values)
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials of observables without a series, their errors and columns, and whether they are accurate enough."""
-        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(CHECK_POINTS))
+        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(SERIES_ORDER))
         with np.errstate(invalid="ignore"):  # of values that are not finite no polynomial is good enough
             form = chebyshev_form(values)
-        tails = SAFETY_TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
+        tails = SAFETY * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
         missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
@@ -176,7 +160,7 @@ class Interval:
     @cached_property
     def values_at_checks(self) -> tuple[Array, Array]:
         """Observables and their errors at the checked places."""
-        return self.at(chebyshev_nodes(CHECK_POINTS))
+        return self.at(chebyshev_nodes(SERIES_ORDER))
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
@@ -190,7 +174,7 @@ class _Pieces:
         self.intervals, self.problem = intervals, intervals[0].problem
         self.count = intervals[0].left.series.shape[1]
         self.orders = np.array([one.order for one in intervals])
-        self.degree = max(CHECK_POINTS, 2 * int(self.orders.max()) + 2)
+        self.degree = max(SERIES_ORDER, 2 * int(self.orders.max()) + 2)
         self.forms = [one.form for one in intervals]
         self.interpolation_error = np.stack([one.interpolation_error for one in intervals])
         with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
@@ -208,7 +192,7 @@ class _Pieces:
         found = both[:, : self.count]
         missed = self.interpolation_error[where] * ((parts.real * (1 - parts.real)) ** self.orders[where])[:, None]
         if self.logs:  # a share below its error is interpolated by its logarithm, which keeps sign and digits
-            shares, limit = found[:, self.logs], LOG_INTERPOLATE_BELOW * missed[:, self.logs]
+            shares, limit = found[:, self.logs], missed[:, self.logs] / NEGLIGIBLE
             lost = shares.real < limit
             if lost.any():
                 with np.errstate(all="ignore"):
@@ -249,7 +233,7 @@ class _Pieces:
                 continue
             mine = np.nonzero(where == k)[0][:, None]
             if is_smooth:
-                found[mine, columns] = basis[mine[:, 0], :CHECK_POINTS] @ form
+                found[mine, columns] = basis[mine[:, 0], :SERIES_ORDER] @ form
             else:
                 found[mine, columns], errors, _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
             written.append((mine, columns, errors))
@@ -308,7 +292,7 @@ class SolvedPath:
     def _parts(self, s: Array) -> tuple[Array, Array]:
         """Return the interval of each coordinate, and its place in it."""
         where = self.interval_of(s.real)
-        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], MIN_LENGTH)
+        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], np.finfo(float).tiny)
 
     def smooth(self, s: Array) -> Array:
         """Return observables with a series, without errors, at real or complex coordinates."""
@@ -341,14 +325,14 @@ def follow(
         while (left := abs(here.coordinate - end)) > 0:
             if until is not None and until(SolvedPath(problem, _sorted_intervals(found) or alone, outcome)):
                 break
-            if len(found) >= MAX_INTERVALS:
+            if len(found) >= MAX_PATH_STATES:
                 return SolvedPath(problem, _sorted_intervals(found), Outcome.STATE_LIMIT)
-            step = min(left, MAX_STEP, max(MIN_INTERVAL, _step_length(here, rtol) * (1.0 if found else FIRST_STEP_RATIO)))
+            step = min(left, MAX_LOG_STEP, max(MIN_LOG_STEP, _step_length(here, rtol)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_next_coordinate(here, end, step if upwards else -step), [here]), Outcome):
-                step *= RETRY_STEP_RATIO
-                if step < (ROUNDING_LENGTH if new is Outcome.ROUNDING else MIN_STEP):
+                step /= STEP_GROWTH
+                if step < MIN_LOG_STEP:
                     return SolvedPath(problem, _sorted_intervals(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
             parts = _split_until_accurate(Interval(problem, low, high), rtol)
@@ -369,8 +353,8 @@ def _joins_two_branches(interval: Interval) -> bool:
     ends = np.stack([interval.left.series[0], interval.right.series[0]])
     scales = interval.problem.scales(ends, np.array([interval.left.coordinate, interval.right.coordinate])).max(axis=0)
     values, errors = interval.values_at_checks
-    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > BRANCH_JUMP * scales
-    return bool((far & (errors > BRANCH_JUMP))[:, interval.problem.controlled].any())
+    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > scales
+    return bool((far & (errors > 1))[:, interval.problem.controlled].any())
 
 
 def _next_coordinate(here: Expansion, end: float, step: float) -> float:
@@ -385,28 +369,26 @@ def _sorted_intervals(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
 def _step_length(here: Expansion, rtol: float) -> float:
     """Return the longest step on which the coefficients should interpolate within the tolerance."""
     order = here.order
-    return here.radius * min(MAX_STEP_RADIUS_RATIO, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
+    return here.radius * 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(order, 1)))
 
 
 def _split_until_accurate(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
     """Return an interval split until it interpolates within the tolerance, ascending."""
-    if interval.length < MIN_INTERVAL:
+    if interval.length < 2 * MIN_LOG_STEP:
         return [interval]
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
-    ends_between = (
-        bool((exists[0] != exists[1]).any()) and interval.length > MAX_END_INTERVAL
-    )  # something exists on one side alone
+    ends_between = bool((exists[0] != exists[1]).any())  # something exists on one side alone
     values, errors = interval.values_at_checks
     # The errors of the ends do not fall with the length.
-    scales = problem.scales(values, left.coordinate + chebyshev_nodes(CHECK_POINTS) * interval.length)
+    scales = problem.scales(values, left.coordinate + chebyshev_nodes(SERIES_ORDER) * interval.length)
     with np.errstate(over="ignore"):  # series that lead to no number count as wrong
         of_ends = np.where(problem.sign_changing, interval.at_ends[1] / scales, interval.at_ends[0])
-    excess = errors - of_ends > SPLIT_RTOL_FRACTION * rtol
-    if not ends_between and not ((errors > CHECKED_RTOL_FRACTION * rtol) & excess)[:, problem.controlled].any():
+    excess = errors - of_ends > NEGLIGIBLE * rtol
+    if not ends_between and not ((errors > (1 - NEGLIGIBLE) * rtol) & excess)[:, problem.controlled].any():
         return [interval]
     worst = float(np.nanmax(errors[:, problem.controlled]))
-    if interval.length < ROUNDING_LENGTH and worst > MAX_HALVING_RATIO * before:  # rounding, which halving does not remove
+    if worst > before / STEP_GROWTH and not ends_between:  # rounding, or a film that ruptures: no shorter interval has less
         return [interval]
     at = 0.5 * (left.coordinate + right.coordinate)
     for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good on one side alone
