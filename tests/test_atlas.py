@@ -500,3 +500,17 @@ def test_a_curve_off_the_atlas_is_shown_and_drawn_as_a_solved_one(tmp_path):
     above = solved.plot(ax=Figure().add_subplot()).axes[0]
     assert [line.get_label() for line in drawn.lines[:3]] == [line.get_label() for line in above.lines[:3]]
     assert drawn.get_xlim() == pytest.approx(above.get_xlim())
+
+
+def test_shares_and_friction_are_those_of_the_single_functions():
+    groups = sb.Groups(np.geomspace(1e-9, 1e2, 23), 0.05, 0.002)
+    for definition in ("published", "balanced"):
+        found = sb.atlas.shares_and_friction(groups, 0.8, 0.05, definition)
+        expected = [
+            sb.atlas.fluid_load_share(groups),
+            sb.atlas.contact_load_share(groups),
+            sb.atlas.viscous_friction(groups, 0.05, definition),
+            sb.atlas.friction_derivatives(groups, 0.8, 0.05, definition)[0],
+        ]
+        assert np.allclose(found, expected, rtol=1e-12, atol=0)
+    assert sb.atlas.shares_and_friction(sb.Groups(0.0, 0.05, 0.002))[3] == 0

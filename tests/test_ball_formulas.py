@@ -13,9 +13,18 @@ from scipy.special import k0, k1, kn
 import stribeck as sb
 from evidence.formulas import relative_error
 from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, film_layers, point
-from stribeck.asymptotics.point import boundary, film, friction, hertz, regressions, rest, rigid, sharing, slow_contact
-from stribeck.asymptotics.point.logarithm import far_integral
-from stribeck.solver.point.solve import solve_cold
+from stribeck.asymptotics.point import (
+    boundary,
+    film,
+    friction,
+    hertz,
+    logarithm,
+    regressions,
+    rest,
+    rigid,
+    sharing,
+    slow_contact,
+)
 
 SMOOTH = {
     1e-6: (1.0481845747e-4, 2.0583163e-5, 7.8641938e-5),
@@ -44,7 +53,7 @@ def columns(name):
 
 
 def viscous(groups, J, beta):
-    return 0.75 * beta * groups.load ** (1 / 3) * (J + groups.speed * far_integral(groups.slope(beta)))
+    return 0.75 * beta * groups.load ** (1 / 3) * (J + groups.speed * logarithm.far_integral(groups.slope(beta)))
 
 
 def order(steps, errors):
@@ -405,7 +414,7 @@ def test_the_speed_of_a_share_and_the_smooth_integral_are_as_near_as_they_were_f
     off = np.abs(np.log(found / speed[shared]))
     assert off.max() < 0.15 and np.median(off) < 0.085
     speed, _, _, _, J = columns("smooth")
-    far = speed * float(far_integral(1.0, 15.0))
+    far = speed * float(logarithm.far_integral(1.0, 15.0))
     assert np.abs((friction.smooth_integral(speed) - J) / (J + far)).max() < 8e-4
 
 
@@ -456,11 +465,11 @@ def test_the_error_of_another_formula_of_the_ball_vanishes_with_the_stated_order
 def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
     speed, load, kappa, share, central, J = columns("mixed")
     for i in range(3, len(speed), 12):
-        found = solve_cold(ball(float(speed[i]), float(load[i]), float(kappa[i])), 1e-3).values
-        assert abs(found["contact_load_share"] - share[i]) < 1e-3
-        assert math.isclose(found["central_gap"], central[i], rel_tol=2e-3)
-        assert math.isclose(found["J_balanced"], J[i], rel_tol=4e-3)
+        found = sb.solve(ball(float(speed[i]), float(load[i]), float(kappa[i])), rtol=1e-3)
+        assert abs(found.contact_load_share - share[i]) < 1e-3
+        assert math.isclose(found.central_gap, central[i], rel_tol=2e-3)
+        assert math.isclose(found.J_balanced, J[i], rel_tol=4e-3)
     for speed, load, kappa, share, _, pcx in columns("both").T[8::16]:
-        found = solve_cold(ball(speed, load, kappa), 1e-3).values
-        assert abs(found["contact_load_share"] - share) < 1e-3
-        assert math.isclose(found["J_pcx"], pcx, rel_tol=4e-3)
+        found = sb.solve(ball(speed, load, kappa), rtol=1e-3)
+        assert abs(found.contact_load_share - share) < 1e-3
+        assert math.isclose(found.J_pcx, pcx, rel_tol=4e-3)

@@ -6,8 +6,6 @@ from command_line import EXAMPLES
 from matplotlib.figure import Figure
 
 import stribeck as sb
-from stribeck.experiments.compare import Candidate
-from stribeck.experiments.next_runs import NextRun
 
 ALONG = np.linspace(-2.0, 2.0, 41)
 
@@ -18,8 +16,7 @@ def results():
     ball = sb.solve(sb.load_case(EXAMPLES / "rubber_ball.toml").contact, rtol=1e-2)
     data = sb.read_measurements(EXAMPLES / "pdms_measured.csv")
     fit = sb.fit(data, contact, free=("boundary_friction", "roughness"), intervals=False)
-    run, other = (NextRun(data.curves[0], speed, 50.0, 0.05, 0.2, 1.5, 1.0, {"roughness": 0.1}) for speed in (0.01, 0.1))
-    state = sb.solve(contact)
+    state, rows = sb.solve(contact), np.linspace(0.05, 12.0, 60)
     return {
         "solution": state,
         "profile in SI units": state.to_si(),
@@ -33,10 +30,10 @@ def results():
         "uncertainty": sb.propagate(contact, {"roughness": 0.2}),
         "measurements": data,
         "fit": fit,
-        "comparison": sb.results.Comparison(
-            (Candidate("one", fit, 1.0, 0.0, 0.9), Candidate("two", fit, 5.5, 4.5, 0.1)), {"no": "why"}
+        "comparison": sb.compare(
+            data, contact, laws={"one": None, "two": sb.contact_laws.TableLaw(rows, np.exp(-rows) + 0.1 * np.exp(-2 * rows))}
         ),
-        "plan": sb.results.Plan((run,), {"roughness": 0.3}, 0.05, (run, other)),
+        "plan": sb.next_runs(fit, 1, speeds=["1 mm/s", "10 mm/s", "0.1 m/s"], loads=["30 N/m"]),
     }
 
 

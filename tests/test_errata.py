@@ -14,9 +14,17 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 import stribeck as sb
-from stribeck.asymptotics import boundary, edge_layer, hydrodynamic, load_sharing, mixed, perturbation, rest, transitions
-from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.regimes.weakening import weakening
+from stribeck.asymptotics import (
+    boundary,
+    constants,
+    edge_layer,
+    hydrodynamic,
+    load_sharing,
+    mixed,
+    perturbation,
+    rest,
+    transitions,
+)
 
 pytestmark = pytest.mark.filterwarnings("ignore::stribeck.asymptotics.OutOfRangeWarning")
 
@@ -42,6 +50,11 @@ def slow(load, kappa, share):
 def odd(field):
     """Return the odd part in x of a field on symmetric positions."""
     return (field - field[::-1]) / 2
+
+
+def lowest(load, kappa):
+    """Return the minimum of the printed friction of a curve over all speeds, None where friction only grows."""
+    return sb.stribeck_curve(load=load, roughness=kappa * load, definition="published", rtol=1e-6).minimum
 
 
 @cache
@@ -151,7 +164,7 @@ def test_the_constant_of_the_central_film_is_not_044():
     speeds = np.array([1e-7, 1e-8])
     fast, slow_ = (state(s, kappa=0.0, rtol=1e-8).central_gap / s**0.6 for s in speeds)
     limit = slow_ - (fast - slow_) / (10**0.4 - 1)
-    assert limit == pytest.approx(FILM_CONSTANT, abs=2e-6)
+    assert limit == pytest.approx(constants.FILM_CONSTANT, abs=2e-6)
     assert 0.44 / limit - 1 == pytest.approx(-0.0131, abs=1e-4)
 
 
@@ -165,7 +178,7 @@ def test_the_viscous_friction_at_one_speed_group_goes_as_the_root_of_the_load():
 
 def test_the_bracket_of_the_friction_is_one_where_the_gap_is_the_flux_gap():
     """[BP] below Eq. (hydrofriction_full): "the term in brackets vanishes in this region"."""
-    h = FILM_CONSTANT * 1e-8**0.6
+    h = constants.FILM_CONSTANT * 1e-8**0.6
     groups = sb.Groups(1e-8, LOAD, 0.0)
     solved = state(1e-8, kappa=0.0).friction().fluid
     assert groups.hersey_number() * 2 / (h * groups.slope()) == pytest.approx(hydrodynamic.friction_large(groups), rel=1e-12)
@@ -610,7 +623,7 @@ def test_the_mixed_law_is_a_limit_and_a_tenth_to_a_half_low_at_the_minimum():
 def test_the_mixed_law_of_the_conclusion_lacks_alpha_and_beta():
     """[BP] Conclusion, first equation, against Eq. (friction_hydro-mixed_transition)."""
     contact = pdms(speed=5e-4)
-    groups, film = contact.groups, FILM_CONSTANT * contact.groups.speed**0.6 * contact.hertz.indentation
+    groups, film = contact.groups, constants.FILM_CONSTANT * contact.groups.speed**0.6 * contact.hertz.indentation
     length = 2 * contact.hertz.half_width
     viscous = contact.viscosity * contact.speed * length / (contact.load * film)
 
@@ -635,7 +648,7 @@ def test_lambda_is_a_function_of_k_in_the_limit_of_small_roughness_only():
     # On the same k, at load 1e-3, there is no minimum.
     lightest = sb.Groups(1.0, 1e-3, 1e-3)
     assert transitions.weakening_number(lightest) == pytest.approx(k[0], rel=1e-12)
-    assert not weakening(lightest, definition="published").present
+    assert lowest(1e-3, 1.0) is None
     # The parameter holds beta/boundary_friction too.
     groups = sb.Groups(1.0, LOAD, LOAD * KAPPA)
     assert transitions.weakening_number(groups, 0.1, 0.5) == pytest.approx(5 * k[1], rel=1e-12)
@@ -650,18 +663,14 @@ def test_the_branch_of_lambda_ends_at_k_one_half_and_the_minimum_long_before():
     rough = sb.Groups(1.0, LOAD, 0.165 * LOAD)
     assert transitions.weakening_number(rough) < 0.026
     assert transitions.has_minimum(rough, form="exact") and not transitions.has_minimum(rough)
-    assert not weakening(rough, definition="published").present
+    assert lowest(LOAD, 0.165) is None
 
 
 def test_a_minimum_above_the_dry_friction_still_weakens_with_speed():
     """[BP] Conclusion: the minimum exceeds mu_0, the lines merge and the branch disappears, as one event."""
-    between = weakening(sb.Groups(1.0, LOAD, 0.14 * LOAD), definition="published")
-    assert between.present and between.slope < -0.09
-    assert between.minimum_friction == pytest.approx(1.09, abs=0.005)
-    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD), definition="published") for kappa in (0.1215, 0.1225))
-    assert lower.minimum_friction < 1 < higher.minimum_friction
-    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD), definition="published") for kappa in (0.1595, 0.1605))
-    assert lower.present and not higher.present
+    assert lowest(LOAD, 0.14).friction == pytest.approx(1.09, abs=0.005)
+    assert lowest(LOAD, 0.1215).friction < 1 < lowest(LOAD, 0.1225).friction
+    assert lowest(LOAD, 0.1595) is not None and lowest(LOAD, 0.1605) is None
     by_formulas = [
         transitions.roughness_without_minimum(LOAD, criterion=name) / LOAD for name in ("plateau", "lines", "weakening")
     ]

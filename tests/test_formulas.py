@@ -21,7 +21,7 @@ from evidence.coefficients import JUDGED_FORMULAS, largest_errors
 from evidence.formulas import CURVE_QUANTITIES, FIELDS, MEASURED, relative_error
 from stribeck import asymptotics
 from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
-from stribeck.asymptotics.formula import COEFFICIENT_RATIO, PARAMETERS
+from stribeck.asymptotics import formula as formulas
 
 SEED = 60913
 STATES = 6
@@ -117,7 +117,7 @@ def drawn():
 def at_the_ends(formula, one):
     """Return a state with each group at the nearer end of its limit, as far as it stays in the range."""
     for limit in formula.limits:
-        value = PARAMETERS[limit.parameter](one) if limit.parameter in SPAN else 0.0
+        value = formulas.PARAMETERS[limit.parameter](one) if limit.parameter in SPAN else 0.0
         ends = [end for end in (limit.low, limit.high) if 0 < end < math.inf]
         if value > 0 and ends:
             end = min(ends, key=lambda end: abs(math.log(end / value)))
@@ -147,7 +147,7 @@ def states(formula):
 
 def coefficients(formula):
     """Return mu0 and beta at the ends of the range of a formula and in it; nothing, once, if it has no such range."""
-    found = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
+    found = [limit for limit in formula.limits if limit.parameter == formulas.COEFFICIENT_RATIO]
     if not found:
         return [{}]
     ends = [{"boundary_friction": 0.3, "beta": 0.3 * max(end, 1e-3)} for end in (found[0].low, found[0].high)]
@@ -202,12 +202,12 @@ def test_what_a_formula_says_of_itself_is_complete():
         yield "interval", (formula.interval is None) == (formula.predicts not in FIELDS)
         yield "plane", formula.plane in ("smooth", "rest", "mixed")
         yield "worst", 0 < formula.worst < 1
-        yield "limits", {limit.parameter for limit in formula.limits} <= {*PARAMETERS, COEFFICIENT_RATIO}
+        yield "limits", {limit.parameter for limit in formula.limits} <= {*formulas.PARAMETERS, formulas.COEFFICIENT_RATIO}
         yield (
             "approach",
             bool(formula.small) == bool(formula.approach) == (len(formula.steps) >= 3) == (formula.error_order > 0),
         )
-        yield "small", not formula.small or formula.small in PARAMETERS
+        yield "small", not formula.small or formula.small in formulas.PARAMETERS
 
     assert [(formula.name, name) for formula in FORMULAS for name, holds in faults(formula) if not holds] == []
 
@@ -217,7 +217,7 @@ def test_a_formula_of_both_coefficients_states_for_which_of_them_its_error_holds
         has_both = {"boundary_friction", "beta"} <= set(inspect.signature(formula.function).parameters)
         assert formula.needs_coefficients == has_both, formula.name
         if has_both:
-            assert COEFFICIENT_RATIO in formula.range, formula.name
+            assert formulas.COEFFICIENT_RATIO in formula.range, formula.name
             # What rubber and gels have, by the surfaces of theory.md, section 8.
             assert formula.valid(states(formula)[0], boundary_friction=1.0, beta=0.05), formula.name
             assert formula.valid(states(formula)[0]), formula.name
@@ -267,7 +267,7 @@ def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
     small = np.sort(formula.steps)
     approached = [formula.approach(float(value)) for value in small]
     for groups, value in zip(approached, small, strict=True):
-        assert math.isclose(float(PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
+        assert math.isclose(float(formulas.PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
     errors = np.abs([relative_error(formula, groups) for groups in approached])
     assert (np.diff(errors) > 0).all(), errors
     slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
@@ -289,7 +289,7 @@ def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_mo
     for name in JUDGED_FORMULAS:
         with subtests.test(name=name):
             formula = JUDGED_FORMULAS[name][0]
-            [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENT_RATIO]
+            [limit] = [limit for limit in formula.limits if limit.parameter == formulas.COEFFICIENT_RATIO]
             ratios = (max(limit.low, 1e-5), 0.03, limit.high)
             worst, median = largest_errors(name, (*ratios, limit.low / 10, limit.high * 10), points=(5, 4))
             assert max(worst[:3]) <= formula.worst
@@ -300,7 +300,7 @@ def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_mo
 
 def test_the_law_of_mixed_friction_is_worst_where_its_limits_meet():
     groups = sb.Groups(1.0, 1e-3, 1.000001e-7)
-    slower = replace(groups, speed=float(3.0 / PARAMETERS["film_ratio"](groups)) ** (5 / 3) * (1 + 1e-6))
+    slower = replace(groups, speed=float(3.0 / formulas.PARAMETERS["film_ratio"](groups)) ** (5 / 3) * (1 + 1e-6))
     mixed, ratio = asymptotics.mixed.friction, {"boundary_friction": 1.0, "beta": 3.0}
     assert mixed.valid(slower, **ratio) and 0.98 * mixed.worst < abs(relative_error(mixed, slower, **ratio)) <= mixed.worst
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics.rough.free_exit import boundary_film_with_free_exit
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 
@@ -17,7 +16,9 @@ def test_the_first_order_of_boundary_lubrication_is_its_quadrature(subtests):
     for row in REFERENCE["boundary_first_order_free_exit"]["rows"]:
         with subtests.test(row=row):
             load, x_c, flux_gap, share = row
-            assert tuple(boundary_film_with_free_exit(load)) == pytest.approx((x_c, flux_gap, share), rel=1e-8)
+            assert tuple(sb.asymptotics.free_exit.boundary_film_with_free_exit(load)) == pytest.approx(
+                (x_c, flux_gap, share), rel=1e-8
+            )
 
 
 @pytest.mark.quick
@@ -26,7 +27,7 @@ def test_the_first_order_exceeds_the_second_of_a_full_film_up_to_a_fluid_number(
         with subtests.test(load=load, equal=equal):
             n = 1e-4
             full = float(sb.asymptotics.boundary.fluid_load_share(sb.Groups(n * 1e-10, load, 1e-5 * load))) / n**2
-            assert boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
+            assert sb.asymptotics.free_exit.boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
 
 
 def test_the_minimum_of_friction_is_lower_and_at_more_speed(subtests):
@@ -43,7 +44,7 @@ def test_the_minimum_of_friction_is_lower_and_at_more_speed(subtests):
 
 
 def test_states_approach_the_first_order_as_the_roughness_falls():
-    law = boundary_film_with_free_exit(0.1)
+    law = sb.asymptotics.free_exit.boundary_film_with_free_exit(0.1)
     excess = []
     for kappa in (1e-2, 1e-3, 1e-4):
         state = sb.solve(sb.Groups(1e-2 * kappa**2, 0.1, 0.1 * kappa), cavitation="exit")
@@ -57,7 +58,7 @@ def test_a_load_without_boundary_lubrication_is_refused(subtests):
     for load in [1.0, 0.0, "0.1", True, np.nan]:
         with subtests.test(load=load):
             with pytest.raises(sb.InputError, match="load ="):
-                boundary_film_with_free_exit(load)
+                sb.asymptotics.free_exit.boundary_film_with_free_exit(load)
 
 
 def test_smooth_films_that_end_have_their_own_outlet():

@@ -6,12 +6,10 @@ import pytest
 
 import stribeck as sb
 from stribeck import Case
-from stribeck.contacts.friction import DEFINITIONS
-from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.regimes.margins import regime_margins
 
 MIXED = (1e-5, 0.1, 1e-4)
+DEFINITIONS = ("balanced", "published")
 
 
 def test_friction_is_boundary_friction_times_load_share_and_beta_times_the_viscous_part(subtests, solved):
@@ -40,6 +38,6 @@ def test_friction_is_balanced_unless_the_published_one_is_asked_for(solved):
     assert batch.friction() == batch.friction(definition="balanced")
     defaults = {
         function.__name__: inspect.signature(function).parameters["definition"].default
-        for function in (sb.stribeck_curve, sb.phase_diagram, regime_margins, friction_sensitivities)
+        for function in (sb.stribeck_curve, sb.phase_diagram, sb.check, sb.explain, sb.propagate, regime_margins)
     }
-    assert set(defaults.values()) == {"balanced"} == {Case.definition, Inputs.definition}, defaults
+    assert set(defaults.values()) == {"balanced"} == {Case.definition}, defaults

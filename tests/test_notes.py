@@ -9,8 +9,6 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE, exact
 
 import stribeck as sb
-from stribeck.contacts.notes import HARD_PREFIX, LAW_RANGE, MAX_HERTZ_PRESSURE, pressure_notes
-from stribeck.regimes.margin_limits import physical_bounds
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none")
@@ -18,6 +16,10 @@ SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none
 
 STIFF = {"modulus": '"5.4 GPa"', "load": '"60 kN/m"', "viscosity": '"100 Pa*s"'}
 """The PDMS cylinder with all pressures 2000 times as high, so that the groups stay."""
+
+
+HARD_PREFIX = "Hard elastohydrodynamics:"
+LAW_RANGE, MAX_HERTZ_PRESSURE = (0.4, 2.0), 50e6  # As docs/checks.md says them
 
 
 def gap(solution):
@@ -138,8 +140,10 @@ def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(subtests):
 
 def test_a_fluid_that_stiffens_with_pressure_is_not_said_to_be_missing():
     contact = TRUE.replace(modulus=4 * MAX_HERTZ_PRESSURE**2 / TRUE.hertz.pressure**2 * TRUE.modulus)
-    assert pressure_notes(contact)
-    assert not pressure_notes(contact.replace(fluid=sb.fluids.Barus("10 1/GPa")))
+    hard, modelled = (
+        sb.solve(each, rtol=1e-3).notes for each in (contact, contact.replace(fluid=sb.fluids.Barus("10 1/GPa")))
+    )
+    assert hard[0].startswith(HARD_PREFIX) and not any(note.startswith(HARD_PREFIX) for note in modelled)
 
 
 def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, capsys, no_scans):
@@ -189,13 +193,11 @@ def slow_and_stiff():
 
 def test_no_advice_leaves_what_an_input_can_be(slow_and_stiff):
     contact, found = slow_and_stiff
+    highest = {"speed": 1e3, "roughness": contact.hertz.half_width}  # that of sound; not 866 mm, 43 times the radius
     for margin in found.margins:
-        low, high = physical_bounds(contact, margin.name)
-        assert low <= margin.searched[0] * (1 + 1e-9) and margin.searched[1] <= high * (1 + 1e-9)
-        for mark in (margin.less, margin.more):
-            assert mark is None or low <= mark.value <= high
-    roughness = found.margins[2]
-    assert roughness.searched[1] <= contact.hertz.half_width < 1e-3  # and not 866 mm, 43 times the radius
+        high = highest.get(margin.name, math.inf)
+        assert margin.searched[1] <= high * (1 + 1e-9)
+        assert all(mark is None or mark.value <= high for mark in (margin.less, margin.more))
 
 
 def test_speed_and_viscosity_end_each_where_they_must():
@@ -204,17 +206,6 @@ def test_speed_and_viscosity_end_each_where_they_must():
     speed, _, _, viscosity = regime_margins(thin, rtol=1e-4).margins
     assert speed.more is None and speed.searched[1] == pytest.approx(1e3)
     assert viscosity.more is not None and viscosity.more.value > 1e-5
-
-
-def test_a_value_that_is_counts_as_possible(subtests):
-    for name in ["speed", "load", "roughness", "viscosity"]:
-        with subtests.test(name=name):
-            low, high = physical_bounds(TRUE, name)
-            assert low < getattr(TRUE, name) < high
-            beyond = TRUE.replace(**{name: 10 * high})
-            assert physical_bounds(beyond, name)[1] >= 10 * high * (1 - 1e-12)
-            if name == "load":
-                assert TRUE.replace(load=high).hertz.half_width == pytest.approx(TRUE.radius)
 
 
 # --- cavitation ---

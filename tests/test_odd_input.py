@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 import stribeck as sb
 from stribeck import asymptotics
-from stribeck.contacts.groups import MAX_GROUP, MIN_GROUP
 
 NO_NUMBERS = [
     *(None, True, "1", "x", "", b"1", [], {}, {"a": 1}, 1j, object(), math.nan, math.inf, -math.inf, -1.0, 10**400),
@@ -76,7 +75,7 @@ def test_the_relative_roughness_has_that_range_too_and_pairs_of_arrays_are_judge
 
 
 def test_the_ends_of_the_range_are_in_it_also_as_exponentials_of_logarithms(subtests):
-    for value in [MIN_GROUP, MAX_GROUP]:
+    for value in [1e-300, 1e300]:
         with subtests.test(value=value):
             assert sb.Groups(value, 1.0, 0.0).speed == value
             found = math.exp(math.log(value))
@@ -113,24 +112,6 @@ def test_what_converged_far_beyond_the_tested_box_still_does(subtests):
     for speed, load, roughness in [(1e-200, 1e-3, 1e-6), (1e6, 1e60, 0.0), (1e14, 1e-8, 1e-11)]:
         with subtests.test(speed=speed, load=load, roughness=roughness):
             assert sb.solve(sb.Groups(speed, load, roughness)).outcome.ok
-
-
-def test_a_path_that_leads_nowhere_is_given_up_after_a_bounded_number_of_steps(monkeypatch):
-    from stribeck.solver import cold_start
-
-    taken = []
-    original = cold_start.solve_state
-
-    def counted(*args, **kwargs):
-        state = original(*args, **kwargs)
-        taken.append(state.root.steps)
-        return state
-
-    monkeypatch.setattr(cold_start, "solve_state", counted)
-    monkeypatch.setattr(cold_start, "MAX_NEWTON_STEPS", 20)
-    with pytest.raises(sb.SolveError, match="speed 1e-12, load 0.1, roughness 1e-07: .*path"):
-        sb.solve(sb.Groups(1e-12, 0.1, 1e-7))
-    assert 20 < sum(taken) <= 60
 
 
 @given(st.sampled_from(EXTREMES), st.sampled_from(EXTREMES), st.sampled_from(EXTREMES))

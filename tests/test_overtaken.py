@@ -8,10 +8,6 @@ from fit_data import TRUE, measured
 
 import stribeck as sb
 from stribeck.atlas import friction, friction_derivatives
-from stribeck.explorer.curves import solved_curve
-from stribeck.plot.curve import plot_curve
-from stribeck.regimes.transition_speeds import transition_speeds
-from stribeck.regimes.weakening import weakening
 
 GROUPS, BALL = sb.Groups(1e-3, 0.1, 1e-3), sb.Groups(1e-2, 1e-3, 1e-4, geometry="point")
 DRY, BETA = 0.5, 0.05
@@ -50,15 +46,6 @@ def test_the_minimum_of_an_overtaken_substrate_is_that_of_the_cylinder_that_over
                     assert marks[1].friction < 0 < marks[0].friction
 
 
-def test_the_branch_of_falling_friction_is_found_by_its_size():
-    for ratio in (0.5, -0.5, -4.0):
-        found = curve(GROUPS, ratio, 1e-5).minimum
-        branch = weakening(found.solution.groups, DRY, BETA, rtol=1e-5)
-        assert branch.present
-        assert branch.minimum_speed == pytest.approx(found.value, rel=1e-3)
-        assert branch.minimum_friction == pytest.approx(found.friction, rel=1e-3, abs=1e-4)
-
-
 def test_the_minimum_of_a_ball_goes_by_the_size_too(subtests):
     for ratio in [-0.5, -4.0]:
         with subtests.test(ratio=ratio):
@@ -72,9 +59,6 @@ def test_the_minimum_of_a_ball_goes_by_the_size_too(subtests):
             assert dry == pytest.approx(-DRY * found.observable("contact_load_share"), rel=1e-12)
             read = friction(BALL, DRY, BETA, slide_to_roll=ratio)
             assert read == pytest.approx(sb.solve(BALL, slide_to_roll=ratio, rtol=1e-4).friction(DRY, BETA).total, rel=2e-3)
-            marks = transition_speeds(BALL, DRY, BETA, slide_to_roll=ratio)
-            assert marks.minimum[0] == pytest.approx(minimum.value, rel=2e-2)
-            assert marks.hydrodynamic[0] == pytest.approx(found.landmark("hydrodynamic_start").value, rel=2e-2)
 
 
 def test_derivatives_off_the_atlas_are_those_of_the_friction_with_its_sign():
@@ -98,11 +82,9 @@ def test_a_fit_predicts_the_size_of_friction_which_is_what_a_rig_measures():
     assert found["roughness"].value == pytest.approx(true.roughness, rel=1e-4)
 
 
-def test_pictures_and_the_explorer_show_sizes():
+def test_pictures_show_sizes():
     contact = TRUE.replace(slide_to_roll=-1.0)
-    drawn = plot_curve(sb.stribeck_curve(contact, points=9, rtol=1e-3))
+    drawn = sb.stribeck_curve(contact, points=9, rtol=1e-3).plot()
     axes = drawn.axes[0]
     assert axes.get_ylabel().startswith("size") and axes.get_yscale() == "log"
     assert all((np.asarray(line.get_ydata()) >= 0).all() for line in axes.lines)
-    marks = solved_curve(contact, "balanced", lambda part: None, rtol=1e-3).marks
-    assert marks["boundary"].speed < marks["minimum"].speed < marks["hydrodynamic"].speed

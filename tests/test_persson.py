@@ -100,30 +100,6 @@ def test_the_slope_is_the_derivative(law):
     assert np.abs(with_slope(law.log_pressure, s)[1] / difference - 1).max() < 1e-7
 
 
-def test_the_slope_has_no_kinks_at_the_points_of_the_table(law):
-    knots = np.exp(law._knots[(law._knots > -300) & (law._knots < math.log(30))])
-    d = 1e-7 * knots
-
-    def slope(s):
-        return with_slope(law.log_pressure, s)[1]
-
-    def bend(sign):
-        return (slope(knots + sign * d) - slope(knots)) / (sign * d)
-
-    scale = np.abs(slope(knots)) / knots
-    assert np.abs((bend(1) - bend(-1)) / scale).max() < 1e-4
-
-
-def test_the_stated_error_is_kept_between_the_points(law):
-    from stribeck.contact_laws.persson_integral import Integral
-
-    unit = Spectrum(ROLLED.spectrum.wavenumber, ROLLED.spectrum.density)
-    y = np.random.default_rng(71).uniform(-36, math.log(26 * law.rms_slope / math.sqrt(2) / law.beta), 1000)
-    log_s = Integral.of(unit, 0.45).separation(y)[0]
-    assert np.abs(law.log_pressure(np.exp(log_s)) - y).max() < 1.5e-11
-    assert 0 < law.error <= 1e-11
-
-
 def test_shape_does_not_depend_on_height_or_unit_of_length():
     small = persson_law(SelfAffine(h_rms=3e-7, q0=1e4, q1=1e7, hurst=0.8, roll_off=5e4))
     unit = persson_law(ROLLED)

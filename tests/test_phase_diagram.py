@@ -10,8 +10,6 @@ import pytest
 import stribeck as sb
 from stribeck import Outcome
 from stribeck.asymptotics import load_sharing, transitions
-from stribeck.files import datasets as store
-from stribeck.regimes.weakening import roughness_without_minimum, weakening
 
 pytest.importorskip("xarray")
 
@@ -93,7 +91,7 @@ def test_every_variable_has_unit_and_name_and_the_file_holds_them(diagram, tmp_p
     assert diagram.attrs["source"].startswith("stribeck ")
     assert (diagram.attrs["boundary_friction"], diagram.attrs["beta"], diagram.attrs["complete"]) == (MU0, BETA, 1)
     assert diagram.regime.attrs["flag_meanings"] == "unknown boundary mixed hydrodynamic"
-    store.write_netcdf(diagram, tmp_path / "phase.nc")
+    diagram.to_netcdf(tmp_path / "phase.nc")
     with xarray.open_dataset(tmp_path / "phase.nc") as read:
         assert read.regime.values.tolist() == diagram.regime.values.tolist()
         assert read.message.values.tolist() == diagram.message.values.tolist()
@@ -205,54 +203,33 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
 
 # --- the merging ---
 
-merging = functools.cache(roughness_without_minimum)
+
+@functools.cache
+def merging(load, ratio, beta=1.0):
+    """Return the roughness group from which on friction of this load only grows with the speed."""
+    grid = {"load": load, "roughness": 1e-3, "speed": 1e-3, "merging": True}
+    return sb.phase_diagram(**grid, boundary_friction=ratio * beta, beta=beta).roughness_without_minimum.squeeze().item()
+
+
+def falls(load, roughness, **options):
+    curve = sb.stribeck_curve(load=load, roughness=roughness, rtol=1e-9, **options)
+    return bool(np.diff(curve.friction.total).min() < 0)
 
 
 def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(subtests):
     for load, ratio in [(0.1, 1.0), (0.01, 20.0)]:
-        with subtests.test(load=load, ratio=ratio):
-            merged = merging(load, ratio)
-            for factor, falls in ((0.98, True), (1.02, False)):
-                place = weakening(sb.Groups(1.0, load, factor * merged), boundary_friction=ratio)
-                speeds = (place.speed / 30, place.speed * 30)
-                curve = sb.stribeck_curve(
-                    load=load, roughness=factor * merged, speed=speeds, points=121, rtol=1e-9, boundary_friction=ratio
-                )
-                assert (np.diff(curve.friction).min() < 0) == falls
-                assert place.present == falls
-
-
-def test_the_minimum_passes_the_plateau_before_it_disappears():
-    plateau, slope = roughness_without_minimum(0.1, criterion="plateau"), merging(0.1, 1.0)
-    assert plateau == pytest.approx(0.0145606, rel=1e-5)
-    assert slope == pytest.approx(0.0174919, rel=1e-5)
-    found = weakening(sb.Groups(1.0, 0.1, plateau))
-    assert found.minimum_friction == pytest.approx(1.0, rel=1e-5)
-    curve = sb.stribeck_curve(load=0.1, roughness=0.999 * plateau)
-    assert curve.minimum.friction == pytest.approx(1.0, rel=2e-3)
+        for factor, present in ((0.98, True), (1.02, False)):
+            with subtests.test(load=load, ratio=ratio, factor=factor):
+                assert falls(load, factor * merging(load, ratio), boundary_friction=ratio, points=201) == present
 
 
 def test_only_the_quotient_of_the_friction_coefficients_moves_the_merging():
-    found = weakening(sb.Groups(1.0, 0.1, 0.01), 0.6, 0.2), weakening(sb.Groups(1.0, 0.1, 0.01), 3.0, 1.0)
-    assert found[0].slope == pytest.approx(found[1].slope, rel=1e-5)
-    assert found[0].minimum_speed == pytest.approx(found[1].minimum_speed, rel=1e-6)
-    assert found[0].minimum_friction == pytest.approx(0.2 * found[1].minimum_friction, rel=1e-6)
+    assert merging(0.1, 1.0) == pytest.approx(0.0174919, rel=1e-5)
+    assert merging(0.1, 3.0, 0.2) == pytest.approx(merging(0.1, 3.0), rel=1e-5)
 
 
 def test_without_dry_friction_no_roughness_makes_a_minimum():
-    assert roughness_without_minimum(0.1, boundary_friction=0) == 0
-
-
-def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
-    monkeypatch.setattr("stribeck.regimes.weakening.KAPPA_RANGE", (0.25, 0.5))
-    assert math.isnan(roughness_without_minimum(0.1))
-
-
-def test_bad_input_to_the_merging_is_refused(subtests):
-    for arguments in [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"boundary_friction": -1}]:
-        with subtests.test(arguments=arguments):
-            with pytest.raises(sb.InputError):
-                roughness_without_minimum(**{"load": 0.1} | arguments)
+    assert merging(0.1, 0.0) == 0
 
 
 def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
@@ -261,8 +238,7 @@ def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
     found = sb.phase_diagram(contact, speed="1 mm/s", merging=True)
     groups = contact.replace(roughness=float(found.roughness_without_minimum.squeeze())).groups
     for factor, present in ((0.99, True), (1.01, False)):
-        beside = sb.Groups(1.0, 0.1, factor * groups.roughness)
-        assert weakening(beside, MU0, BETA).present == present
+        assert falls(0.1, factor * groups.roughness, boundary_friction=MU0, beta=BETA, points=201) == present
 
 
 # --- units ---

@@ -70,20 +70,6 @@ def words(figure):
 # --- the numbers ---
 
 
-def test_a_legend_with_long_names_takes_fewer_columns_and_is_not_cut():
-    from stribeck.plot.style import add_legend, new_figure
-
-    for name, columns in (("load 1 N", 4), ("load 1 N, slide-to-roll ratio 0.5, " * 2, 2)):
-        figure, [ax] = new_figure((8.5, 4.0), [], title="Fit")
-        for i in range(4):
-            ax.plot([0, 1], label=f"measured {i}: {name}")
-        add_legend(figure, [ax])
-        [legend] = figure.legends
-        assert legend._ncols <= columns
-        assert (legend._ncols == 4) is (columns == 4)
-        assert legend.get_window_extent().x1 <= figure.bbox.x1
-
-
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
     axes = curve.plot(abscissa="hersey").axes[0]
     for label, values in (("from asperities", curve.friction.asperities), ("from the fluid", curve.friction.fluid)):

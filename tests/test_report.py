@@ -7,9 +7,6 @@ import pytest
 from command_line import call, case_text
 
 import stribeck as sb
-from stribeck.cli.reports.text import head_lines
-from stribeck.contacts.contact import part_attributes
-from stribeck.quantities.formats import format_share
 
 LAW = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
 OF_SURFACE = {"roughness": None, "alpha": None, "beta": None, "law": '"persson"'}
@@ -47,25 +44,11 @@ def test_a_contact_area_that_vanishes_is_zero(capsys, tmp_path):
     assert re.search(r"real contact area at x = 0 +0 *\n", answer.out)
 
 
-def test_shares_are_bounded_by_their_errors(subtests):
-    for part, error, text in [
-        (0.2034, 1e-7, "20.3 %"),
-        (0.0, 1e-7, "0 %"),
-        (9.75e-155, 1e-9, "< 0.01 %"),
-        (3e-8, 3.14e-8, "< 0.01 %"),
-        (3e-4, 3.14e-4, "< 0.04 %"),
-        (1.0, 0.0, "100 %"),
-    ]:
-        with subtests.test(part=part, error=error, text=text):
-            assert format_share(part, error) == text
-
-
-def test_the_model_line_names_what_differs_from_the_article_in_si_units():
-    inputs = {"radius": 0.01, "modulus": 2e6, "load": 1.0, "viscosity": 0.02, "entrainment_speed": 0.03, "roughness": 1e-6}
-    ball = sb.PointContact(
-        **inputs, alpha=2.0, beta=0.05, boundary_friction=0.8, slide_to_roll=0.5, fluid=sb.fluids.Carreau("10 ms", 0.6)
-    )
-    assert part_attributes(ball.groups, ball)["slide_to_roll"] == 0.5
-    said = "\n".join([*head_lines("", ball, ball.groups), ""])
+def test_the_model_line_names_what_differs_from_the_article_in_si_units(capsys, tmp_path):
+    case = tmp_path / "ball.toml"
+    fluid = {"model": '"carreau"', "relaxation_time": '"10 ms"', "exponent": "0.6"}
+    ball = {"geometry": '"point"', "load": '"1 N"', "speed": None, "entrainment_speed": '"30 mm/s"'}
+    case.write_text(case_text(ball, fluid=fluid, motion={"slide_to_roll": "0.5"}, solver={"rtol": "1e-2"}))
+    said = call(capsys, "solve", case, "-v").out
     assert "Model: fluid carreau, relaxation time 10 ms, exponent 0.6, infinite viscosity 0 Pa*s.\n" in said
     assert said.count("slide-to-roll ratio 0.5") == 1 and "slide to roll" not in said

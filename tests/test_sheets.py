@@ -1,24 +1,21 @@
 """A new case runs as it is written; a report is one file with everything in it that asks no server for anything."""
 
 import html
-import math
 import re
 import runpy
 from pathlib import Path
 
-import numpy as np
 import pytest
 from command_line import EXAMPLES, call, case_text
-from fit_data import measured
 
 import stribeck as sb
-from stribeck.cases.law import LAWS
-from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.data_sheet.report import page_of
 from stribeck.fluids import presets
-from stribeck.plot.curve import draw_report
-from stribeck.quantities.facts import FACTS
-from stribeck.quantities.units import to_si
+
+FACTS = (
+    *("pressure_viscosity", "layer_thickness", "loss_tangent", "supply_film", "thinning_rate", "molecular_size"),
+    *("thermal_conductivity", "thermal_thinning", "density", "work_of_adhesion", "diffusivity", "permeability", "rms_slope"),
+)
+LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 
 
 @pytest.mark.quick
@@ -29,9 +26,8 @@ def test_a_new_case_has_every_key_and_is_read_as_it_stands(subtests, tmp_path, c
             answer = call(capsys, "new", path, "--geometry", geometry)
             assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())
             case = sb.load_case(path)
-            contact, table = case.contact, INPUT_TABLES[geometry]
+            table = {"line": sb.LineContact, "point": sb.PointContact}[geometry].INPUTS
             assert case.rtol == {"line": 1e-6, "point": 1e-4}[geometry]
-            assert contact.INPUTS is table
             text = path.read_text()
             for name in {*table.quantities, *FACTS}:
                 assert re.search(rf"\b{name} = ", text), name
@@ -82,7 +78,6 @@ def content(tmp_path_factory):
 def test_a_report_says_everything_and_asks_no_server(content):
     path, said = content
     page = path.read_text()
-    assert page == page_of(said)
     assert page.index(said.headline) < page.index("<h1>") < page.index("friction")
     for part in (*said.sentences, *said.margins, *(each.label for each in said.levers), said.versions):
         assert part in html.unescape(page), part
@@ -114,30 +109,8 @@ def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
         name, dimension = lever.name, lever.dimension
         assert float(factor) > 1
         changed = getattr(said.solution.contact, name) * float(factor) ** {"x": 1, "/": -1}[sign]
-        assert to_si(float(value) if dimension == "number" else value, dimension, name) == pytest.approx(changed, rel=0.01)
-
-
-def test_the_picture_of_a_report_has_films_in_micrometres_and_measured_points_at_their_speeds(subtests, content):
-    for abscissa in ["speed", "speed_viscosity", "hersey_number"]:
-        with subtests.test(abscissa=abscissa):
-            _, said = content
-            contact, speeds = said.solution.contact, [1e-3, 1e-2, 0.1]
-            per_speed = {"speed": 1, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}[
-                abscissa
-            ]
-            data = measured([speed * per_speed for speed in speeds], [0.5, 0.3, 0.1], abscissa=abscissa)
-            left, right = draw_report(said.curve, data, said.uncertainty).axes
-            [points] = [each.lines[0] for each in left.containers if each.get_label() == "measured"]
-            assert points.get_xdata() == pytest.approx(speeds) and points.get_ydata() == pytest.approx([0.5, 0.3, 0.1])
-            lines = {line.get_label(): line for line in right.lines}
-            films = [(name, value) for name, value, _ in said.films if name in lines]
-            assert len(films) == 2
-            for name, value in films:
-                x, y = lines[name].get_data()
-                film = math.exp(np.interp(math.log(contact.speed), np.log(x), np.log(y)))
-                assert 1e-6 * film == pytest.approx(to_si(value, "length", name), rel=0.02)
-            roughness = next(line for label, line in lines.items() if label.startswith("roughness"))
-            assert 1e-6 * roughness.get_ydata()[0] == pytest.approx(contact.roughness)
+        given = float(value) if dimension == "number" else value
+        assert getattr(said.solution.contact.replace(**{name: given}), name) == pytest.approx(changed, rel=0.01)
 
 
 def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):

@@ -20,7 +20,6 @@ from sweep_files import CONTACT, GRID, RANDOM, finish, kept, same_states, write
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.contacts.geometries import LINE
 from stribeck.solver import neighbours
 
 LONG = RANDOM.format(kind="sobol", points=1024)
@@ -59,7 +58,7 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
     text = CONTACT + '[vary]\nload = ["30 N/m"]\nroughness = ["1 um"]\nspeed = ["1 mm/s", "1 m/s"]\n'
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     for i, speed in enumerate((1e-3, 1.0)):
-        contact = sb.LineContact(**{name: float(found[name][i]) for name in LINE.names})
+        contact = sb.LineContact(**{name: float(found[name][i]) for name in sb.LineContact.INPUTS.names})
         assert contact.speed == speed
         state = sb.solve(contact)
         assert float(found.central_film_thickness[i]) == pytest.approx(state.central_gap * contact.hertz.indentation, rel=2e-6)
@@ -79,13 +78,6 @@ def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
     assert np.ptp(cube["central_gap"], axis=(0, 1)).tolist() == [0, 0]
     assert cube["friction_published_fluid"][:, 1] == pytest.approx(0.1 * cube["friction_published_fluid"][:, 0])
     assert cube["friction_asperities"][1] == pytest.approx(2 * cube["friction_asperities"][0])
-
-
-def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch):
-    starts, start = [], neighbours._CylinderSteps.start
-    monkeypatch.setattr(neighbours._CylinderSteps, "start", lambda self, here: starts.append(here) or start(self, here))
-    assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 0
-    assert 2 <= len(starts) <= 4  # of 68 states in two chains
 
 
 def test_the_numbers_do_not_depend_on_the_workers(tmp_path):

@@ -6,8 +6,6 @@ from command_line import EXAMPLES
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
-from stribeck.batches.order import MAX_CHAIN, chains_of, coordinates
-from stribeck.contacts.geometries import LINE
 
 VARY = """
 [vary]
@@ -34,7 +32,7 @@ def test_a_grid_holds_every_combination_the_last_axis_fastest(tmp_path):
 def test_each_state_has_the_groups_of_its_contact(tmp_path):
     design = load(tmp_path, CONTACT + VARY)
     for i in (0, 7, 29):
-        contact = sb.LineContact(**{name: design.inputs[name][i] for name in LINE.names})
+        contact = sb.LineContact(**{name: design.inputs[name][i] for name in sb.LineContact.INPUTS.names})
         assert contact.radius == 0.01
         groups = contact.groups
         assert design.groups[i].tolist() == [groups.speed, groups.load, groups.roughness]
@@ -187,54 +185,6 @@ def test_all_problems_are_told_in_one_go(tmp_path):
     with pytest.raises(sb.InputError) as caught:
         load(tmp_path, '[groups]\nload = "x"\n[vary]\nspede = [1]\n[solver]\nrtol = 2\n[design]\nkind = "grid"\n')
     assert len(str(caught.value).splitlines()) == 5  # roughness and speed are missing too
-
-
-# --- the order ---
-
-
-def test_every_state_is_in_one_chain_and_neighbours_follow_one_another(subtests, tmp_path):
-    for kind in ["random", "latin-hypercube", "sobol"]:
-        with subtests.test(kind=kind):
-            design = load(tmp_path, RANDOM.format(kind=kind, points=512))
-            chains = chains_of(design.groups)
-            assert sorted(np.concatenate(chains)) == list(range(512))
-            assert max(map(len, chains)) <= MAX_CHAIN
-            z = coordinates(design.groups)
-            steps = [np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains]
-            unordered = np.abs(np.diff(z, axis=0)).max(axis=1)
-            assert np.mean(np.concatenate(steps)) < 0.35 * np.mean(unordered)
-
-
-def test_a_grid_is_followed_along_the_speed_in_equal_chains(subtests, tmp_path):
-    for points in [5, 17, 60]:
-        with subtests.test(points=points):
-            design = load(tmp_path, GRID.replace("17", str(points)))
-            chains = chains_of(design.groups)
-            assert sorted(np.concatenate(chains)) == list(range(4 * points))
-            lengths = [len(chain) for chain in chains]
-            assert len(chains) == -(-4 * points // MAX_CHAIN) and max(lengths) - min(lengths) <= 1
-            z = coordinates(design.groups)
-            steps = np.concatenate([np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains])
-            assert np.median(steps) < 2.5 * np.log(1e4) / (points - 1)
-
-
-def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):
-    design = load(
-        tmp_path, GRID.replace("boundary_friction = 0.8\n", "").replace("[vary]\n", "[vary]\nboundary_friction = [0.5, 0.8]\n")
-    )
-    chains = chains_of(design.groups)
-    assert sorted(np.concatenate(chains)) == list(range(136))
-    for chain in chains:
-        assert np.array_equal(design.groups[chain][::2], design.groups[chain][1::2])
-
-
-def test_resting_and_smooth_states_have_chains_of_their_own(tmp_path):
-    text = "[groups]\n[vary]\nload = [0.1, 0.2]\nroughness = [0, 1e-4, 1e-3]\nspeed = [0, 1e-5, 1e-4]\n"
-    design = load(tmp_path, text)
-    chains = chains_of(design.groups)
-    assert sorted(np.concatenate(chains)) == list(range(18))
-    for chain in chains:
-        assert len({tuple(state == 0) for state in design.groups[chain]}) == 1
 
 
 def test_a_design_shows_itself_in_a_screen():

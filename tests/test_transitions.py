@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics import OutOfRangeWarning, mixed, transitions
-from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
-from stribeck.asymptotics.rough.perturbation import phi
-from stribeck.regimes.weakening import roughness_without_minimum
+from stribeck.asymptotics import OutOfRangeWarning, constants, mixed, perturbation, transitions
 
-C = FILM_CONSTANT
+C = constants.FILM_CONSTANT
 
 
 def state(film_ratio, kappa, load):
@@ -190,7 +187,7 @@ def test_the_printed_minimum_friction_has_the_wrong_sign_in_an_exponent():
     assert [round(law(groups, printed=True), 4), round(law(groups, form="leading"), 4)] == [0.0033, 0.0208]
     assert [round(law(groups, form="exact"), 4), round(law(groups), 4), round(solver, 4)] == [0.0219, 0.0268, 0.0268]
     k = transitions.weakening_number(groups, printed=True)
-    scale = 4 * 1e-4 ** (2 / 3) * 0.1 ** (-1 / 6) / (3 * math.pi * PRINTED_FILM_CONSTANT ** (5 / 3))
+    scale = 4 * 1e-4 ** (2 / 3) * 0.1 ** (-1 / 6) / (3 * math.pi * constants.PRINTED_FILM_CONSTANT ** (5 / 3))
     by_hand = scale * (2 / 3 * (-math.log(k)) ** (-1 / 3) + (-math.log(k)) ** (-2 / 3))
     assert law(groups, printed=True) == pytest.approx(by_hand, rel=1e-12)
 
@@ -223,7 +220,7 @@ def test_a_smooth_contact_has_no_minimum():
 def test_the_speed_from_boundary_to_mixed_is_where_the_slow_law_gives_all_load_to_the_fluid():
     groups = sb.Groups(1.0, np.array([1e-3, 0.1]), 1e-5)
     speed = transitions.speed_boundary_to_mixed.function(groups)
-    np.testing.assert_allclose(speed**2 / groups.relative_roughness**4 * phi(groups.load), 1, rtol=1e-12)
+    np.testing.assert_allclose(speed**2 / groups.relative_roughness**4 * perturbation.phi(groups.load), 1, rtol=1e-12)
     there = sb.solve(sb.Groups(float(speed[1]), 0.1, 1e-5))
     assert 0.2 < there.fluid_load_share < 0.5
 
@@ -275,7 +272,9 @@ def test_our_minimum_disappears_where_merging_says():
 
 def test_which_criterion_of_merging_is_near_the_solver():
     # Relative roughness at which the solved curve loses its minimum, and what the formulas say of it.
-    solved = np.array([roughness_without_minimum(load, 1.0, 1.0, rtol=1e-5, definition="published") for load in (1e-2, 0.1)])
+    grid = {"load": [1e-2, 0.1], "roughness": 1e-3, "speed": 1e-3, "merging": True}
+    diagram = sb.phase_diagram(**grid, boundary_friction=1.0, beta=1.0, rtol=1e-5, definition="published")
+    solved = diagram.roughness_without_minimum.values
     np.testing.assert_allclose(solved / [1e-2, 0.1], [0.343, 0.160], atol=1e-3)
     over = {
         name: transitions.roughness_without_minimum(np.array([1e-2, 0.1]), criterion=name) / solved
