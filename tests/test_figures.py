@@ -490,3 +490,30 @@ def test_ctrl_c_keeps_the_finished_figures_of_the_command_outside_this_process(t
     assert match[1] not in names
     assert sorted(os.listdir(tmp_path)) == sorted(f"figure_{name}{end}" for name in names for end in (".nc", ".png", ".svg"))
     assert out.splitlines()[0].startswith("Figure 4: ")
+
+
+def test_a_phase_diagram_with_gaps_ends_the_figure_with_its_reasons(monkeypatch):
+    def incomplete(**arguments):
+        found = sb.phase_diagram(load=0.1, roughness=1e-3, speed=1e-5, rtol=1e-4)
+        found.message.values[:] = "Speed 1: too far."
+        return found.assign_attrs(complete=0)
+
+    monkeypatch.setattr("stribeck.figures.article.figure_11.phase_diagram", incomplete)
+    with pytest.raises(sb.SolveError, match="Speed 1: too far"):
+        load_figure("11").data()
+
+
+def test_ctrl_c_ends_the_phase_diagram_of_the_figure():
+    def report(done, steps):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        load_figure("11").data(report)
+
+
+def test_a_minimum_that_is_not_found_ends_the_figure_with_a_sentence(monkeypatch):
+    for module in ("article.figure_9", "article.stribeck_cases"):
+        monkeypatch.setattr(f"stribeck.figures.{module}.CASES", ((0.1, 1e-3),))
+    monkeypatch.setattr("stribeck.figures.article.figure_9.SPEED_WINDOW", (2.0, 4.0))
+    with pytest.raises(sb.SolveError, match="No minimum of friction was found at load 0.1, relative roughness 1e-05"):
+        load_figure("9").data()

@@ -1,11 +1,7 @@
 """The live curve of the documentation's front page: the same numbers as Python, in a real browser, from a folder."""
 
-import base64
 import importlib.util
-import json
-import math
 import shutil
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +9,6 @@ import pytest
 from test_browser import LONG, address_of, chromium  # noqa: F401
 
 import stribeck as sb
-from stribeck.atlas.table import COEFFICIENT_UNIT, LINE_FUNCTIONS
-from stribeck.atlas.tables import TABLES
-from stribeck.contacts.geometries import LINE
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>Live curve</title>
@@ -48,18 +41,6 @@ def folder(made, tmp_path_factory):
         shutil.copy(DOCS / "_static" / name, found)
     (found / "index.html").write_text(PAGE)
     return found
-
-
-def test_the_script_holds_the_coefficients_of_the_packaged_atlas(made):
-    table = json.loads(json.dumps(made.table()))
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(table["coefficients"])), dtype=np.uint8).reshape(4, -1)
-    whole = np.ascontiguousarray(planes.T).view("<i4").ravel()
-    block, region = TABLES[0].table.blocks[0], table["regions"][0]
-    shape = region["speeds"][0], *region["nodes"]
-    first = whole[: 4 * math.prod(shape)].reshape(4, *shape)
-    for row, name in enumerate(table["functions"]):
-        expected = block.coefficients[:, LINE_FUNCTIONS.index(name)]
-        np.testing.assert_array_equal(COEFFICIENT_UNIT * first[row][:, block.first, block.second], expected)
 
 
 def test_the_front_page_has_a_picture_that_the_curve_can_replace():
@@ -137,7 +118,7 @@ def test_sliders_in_si_move_the_curve_and_the_link_opens_it_again(open_live):
     assert shown(page) == pytest.approx(sb.atlas.friction(contact.groups, contact.boundary_friction, contact.beta), rel=1e-6)
     assert shown(page, "minimum") == pytest.approx(sb.stribeck_curve(contact).minimum.value, rel=1e-3)
     for name, key in (("viscosity", "ArrowRight"), ("beta", "ArrowLeft"), ("speed", "ArrowRight")):
-        page.get_by_label(LINE.quantities[name].label, exact=True).focus()
+        page.get_by_label(sb.LineContact.INPUTS.quantities[name].label, exact=True).focus()
         for _ in range(7):
             page.keyboard.press(key)
     now = contact_of(page)

@@ -7,7 +7,6 @@ import pytest
 from ball_data import BALL
 
 import stribeck as sb
-from stribeck.solver import neighbours
 
 RTOL = 1e-3
 ROUGHNESS = [BALL.roughness, 1.3 * BALL.roughness]
@@ -72,13 +71,3 @@ def test_groups_of_balls_may_be_arrays_and_rest_is_one_of_them():
     assert found.friction.fluid[0] == 0.0
     alone = sb.solve(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), rtol=RTOL)
     assert found.friction(1.0, 0.1)[1] == pytest.approx(alone.friction(1.0, 0.1).total, rel=2 * RTOL)
-
-
-def test_a_ball_that_cannot_be_solved_has_its_outcome_and_no_numbers(monkeypatch):
-    from stribeck import Outcome
-    from stribeck.solver.point.solve import _failed
-
-    monkeypatch.setattr(neighbours, "solve_cold", lambda groups, rtol: _failed(groups, rtol, Outcome.STALLED))
-    found = sb.solve_batch(sb.Groups([1e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL)
-    assert found.outcome[0] is Outcome.STALLED
-    assert np.isnan(found.central_gap[0]) and np.isnan(np.asarray(found.friction)[0])

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contacts.geometries import POINT
 
 BALL = {
     "radius": "9.5 mm",
@@ -71,7 +70,7 @@ def test_units_do_not_change_the_groups_of_a_ball():
 
 @pytest.mark.quick
 def test_each_input_enters_the_groups_with_its_exponents(subtests):
-    for name in [name for name in POINT.exponents if name != "wetted_radius"]:
+    for name in [name for name in sb.PointContact.INPUTS.exponents if name != "wetted_radius"]:
         with subtests.test(name=name):
             c, factor = ball(), 1.2
             moved = c.replace(**{name: getattr(c, name) * factor}).groups
@@ -79,7 +78,7 @@ def test_each_input_enters_the_groups_with_its_exponents(subtests):
                 math.log(getattr(moved, each) / getattr(c.groups, each)) / math.log(factor)
                 for each in ("speed", "load", "roughness")
             ]
-            np.testing.assert_allclose(found, POINT.exponents[name], atol=1e-12)
+            np.testing.assert_allclose(found, sb.PointContact.INPUTS.exponents[name], atol=1e-12)
 
 
 @pytest.mark.quick
@@ -173,8 +172,8 @@ def test_a_ball_travels_to_other_processes():
 @pytest.mark.quick
 def test_the_signature_of_a_ball_names_every_input():
     parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid"]
-    assert list(inspect.signature(sb.PointContact).parameters) == [*POINT.quantities, "law", *parts]
-    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law", *parts}
+    assert list(inspect.signature(sb.PointContact).parameters) == [*sb.PointContact.INPUTS.quantities, "law", *parts]
+    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*sb.PointContact.INPUTS.names, "law", *parts}
 
 
 CASE = """
@@ -225,4 +224,4 @@ def test_a_sweep_file_holds_balls(tmp_path):
     np.testing.assert_allclose(
         design.groups[1], [ball(load=1).groups.speed, ball(load=1).groups.load, ball(load=1).groups.roughness]
     )
-    assert set(design.inputs) == {*POINT.names, "entrainment_speed"} - {"wetted_radius"}
+    assert set(design.inputs) == {*sb.PointContact.INPUTS.names, "entrainment_speed"} - {"wetted_radius"}

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import call
 
 import stribeck as sb
-from stribeck.cli.running import main
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -56,8 +56,9 @@ def test_two_processes_find_what_one_does(tmp_path):
 def test_the_command_draws_a_ball(capsys, tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "ball.svg"
-    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "--plot", str(picture)]) == 0
-    assert f"Written: {picture}\n" in capsys.readouterr().out
+    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "--plot", picture)
+    assert answer.code == 0
+    assert f"Written: {picture}\n" in answer.out
     drawn = picture.read_text()
     assert "<svg" in drawn
     for said in ("film", "µm", "MPa"):
@@ -76,8 +77,9 @@ def test_the_examples_are_balls_with_a_law_that_holds_at_their_load(subtests):
 
 
 def test_the_command_solves_a_ball(capsys):
-    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "--json")
+    assert answer.code == 0
+    found = json.loads(answer.out)
     assert found["geometry"] == "point"
     assert found["units"]["load"] == "N"
     assert found["inputs"]["slide_to_roll"] == 1.0
@@ -86,8 +88,9 @@ def test_the_command_solves_a_ball(capsys):
 
 
 def test_the_command_prints_a_ball(capsys):
-    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "-v"]) == 0
-    out = capsys.readouterr().out
+    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "-v")
+    assert answer.code == 0
+    out = answer.out
     assert "slide-to-roll ratio 1" in out
     assert "distance of minimum film" in out
     assert "central pressure" in out

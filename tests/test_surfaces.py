@@ -8,10 +8,8 @@ import tomllib
 import numpy as np
 import pytest
 from command_line import call
-from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.plot.surface import plot_surface
 from stribeck.surfaces import (
     RoughSurface,
     SelfAffine,
@@ -24,7 +22,6 @@ from stribeck.surfaces import (
     synthetic_topography,
     write_surface_table,
 )
-from stribeck.surfaces.measured_spectrum import line_density
 
 STEP = 1e-6
 FUNDAMENTAL = 2 * math.pi / 128e-6
@@ -69,28 +66,6 @@ def test_the_power_of_all_rings_is_the_mean_square_of_smooth_heights():
     cell = (2 * math.pi / 256e-6) ** 2
     total = float(np.sum(spectrum.density * 2 * spectrum.modes) * cell)
     assert total == pytest.approx(float(np.mean(surface.heights**2)), rel=1e-3, abs=0)
-
-
-def test_the_spectrum_along_a_line_is_the_integral_of_that_of_the_map():
-    # Without roll-off: C_1 = C(q) q pi^(1/2) Gamma(H + 1/2)/Gamma(H + 1).
-    for H in (0.3, 0.8, 1.0):
-        surface = SelfAffine(1.0, 1.0, 1e12, H)
-        q = np.geomspace(1.0, 1e3, 7)
-        expected = surface.spectrum.at(q) * q * math.sqrt(math.pi) * math.gamma(H + 0.5) / math.gamma(H + 1)
-        assert line_density(q, surface) == pytest.approx(expected, rel=1e-6, abs=0)
-    # With a roll-off, against quadrature of the definition.
-    rolled = SelfAffine(1.0, 1.0, 1e9, 0.7, 20.0)
-    level = rolled.spectrum.density[0]
-    for q in (1e-3, 0.9, 5.0, 19.0, 40.0):
-
-        def density(k, q=q):
-            r = math.hypot(q, k)
-            return level * max(r / 20, 1.0) ** -3.4 if r >= 1 else 0.0
-
-        breaks = [math.sqrt(r * r - q * q) for r in (1.0, 20.0) if r > q]
-        parts = zip([0.0, *breaks], [*breaks, np.inf], strict=True)
-        expected = 2 * sum(quad(density, a, b, epsabs=0, epsrel=1e-9, limit=200)[0] for a, b in parts if b > 1.0 or q > 1.0)
-        assert line_density(np.array([q]), rolled)[0] == pytest.approx(expected, rel=1e-6, abs=0)
 
 
 def test_reliable_wavelengths_end_at_the_scan_and_at_the_instrument():
@@ -399,7 +374,7 @@ def test_the_picture_shows_heights_spectrum_and_law(subtests):
     for points in [(64, 64), (512,)]:
         with subtests.test(points=points):
             surface = analyse(synthetic_topography(ROLLED, points, STEP, 104))
-            figure = plot_surface(surface, title="A surface")
+            figure = surface.plot(title="A surface")
             heights, spectrum, law = figure.axes[:3]
             assert heights.images or heights.lines
             fit = next(line for line in spectrum.lines if line.get_label().startswith("fit"))
