@@ -80,11 +80,11 @@ def test_outputs_of_groups_hold_the_numbers_as_they_are_given():
     """The rate law had those of the speed group one, a rolling substrate the memory of a sliding one."""
     given = sb.fluids.Fluid(sb.fluids.Carreau(0.05, 0.5, 0.02), sb.fluids.Barus(0.5))
     solid = sb.solids.StandardLinearSolid(0.3, 3.0)
-    found = sb.solve(sb.Groups(1e-3, 0.1, 1e-3), fluid=given, solid=solid, slide_to_roll=0.5, rtol=1e-3).to_dict()
+    found = sb.solve(sb.Groups(1e-3, 0.1, 1e-3), fluid=given, solid=solid, slide_to_roll=0.5, rtol=1e-3).to_dataset().attrs
     assert found["fluid_relaxation_time"] == pytest.approx(0.05)
     assert found["fluid_infinite_viscosity"] == 0.02 and found["fluid_pressure_coefficient"] == 0.5
     assert found["solid_retardation_time"] == 0.3
-    stress = sb.solve(sb.Groups(1e-3, 0.1, 1e-3), fluid=sb.fluids.Eyring(30.0), rtol=1e-3).to_dict()
+    stress = sb.solve(sb.Groups(1e-3, 0.1, 1e-3), fluid=sb.fluids.Eyring(30.0), rtol=1e-3).to_dataset().attrs
     assert stress["fluid_eyring_stress"] == pytest.approx(30.0)
 
 
@@ -101,8 +101,6 @@ def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
         sb.solve(groups, flow_factors="patir-cheng")
     with pytest.raises(sb.InputError, match="cavity_pressure = '-0.1 MPa' is text; with groups it is a plain number"):
         sb.solve(groups, cavitation="reform", cavity_pressure="-0.1 MPa")
-    with pytest.raises(sb.InputError, match="many values of speed"):
-        sb.solve_batch(sb.Groups(np.array([1e-3, 1e-2]), 0.1, 1e-4), fluid=sb.fluids.Eyring(58.0))
 
 
 @pytest.mark.quick
@@ -207,5 +205,5 @@ def test_thinning_presets_have_the_viscosities_that_their_sources_say():
         law = liquid.fluid.rheology
         shape = type(law)(1.0, law.exponent, law.infinite_viscosity / liquid.viscosity)
         x = law.relaxation_time * rate
-        found = liquid.viscosity * shape.stress(np.array([x]))[0][0] / x
+        found = liquid.viscosity * shape.stress(np.array([x]))[0] / x
         assert found == pytest.approx(viscosity, rel=0.06)
