@@ -15,12 +15,10 @@ from evidence.atlas_certificate import FRICTION_COUNT, certify, compare, quantit
 from evidence.atlas_states import groups_of, speed_range
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
-from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
-from stribeck.contacts.model import Model
-from stribeck.curves.result import path_of
-from stribeck.fluids.cavitation import Cavitation
 from stribeck.surfaces import SelfAffine, persson_law
 
+TABLES = list(atlas_build.ROWS.values())
+REFERENCE_SPECTRUM = {"h_rms": 1e-06, "q0": 10000.0, "q1": 1000000.0, "hurst": 0.8}
 DEFINITIONS = ("published", "balanced")
 FUNCTIONS = (
     sb.atlas.contact_load_share,
@@ -33,6 +31,10 @@ FUNCTIONS = (
     sb.atlas.friction,
 )
 NAMES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
+
+
+def model_of(**parts):
+    return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact.replace(**parts).groups.model
 
 
 def random_groups(number, seed, margin=1e-3):
@@ -57,7 +59,7 @@ def transition_groups(number, seed):
 
 @pytest.mark.quick
 def test_other_models_are_refused_and_not_covered():
-    cavitated = sb.Groups(1e-3, 0.1, 1e-3, model=Model(cavitation=Cavitation.REFORM, cavity_pressure=-0.1))
+    cavitated = sb.Groups(1e-3, 0.1, 1e-3, model=model_of(cavitation="reform", cavity_pressure="-1 kPa"))
     assert not sb.atlas.covers(cavitated)
     with pytest.raises(sb.InputError, match="Newtonian fluid"):
         sb.atlas.friction(cavitated)
@@ -212,7 +214,7 @@ def test_films_that_end_are_read_off_a_table_of_their_own():
 
 @pytest.mark.quick
 def test_slow_films_that_end_have_a_share_of_first_order_in_the_speed():
-    groups = sb.Groups(np.array([0.0, 1e-12, 1e-10]), 0.1, 1e-3, model=Model(cavitation=Cavitation.EXIT))
+    groups = sb.Groups(np.array([0.0, 1e-12, 1e-10]), 0.1, 1e-3, model=model_of(cavitation="exit"))
     rest, slow, faster = sb.atlas.fluid_load_share(groups)
     assert rest == 0
     assert faster / slow == pytest.approx(100, rel=1e-3)
@@ -446,8 +448,6 @@ def test_a_curve_over_load_falls_where_the_solved_one_does(contact):
     slope = sb.stribeck_curve(contact, load=(5, 100), points=21, method="atlas")
     solved = sb.stribeck_curve(contact, load=(5, 100), points=21)
     assert np.allclose(slope.friction, solved.friction, rtol=1e-4)
-    differences = np.gradient(slope.friction, np.log(slope.values))[1:-1]
-    assert np.allclose(path_of(slope).slopes(np.log(slope.values))[1:-1], differences, atol=0.02 * np.abs(differences).max())
 
 
 def test_a_curve_knows_what_it_does_not_have(contact):
