@@ -84,34 +84,36 @@ def test_the_defect_measures_the_error_at_the_nodes(case):
     assert min(ratios) > 0.03
 
 
-@pytest.mark.parametrize(("load", "kappa"), [(0.001835, 0.5123), (0.007547, 0.4913)])
-def test_the_defect_sees_a_contact_pressure_that_dies_away_on_wide_panels(load, kappa):
+def test_the_defect_sees_a_contact_pressure_that_dies_away_on_wide_panels(subtests):
     """That of a Gaussian surface falls to nothing at a few roughnesses: finer nodes must resolve it where panels do not."""
-    groups = sb.Groups(3e-3, load, kappa * load, law=sb.contact_laws.GreenwoodTripp())
-    solution = sb.solve(groups, rtol=1e-9)
-    edges = np.array([-8.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 8.0])
-    guess = cold_start(groups).states[-1]
-    values, parts, estimate = judged(solve_state(groups, Operators(Mesh(edges, 12)), guess, 1e-9))
-    offset = NAMES.index("offset")
-    error = abs(values[offset] - solution.offset) / estimate.scales[offset]
-    assert error > 3e-8
-    assert 1 < parts["discretisation"][offset] / error < 10
+    for load, kappa in [(0.001835, 0.5123), (0.007547, 0.4913)]:
+        with subtests.test(load=load, kappa=kappa):
+            groups = sb.Groups(3e-3, load, kappa * load, law=sb.contact_laws.GreenwoodTripp())
+            solution = sb.solve(groups, rtol=1e-9)
+            edges = np.array([-8.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 8.0])
+            guess = cold_start(groups).states[-1]
+            values, parts, estimate = judged(solve_state(groups, Operators(Mesh(edges, 12)), guess, 1e-9))
+            offset = NAMES.index("offset")
+            error = abs(values[offset] - solution.offset) / estimate.scales[offset]
+            assert error > 3e-8
+            assert 1 < parts["discretisation"][offset] / error < 10
 
 
-@pytest.mark.parametrize("speed", [1e-12, 1e-11])
-def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
-    groups = sb.Groups(speed, 0.1, 0.0)
-    # Tails of halved panels are far below the tolerance: what is left is rounding.
-    found = [judged(state_on(groups, order, 1e-7, halved=True)) for order in (12, 14, 16)]
-    values = np.array([values for values, _, _ in found])
-    rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
-    scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
-    # Shares and offset are known better than the film, the central gap is interpolated: they tell of meshes.
-    films = [NAMES.index(name) for name in ("minimum_gap", "flux_gap", "viscous_published", "viscous_balanced")]
-    assert (scatter <= rounding)[films].all()
-    assert scatter[films].max() > 0.01 * rounding.max()
-    assert rounding.max() > 1e-9
-    assert found[0][2].floor == pytest.approx(found[0][1]["rounding"].max(), rel=1e-12)
+def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(subtests):
+    for speed in [1e-12, 1e-11]:
+        with subtests.test(speed=speed):
+            groups = sb.Groups(speed, 0.1, 0.0)
+            # Tails of halved panels are far below the tolerance: what is left is rounding.
+            found = [judged(state_on(groups, order, 1e-7, halved=True)) for order in (12, 14, 16)]
+            values = np.array([values for values, _, _ in found])
+            rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
+            scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
+            # Shares and offset are known better than the film, the central gap is interpolated: they tell of meshes.
+            films = [NAMES.index(name) for name in ("minimum_gap", "flux_gap", "viscous_published", "viscous_balanced")]
+            assert (scatter <= rounding)[films].all()
+            assert scatter[films].max() > 0.01 * rounding.max()
+            assert rounding.max() > 1e-9
+            assert found[0][2].floor == pytest.approx(found[0][1]["rounding"].max(), rel=1e-12)
 
 
 @pytest.mark.quick
@@ -175,24 +177,25 @@ def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_er
     assert max(singles.values()) < 30, singles
 
 
-@pytest.mark.parametrize("name", ["hydrodynamic", "boundary"])
-def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(name, solved):
-    groups = sb.Groups(*STATES[name])
-    exact = np.array([getattr(solved(*STATES[name], rtol=1e-11).observables, n) for n in NAMES])
-    guess = cold_start(groups).states[-1]
-    panels = mesh_for(guess, groups, guess.equations.law, 10, 1e-5).edges
-    far = panels[-1] * 2.0 ** np.arange(1, 4)  # the logarithm in the far gap is not what is measured here
-    edges = np.concatenate([-far[::-1], panels, far])
-    orders = np.arange(6, 13, 2)
-    errors = []
-    for order in orders:
-        mesh = Mesh(edges, int(order), guess.mesh.scale)
-        values, _, estimate = judged(solve_state(groups, Operators(mesh), guess, 1e-11))
-        errors.append((np.abs(values - exact) / estimate.scales).max())
-    rate, _ = -np.polyfit(orders, np.log(errors), 1)
-    assert rate > 1.5
-    assert np.diff(np.log(errors)).max() < -1.0
-    assert errors[-1] < 1e-10
+def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(subtests, solved):
+    for name in ["hydrodynamic", "boundary"]:
+        with subtests.test(name=name):
+            groups = sb.Groups(*STATES[name])
+            exact = np.array([getattr(solved(*STATES[name], rtol=1e-11).observables, n) for n in NAMES])
+            guess = cold_start(groups).states[-1]
+            panels = mesh_for(guess, groups, guess.equations.law, 10, 1e-5).edges
+            far = panels[-1] * 2.0 ** np.arange(1, 4)  # the logarithm in the far gap is not what is measured here
+            edges = np.concatenate([-far[::-1], panels, far])
+            orders = np.arange(6, 13, 2)
+            errors = []
+            for order in orders:
+                mesh = Mesh(edges, int(order), guess.mesh.scale)
+                values, _, estimate = judged(solve_state(groups, Operators(mesh), guess, 1e-11))
+                errors.append((np.abs(values - exact) / estimate.scales).max())
+            rate, _ = -np.polyfit(orders, np.log(errors), 1)
+            assert rate > 1.5
+            assert np.diff(np.log(errors)).max() < -1.0
+            assert errors[-1] < 1e-10
 
 
 @pytest.mark.quick

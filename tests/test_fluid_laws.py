@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.polynomial import legendre
 from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
 import stribeck as sb
+from stribeck.equations.thinning.column import column, flow_curve
 from stribeck.fluids import (
     Barus,
     Carreau,
@@ -26,6 +28,7 @@ from stribeck.fluids.blend import blend
 from stribeck.fluids.effective_medium import PERCOLATION, medium_width
 from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
+from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.dual import with_slope
@@ -425,3 +428,67 @@ def test_impossible_parameters_are_refused_by_name(subtests):
         with subtests.test(make=make, said=said):
             with pytest.raises(sb.InputError, match=said):
                 make()
+
+
+# --- across the film of a ball ---
+
+COLUMN_LAWS = {
+    "carreau": Carreau(1.0, 0.5),
+    "plateau": Carreau(1.0, 0.4, 0.05),
+    "cross": Cross(1.0, 0.8),
+    "eyring": Eyring(1.0),
+}
+
+
+def vectors(law, number=60):
+    """Return pressure gradients and slips of all directions and of rates from 0.01 to 1000."""
+    rng = np.random.default_rng(7)
+    turn, other = rng.uniform(0, 2 * np.pi, (2, number))
+    rates = 10 ** rng.uniform(-2, 3, (2, number))
+    slope = 2 * law.stress(rates[0]) * np.stack([np.cos(turn), np.sin(turn)])
+    return slope, rates[1] * np.stack([np.cos(other), np.sin(other)])
+
+
+@pytest.mark.quick
+def test_a_column_slips_and_carries_what_integrals_across_it_say(subtests):
+    for name in COLUMN_LAWS:
+        with subtests.test(name=name):
+            law = COLUMN_LAWS[name]
+            slope, slip = vectors(law)
+            flow = column(law, slope, slip)
+            # Gauss's rule on 400 strips, by the law itself: no table, no place of the smallest stress.
+            nodes, weights = legendre.leggauss(6)
+            strips = np.linspace(-0.5, 0.5, 401)
+            zeta = (0.5 * (strips[1:] + strips[:-1])[:, None] + 0.00125 * nodes).ravel()
+            weights = np.tile(0.00125 * weights, 400)
+            stress = flow.mean[:, :, None] + slope[:, :, None] * zeta
+            size = np.hypot(*stress)
+            rate = stress * (law.rate(size.ravel()).reshape(size.shape) / size)
+            largest = np.hypot(*rate).max(axis=-1)
+            assert np.abs(rate @ weights - slip).max() <= 3e-7 * largest.max()
+            assert (np.hypot(*(rate @ weights - slip)) <= 3e-7 * largest).all()
+            assert (np.hypot(*(rate @ (weights * zeta) - flow.carried)) <= 3e-7 * largest).all()
+
+
+@pytest.mark.quick
+def test_along_the_motion_a_column_is_that_of_the_line(subtests):
+    for name in COLUMN_LAWS:
+        with subtests.test(name=name):
+            law = COLUMN_LAWS[name]
+            slope, slip = vectors(law)
+            slope[1] = slip[1] = 0.0
+            flow = column(law, slope, slip)
+            line = profile(law, slip[0], flow.carried[0])
+            size = np.maximum(np.abs(line.g_a), np.abs(line.g_b))
+            assert (np.abs(line.g_b - line.g_a - slope[0]) <= 3e-7 * size).all()
+            assert (np.abs(0.5 * (line.g_a + line.g_b) - flow.mean[0]) <= 1e-7 * size).all()
+            assert np.abs(flow.mean[1]).max() == np.abs(flow.carried[1]).max() == 0.0
+
+
+@pytest.mark.quick
+def test_stresses_that_are_no_numbers_flow_nowhere_and_a_film_at_rest_is_at_rest():
+    law = COLUMN_LAWS["carreau"]
+    flow = column(law, np.array([[np.nan, 0.0], [0.0, 0.0]]), np.zeros((2, 2)))
+    assert np.isnan(flow.carried[:, 0]).all()
+    assert (flow.carried[:, 1] == 0.0).all()
+    assert flow_curve(law)(np.array([1e-40, 0.0]))[0] == pytest.approx(1.0, abs=1e-12)

@@ -7,34 +7,10 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.checks.subject import TRACING, Subject, speed_of_film
-from stribeck.checks.table import checks_of
-from stribeck.regimes.margin_limits import SEARCHES, limits, physical_bounds, scanned_rtol
 from stribeck.regimes.margins import regime_margins
 
 BALL = ball_data.BALL.replace(slide_to_roll=2.0)
 LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
-
-
-def test_the_limits_of_a_search_are_where_the_groups_of_a_ball_leave_the_box():
-    for name, group in (("load", "load"), ("roughness", "relative_roughness")):
-        low, high = limits(BALL, name)
-        value = getattr(BALL, name)
-        ends = [
-            BALL.replace(**{name: value * math.exp(x)}).groups for x in (low, high) if physical_bounds(BALL, name)[0] < value
-        ]
-        assert all(1e-8 * (1 - 1e-9) <= each.load <= 1 + 1e-9 for each in ends)
-        assert all(1e-6 * (1 - 1e-9) <= each.relative_roughness <= 1e3 * (1 + 1e-9) for each in ends)
-        assert getattr(ends[1], group) > getattr(BALL.groups, group)
-    low, high = limits(BALL.replace(law=LAW), "load")
-    assert BALL.replace(law=LAW, load=BALL.load * math.exp(high)).groups.load == pytest.approx(
-        min(SEARCHES["point"].largest_group, BALL.groups.load * physical_bounds(BALL, "load")[1] / BALL.load), rel=1e-6
-    )
-
-
-def test_the_heaviest_load_of_a_ball_makes_the_contact_as_wide_as_itself():
-    heavy = BALL.replace(load=physical_bounds(BALL, "load")[1])
-    assert heavy.hertz.half_width == pytest.approx(heavy.radius, rel=1e-12)
 
 
 @pytest.mark.slow
@@ -69,16 +45,13 @@ def test_a_phase_diagram_of_balls_holds_states_and_their_transitions():
         sb.phase_diagram(BALL, merging=True)
 
 
+@pytest.mark.slow
 def test_checks_of_a_ball_trace_its_curve_around_the_minimum():
-    slow, fast = (speed_of_film(BALL, film) for film in TRACING["point"].films)
-    curve = sb.stribeck_curve(BALL, speed=(slow, fast), points=TRACING["point"].points, rtol=TRACING["point"].rtol)
-    assert slow < curve.minimum.value < fast
-    film = sb.solve(BALL.replace(speed=fast, roughness=0.0), rtol=1e-3).central_gap * BALL.hertz.indentation
-    assert film / BALL.roughness == pytest.approx(TRACING["point"].films[1], rel=0.3)
-    found = checks_of(Subject(BALL, traced=curve), "curve")
-    check = found["contact law at the minimum"]
+    curve = sb.stribeck_curve(BALL, rtol=1e-3)
+    found = sb.check(BALL)
     state = curve.minimum.solution
-    assert check.value == pytest.approx(state.central_gap * BALL.hertz.indentation / BALL.roughness)
+    film = state.central_gap * BALL.hertz.indentation / BALL.roughness
+    assert found["contact law at the minimum"].value == pytest.approx(film, rel=2e-2)
     assert not [each for each in found.unchecked if "minute" in each]
 
 
@@ -92,27 +65,25 @@ def test_the_tail_of_the_law_moves_the_minimum_of_a_ball():
 
 @pytest.mark.slow
 def test_errors_of_the_inputs_of_a_ball_become_those_of_friction_and_regime():
-    from stribeck.curves.sensitivities import friction_sensitivities
-
     found = sb.propagate(BALL, {"roughness": 0.02, "boundary_friction": 0.05})
     assert sum(found.regimes.values()) == pytest.approx(1.0)
     assert found.regimes["mixed"] == pytest.approx(1.0, abs=1e-6)
-    _, slopes = friction_sensitivities(BALL, rtol=1e-4)
-    wanted = math.hypot(slopes["roughness"] * 0.02, slopes["boundary_friction"] * 0.05)
-    friction = next(each for each in found.spreads if each.name == "friction")
-    low, high = friction.interval_68
+
+    def slope(name):
+        ends = [sb.solve(BALL.replace(**{name: getattr(BALL, name) * factor}), rtol=1e-5) for factor in (1.01, 1 / 1.01)]
+        return math.log(ends[0].friction().total / ends[1].friction().total) / (2 * math.log(1.01))
+
+    parts = {"roughness": slope("roughness") * 0.02, "boundary_friction": slope("boundary_friction") * 0.05}
+    wanted = math.hypot(*parts.values())
+    low, high = next(each for each in found.spreads if each.name == "friction").interval_68
     assert 0.5 * math.log(high / low) == pytest.approx(wanted, rel=0.05)
-    assert slopes["boundary_friction"] ** 2 * 0.05**2 / wanted**2 == pytest.approx(
-        found.contributions["boundary_friction"], rel=0.02
-    )
+    assert (parts["boundary_friction"] / wanted) ** 2 == pytest.approx(found.contributions["boundary_friction"], rel=0.02)
 
 
-def test_marks_at_the_tolerance_of_scans_are_those_of_a_fine_curve():
-    coarse = scanned_rtol(BALL, 1e-6)
-    assert scanned_rtol(BALL, 0.01) == 0.01 and coarse > 1e-3
+def test_marks_of_a_coarse_curve_are_those_of_a_fine_one():
     near = tuple(BALL.speed * factor for factor in (0.3, 300.0))
-    found, fine = (sb.stribeck_curve(BALL, speed=near, points=5, rtol=rtol).transitions for rtol in (coarse, 1e-5))
+    found, fine = (sb.stribeck_curve(BALL, speed=near, points=5, rtol=rtol).transitions for rtol in (3e-3, 1e-5))
     assert len(found) >= 2 and [mark.name for mark in found] == [mark.name for mark in fine]
     for mark, exact in zip(found, fine, strict=True):
-        assert mark.value == pytest.approx(exact.value, rel=2 * coarse)
-        assert mark.friction == pytest.approx(exact.friction, rel=coarse)
+        assert mark.value == pytest.approx(exact.value, rel=6e-3)
+        assert mark.friction == pytest.approx(exact.friction, rel=3e-3)

@@ -247,16 +247,13 @@ def ball_with(name):
     return contact.replace(**MODELS[name])
 
 
-@pytest.mark.parametrize(
-    ("model", "inputs"),
-    [("barus", ("load", "modulus", "pressure_coefficient")), ("flow", ("roughness",))],
-    ids=["barus", "flow factors"],
-)
-def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_them(model, inputs):
-    contact = ball_with(model)
-    _, found = friction_sensitivities(contact, rtol=1e-6)
-    for name in inputs:
-        assert found[name] == pytest.approx(differences(contact, name, step=0.01, rtol=1e-6), abs=3e-4), name
+def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_them(subtests):
+    for model, inputs in [("barus", ("load", "modulus", "pressure_coefficient")), ("flow", ("roughness",))]:
+        with subtests.test(model=model, inputs=inputs):
+            contact = ball_with(model)
+            _, found = friction_sensitivities(contact, rtol=1e-6)
+            for name in inputs:
+                assert found[name] == pytest.approx(differences(contact, name, step=0.01, rtol=1e-6), abs=3e-4), name
 
 
 def test_at_fixed_groups_beta_moves_the_viscous_friction_by_its_closed_form():

@@ -471,22 +471,20 @@ def test_heavy_loads_are_carried_at_any_speed_but_below_the_plateau(solved):
         assert any("not below 1" in note for note in s.notes)
 
 
-@pytest.mark.parametrize(
-    "numbers",
-    [
+def test_loads_that_asperities_cannot_carry_are_reached_at_low_speed(subtests, solved):
+    for numbers in [
         (1.17e-11, 9.72, 0.0205),
         (3.84e-12, 1.522, 0.0031),
         (6.74e-12, 4.0, 0.116),
         (6.225531043163782e-11, 4.994729698313591, 0.5392830023662535),
         (2.921589503997626e-11, 2.2361648041907007, 0.0009440129192443455),
-    ],
-)
-def test_loads_that_asperities_cannot_carry_are_reached_at_low_speed(numbers, solved):
-    # Loading at low speed would cross the sudden hand-over from asperities to film, where the path is lost; so it is where
-    # meshes are asked to resolve the jumps of predictions.
-    s = solved(*numbers, rtol=1e-4)
-    assert s.outcome.ok
-    assert 0 < s.contact_load_share < 1
+    ]:
+        with subtests.test(numbers=numbers):
+            # Loading at low speed would cross the sudden hand-over from asperities to film, where the path is lost; so it is
+            # where meshes are asked to resolve the jumps of predictions.
+            s = solved(*numbers, rtol=1e-4)
+            assert s.outcome.ok
+            assert 0 < s.contact_load_share < 1
 
 
 # What a solution says
