@@ -142,7 +142,9 @@ def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_its_parts(subtests):
             layer, near = Layer(d, poisson_ratio), np.abs(wide.nodes) < 12
             found = (layer.deflection(wide) @ pressure(wide.nodes))[near]
             exact = fine.interpolate(layer.deflection(fine) @ pressure(fine.nodes), wide.nodes[near])
-            np.testing.assert_allclose(found, exact, rtol=0, atol=2e-8)  # the kink of the pressure costs the interpolation this
+            np.testing.assert_allclose(
+                found, exact, rtol=0, atol=2e-8
+            )  # the kink of the pressure costs the interpolation this
 
 
 def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():
