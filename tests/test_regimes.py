@@ -338,7 +338,7 @@ def test_an_uncertain_input_moves_the_factor_by_which_it_is_to_be_changed_itself
 def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with(capsys, tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(case_text())
-    assert "95 %" not in call(capsys, "regimes", path, "-v").out
+    assert "95 %:" not in call(capsys, "regimes", path, "-v").out
     path.write_text(case_text({"speed": '"1 mm/s +- 10 %"'}))
     said = " ".join(call(capsys, "regimes", path, "-v").out.split())
     assert re.search(r"To reach hydrodynamic lubrication: speed x 30\.\d+ \(to 30\.\d+ mm/s; 95 %: 2\d\.?\d* to 3\d", said)
