@@ -565,6 +565,7 @@ def test_the_installed_command_and_the_module_are_the_same():
 def test_help_loads_neither_plots_nor_datasets_nor_units():
     code = """
 import sys
+from stribeck.cli import main
 main(["curve", "--help"])
 assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & set(sys.modules)
 """
@@ -579,6 +580,7 @@ def test_solve_loads_no_more_than_it_needs(subtests):
             code = f"""
 import re
 import sys
+from stribeck.cli import main
 main({tokens!r})
 assert not {unneeded!r} & set(sys.modules)
 for name in ("special", "interpolate", "optimize", "sparse", "fft", "integrate", "stats"):
