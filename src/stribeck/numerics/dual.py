@@ -15,15 +15,16 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from stribeck._types import Array
 
 __all__ = ["PARTIALS", "Dual", "slope_of", "value_of", "with_slope"]
 
 
-class Dual(NDArrayOperatorsMixin):
+class Dual:
     """A value and its derivative."""
+
+    __slots__ = ("slope", "value")
 
     def __init__(self, value: Any, slope: Any) -> None:
         self.value, self.slope = value, slope
@@ -32,11 +33,6 @@ class Dual(NDArrayOperatorsMixin):
     def shape(self) -> tuple[int, ...]:
         """The shape of the value."""
         return np.shape(self.value)
-
-    @property
-    def real(self) -> Any:
-        """The value."""
-        return self.value
 
     def scaled(self, factor: Any, value: Any) -> Dual:
         """Return another value, whose derivative is this one times a factor."""
@@ -47,20 +43,93 @@ class Dual(NDArrayOperatorsMixin):
         slope = np.broadcast_to(self.slope, np.shape(self.value)) if np.ndim(self.slope) == 0 else self.slope
         return Dual(self.value[places], slope[places])
 
+    # What laws are mostly made of, without the way through numpy.
+
+    def __add__(self, other: Any) -> Dual:
+        """Return the sum."""
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, self.slope + other.slope)
+        return Dual(self.value + other, self.slope)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Dual:
+        """Return the negative."""
+        return Dual(-self.value, -self.slope)
+
+    def __sub__(self, other: Any) -> Dual:
+        """Return the difference."""
+        if isinstance(other, Dual):
+            return Dual(self.value - other.value, self.slope - other.slope)
+        return Dual(self.value - other, self.slope)
+
+    def __rsub__(self, other: Any) -> Dual:
+        """Return the difference."""
+        return Dual(other - self.value, -self.slope)
+
+    def __mul__(self, other: Any) -> Dual:
+        """Return the product."""
+        if isinstance(other, Dual):
+            return Dual(self.value * other.value, self.slope * other.value + self.value * other.slope)
+        return Dual(self.value * other, self.slope * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Dual:
+        """Return the quotient."""
+        if isinstance(other, Dual):
+            value = self.value / other.value
+            return Dual(value, (self.slope - value * other.slope) / other.value)
+        return Dual(self.value / other, self.slope / other)
+
+    def __rtruediv__(self, other: Any) -> Dual:
+        """Return the quotient."""
+        value = other / self.value
+        return Dual(value, -value / self.value * self.slope)
+
+    def __pow__(self, exponent: Any) -> Dual:
+        """Return the power; an exponent without a derivative."""
+        return np.power(self, exponent)  # type: ignore[no-any-return, call-overload]
+
+    def __lt__(self, other: Any) -> Any:
+        """Return whether the value is less."""
+        return self.value < value_of(other)
+
+    def __le__(self, other: Any) -> Any:
+        """Return whether the value is less or equal."""
+        return self.value <= value_of(other)
+
+    def __gt__(self, other: Any) -> Any:
+        """Return whether the value is greater."""
+        return self.value > value_of(other)
+
+    def __ge__(self, other: Any) -> Any:
+        """Return whether the value is greater or equal."""
+        return self.value >= value_of(other)
+
+    def __abs__(self) -> Dual:
+        """Return the absolute value."""
+        return Dual(np.abs(self.value), np.sign(self.value) * self.slope)
+
     def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
         """Return what a function of numpy makes of it: a plain value where its derivative is zero."""
-        values = [value_of(each) for each in given]
         if method != "__call__" or options:
             return NotImplemented
+        operator = OPERATORS.get(function)
+        if operator is not None:
+            first, second = given
+            return operator[0](first, second) if isinstance(first, Dual) else operator[1](second, first)
+        values = [value_of(each) for each in given]
         if function in FLAT:
             return function(*values)
         partials = PARTIALS.get(function)
         if partials is None:
             return NotImplemented
-        value, slope = function(*values), 0.0
+        value, slope = function(*values), None
         for each, partial in zip(given, partials, strict=True):
             if isinstance(each, Dual):
-                slope = slope + partial(value, *values) * each.slope
+                by = partial(value, *values) * each.slope
+                slope = by if slope is None else slope + by
         return Dual(value, slope)
 
     def __array_function__(self, function: Any, types: Any, given: Any, options: Any) -> Any:
@@ -91,8 +160,15 @@ def with_slope(function: Callable[[Any], Any], at: Array) -> tuple[Array, Array]
     """Return a function of one number at places, and its derivative there."""
     at = np.asarray(at, dtype=float)
     found = function(Dual(at, 1.0))
-    value = np.broadcast_to(np.asarray(value_of(found), dtype=float), at.shape)
-    return value, np.broadcast_to(np.asarray(slope_of(found), dtype=float), at.shape)
+    value, slope = value_of(found), slope_of(found)
+    return _filled(value, at), _filled(slope, at)
+
+
+def _filled(values: Any, at: Array) -> Array:
+    """Return values at all places."""
+    if np.shape(values) == at.shape:
+        return values  # type: ignore[no-any-return]
+    return np.broadcast_to(np.asarray(values, dtype=float), at.shape)
 
 
 # Functions that are constant but for jumps.
@@ -111,14 +187,18 @@ FLAT = {
     np.logical_not,
 }
 
+# Arithmetic with an array to the left, which asks numpy first: of the dual to the left, and to the right.
+OPERATORS: dict[Any, tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]]] = {
+    np.add: (Dual.__add__, Dual.__radd__),
+    np.subtract: (Dual.__sub__, Dual.__rsub__),
+    np.multiply: (Dual.__mul__, Dual.__rmul__),
+    np.divide: (Dual.__truediv__, Dual.__rtruediv__),
+}
+
 Partial = Callable[..., Any]
 
 # Derivatives of each function by what it takes, from its value and that.
 PARTIALS: dict[Any, tuple[Partial, ...]] = {
-    np.add: (lambda v, a, b: 1.0, lambda v, a, b: 1.0),
-    np.subtract: (lambda v, a, b: 1.0, lambda v, a, b: -1.0),
-    np.multiply: (lambda v, a, b: b, lambda v, a, b: a),
-    np.divide: (lambda v, a, b: 1.0 / b, lambda v, a, b: -v / b),
     np.power: (lambda v, a, b: b * a ** (b - 1.0), lambda v, a, b: v * np.log(a)),
     np.negative: (lambda v, a: -1.0,),
     np.positive: (lambda v, a: 1.0,),
