@@ -143,3 +143,13 @@ def test_an_impossible_gamma_is_refused(subtests):
         with subtests.test(gamma=gamma):
             with pytest.raises(sb.InputError, match="gamma = "):
                 persson_law(ROLLED, gamma)
+
+
+def test_the_stated_error_is_kept_between_the_points(law):
+    from stribeck.contact_laws.persson_integral import Integral
+
+    unit = Spectrum(ROLLED.spectrum.wavenumber, ROLLED.spectrum.density)
+    y = np.random.default_rng(71).uniform(-36, math.log(26 * law.rms_slope / math.sqrt(2) / law.beta), 1000)
+    log_s = Integral.of(unit, 0.45).separation(y)[0]
+    assert np.abs(law.log_pressure(np.exp(log_s)) - y).max() < 1.5e-11
+    assert 0 < law.error <= 1e-11

@@ -6,10 +6,12 @@ import re
 import resource
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
+import threading
 import time
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +22,9 @@ from sweep_files import CONTACT, GRID, RANDOM, finish, kept, same_states, write
 
 import stribeck as sb
 from stribeck import Outcome
+from stribeck.cli import progress as progress_module
 from stribeck.solver import neighbours
+from stribeck.sweeps import store as sweep_store
 
 LONG = RANDOM.format(kind="sobol", points=1024)
 """Enough states to be stopped in the middle of."""
@@ -478,3 +482,90 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
     again = sb.sweep(file, larger / "store")
     assert (again.finished, again.computed) == (128, 128 - found.finished)
     assert os.listdir(larger) == ["store"]
+
+
+# --- the store and Ctrl-C, from within ---
+
+
+SMALL = GRID.replace("17", "3")
+
+
+@pytest.mark.quick
+def test_of_many_who_want_a_store_one_has_it_at_a_time(tmp_path):
+    """Also the store that a dead sweep has left, and the one that none of them has made yet."""
+    design = sb.load_sweep(write(tmp_path, SMALL))
+    inside, most, held = [], [], []
+
+    def contend(number):
+        for _ in range(20):
+            try:
+                with sweep_store.claimed_store(tmp_path / "store", design) as store:
+                    inside.append(number)
+                    most.append(len(inside))
+                    store.keep([])
+                    held.append(number)
+                    inside.remove(number)
+            except sb.InputError as problem:
+                assert "in use" in str(problem)
+
+    threads = [threading.Thread(target=contend, args=(k,)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(held) > 4 and max(most) == 1
+
+
+def test_a_sweep_whose_store_was_taken_over_writes_no_more(tmp_path, monkeypatch):
+    """As where a file system does not lock, or a machine slept in the moment between two transactions."""
+    file, store = write(tmp_path, SMALL), tmp_path / "store"
+    other = {"pid": 7, "host": "elsewhere", "key": ""}
+
+    def steal(progress):
+        if progress.done == 3:
+            monkeypatch.setattr(sweep_store, "_writer", lambda db: other)
+
+    with pytest.raises(sb.SweepError, match=r"was taken over by process 7 on elsewhere; this sweep ends\."):
+        sb.sweep(file, store, on_progress=steal)
+    assert len(kept(store)) == 4
+    monkeypatch.undo()
+    with closing(sqlite3.connect(store)) as db:  # the name of the other is not cleared away
+        assert db.execute("SELECT value FROM about WHERE name = 'writer'").fetchone() != ("null",)
+
+
+def test_a_store_of_another_version_is_refused(tmp_path, monkeypatch):
+    file, store = write(tmp_path, SMALL), tmp_path / "store"
+    sb.sweep(file, store)
+    monkeypatch.setattr(sweep_store, "version", lambda name: "9.9.9")
+    with pytest.raises(sb.InputError, match=r"was started with stribeck 0\.[0-9.]+, this is 9\.9\.9"):
+        sb.sweep(file, store)
+
+
+def test_ctrl_c_lets_several_processes_end_the_present_point_and_takes_effect_at_once_the_second_time():
+    progress = progress_module.Progress(after_point=True)
+    with pytest.raises(KeyboardInterrupt):
+        progress.interrupt(signal.SIGINT, None)  # nothing to keep yet
+    progress = progress_module.Progress(after_point=True)
+    progress(1, 9)
+    progress.interrupt(signal.SIGINT, None)
+    with pytest.raises(KeyboardInterrupt):
+        progress(2, 9)
+    with pytest.raises(KeyboardInterrupt):
+        progress.interrupt(signal.SIGINT, None)
+
+
+def test_ctrl_c_does_not_stop_the_writing():
+    progress = progress_module.Progress()
+    progress(9, 9)
+    progress.writes = True
+    try:
+        progress.interrupt(signal.SIGINT, None)
+        progress(9, 9)
+    except KeyboardInterrupt:
+        pytest.fail("the writing would have been stopped")
+
+
+def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
+    with pytest.raises(KeyboardInterrupt), progress_module.interruptible() as progress:
+        progress.wanted = True
+        raise sb.SolveError(Outcome.PATH_LOST, None, "lost")
