@@ -41,9 +41,9 @@ def one(groups, *i):
 
 def assert_states_its_errors(found, exact, *i):
     """Assert that a state agrees with another within the errors that both state."""
-    for row, name in enumerate(exact.errors):
+    for name, errors in found.errors.items():
         value = getattr(exact, name)
-        allowed = (found.relative_errors[(row, *i)] + exact.errors[name]) * (1.0 if name in SHARES else abs(value))
+        allowed = (errors[i] + exact.errors[name]) * (1.0 if name in SHARES else abs(value))
         assert math.isnan(value) or abs(getattr(found, name)[i] - value) <= allowed, name
 
 

@@ -14,7 +14,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import scipy
 
 from stribeck._types import Array
 
@@ -122,7 +121,7 @@ class Dual:
         values = [value_of(each) for each in given]
         if function in FLAT:
             return function(*values)
-        partials = PARTIALS.get(function)
+        partials = PARTIALS.get(function) or SPECIAL.get(function.__name__)
         if partials is None:
             return NotImplemented
         value, slope = function(*values), None
@@ -223,8 +222,12 @@ PARTIALS: dict[Any, tuple[Partial, ...]] = {
     np.copysign: (lambda v, a, b: np.copysign(1.0, b) * np.sign(a), lambda v, a, b: 0.0),
     np.maximum: (lambda v, a, b: 1.0 * (a >= b), lambda v, a, b: 1.0 * (a < b)),
     np.minimum: (lambda v, a, b: 1.0 * (a <= b), lambda v, a, b: 1.0 * (a > b)),
-    scipy.special.ndtr: (lambda v, a: np.exp(-0.5 * a * a) / math.sqrt(2 * math.pi),),
-    scipy.special.erf: (lambda v, a: 2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
-    scipy.special.erfc: (lambda v, a: -2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
-    scipy.special.expit: (lambda v, a: v * (1.0 - v),),
+}
+
+# Those of scipy.special, by their names: most laws need none of them, and to load them takes time.
+SPECIAL: dict[str, tuple[Partial, ...]] = {
+    "ndtr": (lambda v, a: np.exp(-0.5 * a * a) / math.sqrt(2 * math.pi),),
+    "erf": (lambda v, a: 2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
+    "erfc": (lambda v, a: -2.0 / math.sqrt(math.pi) * np.exp(-a * a),),
+    "expit": (lambda v, a: v * (1.0 - v),),
 }
