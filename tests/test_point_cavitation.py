@@ -33,7 +33,7 @@ def test_states_agree_with_finite_volumes(speed, kappa, central, minimum, share)
         ("central_gap", "minimum_gap", "contact_load_share"), (central, minimum, share), strict=True
     ):
         assert abs(state.values[name] - value) <= uncertainty + state.absolute_errors[name], name
-    assert abs(state.load_error) < 1e-8
+    assert abs(state.load_error) < 1e-6
     assert abs(state.identity_error) <= 1e-6 * state.scales["J_balanced"]
     assert state.nodal_fluid_pressure.min() == 0.0
 

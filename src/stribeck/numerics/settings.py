@@ -46,7 +46,8 @@ MAX_MODES = 200  # Angular modes
 MAX_BYTES = 670_000_000  # Memory of operators and preconditioner of a mesh
 
 # Meshes of balls, limits on work too: with others a state takes another refinement or more nodes.
-PANEL_GROWTH, FAR_GROWTH = 2.5, 5.0  # Ratio of the widths of neighbouring panels, and of the radii of those far out
+PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
+FAR_GROWTH = 2.0 * PANEL_GROWTH  # Ratio of the radii of panels far out, where the film is known but for little
 LEGENDRE_DECAY = 4.4  # Factor by which pressures with the square root of an edge fall per degree, on panels that lead to it
 MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 
