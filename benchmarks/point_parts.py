@@ -33,9 +33,10 @@ from point_box import FINER_DEGREE, FINER_MODES, SHIFTED
 
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.point.mesh_choice import MAX_EXTRA_FAR_PANELS, Resolution
+from stribeck.equations.point.mesh_choice import Resolution
 from stribeck.equations.point.observables import observables
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.settings import MAX_REFINEMENTS
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
 from stribeck.solver.point.level import solve_level
@@ -112,7 +113,7 @@ def finer_mesh(state: PointState) -> Resolution:
         return replace(now, degree=now.degree + TORN_DEGREE, modes=modes)
     degree, farther = now.degree + FINER_DEGREE, now.farther
     if now.model.film.uses_speed:
-        farther = min(MAX_EXTRA_FAR_PANELS, farther + 1)
+        farther = min(MAX_REFINEMENTS, farther + 1)
     modes = max(now.modes, min(MOST_MODES, round(FINER_MODES * now.modes)))
     return replace(now, degree=degree, modes=modes, splits=splits, farther=farther)
 
