@@ -83,8 +83,8 @@ class FigureJob:
 
         try:
             found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **{"definition": "published"} | arguments)
-        except SolveError as problem:
-            if interrupted or problem.outcome is Outcome.INTERRUPTED:
+        except SolveError:
+            if interrupted:
                 raise KeyboardInterrupt from None
             raise
         if interrupted or found.outcome is Outcome.INTERRUPTED:

@@ -213,17 +213,11 @@ class LineProblem:
         """Return a guess of the state at ``s``, and the uncertainty of the logarithms of its unknowns."""
         base, doubt = with_positive_gap(groups)[0], 0.0
         last: LinePoint = near[-1].point
-        if len(near) == 2:
-            left, right = near
-            length = right.coordinate - left.coordinate
-            # A polynomial with the coefficients of both states converges within a lemniscate that no singularity touches.
-            if (s - left.coordinate) * (right.coordinate - s) > min(left.radius, right.radius) * length:
-                near = [min(near, key=lambda each: abs(s - each.coordinate) / each.radius)]
         if base.model.cavitation is not last.state.groups.model.cavitation:
             base = replace(base, model=with_ending_of(last.state, base.model))
         if len(near) == 1:
-            mesh_of = near[0].point
-            w, doubt = beyond(mesh_of.unknowns, s - near[0].coordinate)
+            w, doubt = beyond(last.unknowns, s - near[0].coordinate)
+            mesh_of = last
         else:
             left, right = near
             part = (s - left.coordinate) / ((right.coordinate - left.coordinate) or 1.0)
