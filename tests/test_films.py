@@ -247,14 +247,9 @@ class Shortened(EffectiveMedium):
     """Flow factors of the effective medium, beyond eight roughnesses the first term of their series."""
 
     def pressure(self, gap):
-        """Return phi_x and its slope."""
-        width, (factor, slope) = gap / self.sigma, super().pressure(gap)
-        far = width > 8
-        return np.where(far, 1 - 1.5 / width**2, factor), np.where(far, 3 / width**3 / self.sigma, slope)
-
-    def factor(self, gap):
         """Return phi_x."""
-        return self.pressure(gap)[0]
+        width = gap / self.sigma
+        return np.where(width > 8, 1 - 1.5 / width**2, super().pressure(gap))
 
 
 def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_its_wide_gaps(subtests):

@@ -313,12 +313,12 @@ def adapt(
         found = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
         return np.asarray(found.max(axis=0) / tolerance)
 
-    before = math.inf
-    while True:
+    before, known = math.inf, math.inf if start is None else float(start.edges[-1])
+    while reach < scale / SAME_PLACE:
         x = reach / nodes[None, :]
         tail = legendre_tail(fields(x, np.array([reach]), nodes[None, :] ** -2.0).reshape(-1, order), order).max()
-        # Beyond its own panels a guess tells no more: then one that is solved on the wider mesh does.
-        if not tolerance < tail < before:
+        # Beyond its own panels a guess may tell no more: then one that is solved on the wider mesh does.
+        if not tail > tolerance or (reach > known and tail >= before):
             break
         before = float(tail)
         reach *= 2.0
