@@ -275,13 +275,14 @@ def test_a_file_that_is_no_case_is_refused_in_one_sentence(subtests, problems):
             assert found[0].startswith(sentence)
 
 
-def test_a_path_that_is_no_file_is_refused(subtests, tmp_path):
+def test_a_path_that_is_no_file_is_refused(subtests, tmp_path_factory):
     for name, words in [
         ("missing.toml", "cannot be read (No such file"),
         (".", "is a directory"),
         ("a\0b", "cannot be looked up (embedded"),
     ]:
         with subtests.test(name=name, words=words):
+            tmp_path = tmp_path_factory.mktemp("case")
             with pytest.raises(InputError) as caught:
                 load_case(tmp_path / name)
             assert words in str(caught.value)

@@ -301,7 +301,7 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
 # --- inputs, adhesion, pores, the law apart ---
 
 
-def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path):
+def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path_factory):
     for changes, said in [
         ({"slide_to_roll": 50.0}, "slide-to-roll ratio 50 (50 % is 0.5)"),
         ({"boundary_friction": 70.0}, "dry friction coefficient 70 (70 % is 0.7)"),
@@ -310,6 +310,7 @@ def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path):
         ({"roughness": "1 mm"}, "roughness 1 mm"),
     ]:
         with subtests.test(changes=changes, said=said):
+            tmp_path = tmp_path_factory.mktemp("case")
             motion = {"motion": {"slide_to_roll": changes.pop("slide_to_roll")}} if "slide_to_roll" in changes else {}
             texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
             path = tmp_path / "case.toml"

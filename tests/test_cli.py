@@ -394,7 +394,7 @@ def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
     assert found["moves_friction_most"] == "boundary_friction"
 
 
-def test_regimes_of_resting_and_smooth_contacts_are_told_too(subtests, capsys, tmp_path):
+def test_regimes_of_resting_and_smooth_contacts_are_told_too(subtests, capsys, tmp_path_factory):
     for speed, roughness, regime in [
         ("0 m/s", "1 um", "boundary"),
         ("1 m/s", "1 um", "hydrodynamic"),
@@ -402,6 +402,7 @@ def test_regimes_of_resting_and_smooth_contacts_are_told_too(subtests, capsys, t
         ("0 m/s", "0 m", "boundary"),
     ]:
         with subtests.test(speed=speed, roughness=roughness, regime=regime):
+            tmp_path = tmp_path_factory.mktemp("case")
             case = tmp_path / "case.toml"
             case.write_text(case_text({"speed": f'"{speed}"', "roughness": f'"{roughness}"'}))
             assert f"{regime.capitalize()} lubrication at {speed}: friction" in call(capsys, "regimes", case).out

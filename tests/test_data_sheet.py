@@ -79,7 +79,7 @@ def test_python_takes_a_data_sheet_too():
 
 
 @pytest.mark.quick
-def test_what_cannot_be_converted_is_named_alone(subtests, tmp_path):
+def test_what_cannot_be_converted_is_named_alone(subtests, tmp_path_factory):
     for changes, sentence in [
         ({"width": None}, "width is missing beside force = '15.4 N'; add a length, for example width = "),
         ({"load": '"770 N/m"'}, "load = '770 N/m' and force = '15.4 N' and width = '20 mm' are both given"),
@@ -91,6 +91,7 @@ def test_what_cannot_be_converted_is_named_alone(subtests, tmp_path):
         ({"shore": "70"}, "shore = 70 is not a known key; write shore_a = 70"),
     ]:
         with subtests.test(changes=changes, sentence=sentence):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "case.toml"
             path.write_text(case_text(SHEET | changes))
             with pytest.raises(sb.InputError) as problem:

@@ -55,9 +55,10 @@ KINDS = (
 )
 
 
-def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path):
+def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path_factory):
     for kind in KINDS:
         with subtests.test(kind=kind):
+            tmp_path = tmp_path_factory.mktemp("case")
             found = results[kind]
             assert found.plot(tmp_path / f"{kind}.svg").axes
             axes = Figure().subplots()
@@ -102,9 +103,10 @@ OTHERS = (
 )
 
 
-def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(subtests, parts, tmp_path):
+def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(subtests, parts, tmp_path_factory):
     for kind in (*KINDS, *OTHERS):
         with subtests.test(kind=kind):
+            tmp_path = tmp_path_factory.mktemp("case")
             pytest.importorskip("xarray")
             found = parts[kind].to_dataset()
             assert found.data_vars and found.attrs["title"]
@@ -122,9 +124,10 @@ def test_the_results_above_are_all_that_have_numbers(parts):
     assert names == {"Explanation", "FitOutcome"}  # which are words
 
 
-def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp_path):
+def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp_path_factory):
     for kind in KINDS:
         with subtests.test(kind=kind):
+            tmp_path = tmp_path_factory.mktemp("case")
             xarray = pytest.importorskip("xarray")
             found = results[kind].to_dataset()
             assert found.sizes and found.attrs["title"]

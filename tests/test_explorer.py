@@ -274,9 +274,10 @@ def same_contact(one, two):
         assert one.law.parameters | {"title": ""} == two.law.parameters | {"title": ""}
 
 
-def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_path):
+def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_path_factory):
     for kind in KINDS:
         with subtests.test(kind=kind):
+            tmp_path = tmp_path_factory.mktemp("case")
             random = np.random.default_rng([72, *map(ord, str(kind))])
             rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
             (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")

@@ -93,9 +93,10 @@ def test_the_data_of_each_figure_are_described_and_converged(subtests):
                     assert np.isfinite(variable.values).any()
 
 
-def test_each_figure_comes_back_from_its_file_as_it_was(subtests, tmp_path):
+def test_each_figure_comes_back_from_its_file_as_it_was(subtests, tmp_path_factory):
     for name in FIGURES:
         with subtests.test(name=name):
+            tmp_path = tmp_path_factory.mktemp("case")
             from stribeck.files.datasets import write_netcdf
 
             write_netcdf(data_of(name), tmp_path / "data.nc")

@@ -155,7 +155,7 @@ def test_a_case_file_names_numbers_of_its_fluid_and_gets_them_back(tmp_path, cap
     assert sb.load_case(tmp_path / "fitted.toml").contact.pressure_coefficient == pytest.approx(5e-7, rel=3e-3)
 
 
-def test_what_is_wrong_with_numbers_of_the_fluid_is_said(subtests, tmp_path):
+def test_what_is_wrong_with_numbers_of_the_fluid_is_said(subtests, tmp_path_factory):
     for before, after, said in [
         ('["10 1/GPa", "1000 1/GPa"]', '["0 1/GPa", "1 1/GPa"]', "pressure_coefficient = '0 1/GPa' must be positive"),
         ('model = "eyring"', 'model = "eyrin"', r"second: \[fluid\] model = 'eyrin' must be one of"),
@@ -163,6 +163,7 @@ def test_what_is_wrong_with_numbers_of_the_fluid_is_said(subtests, tmp_path):
         ('"pressure_viscosity"]', '"relaxation_tim"]', "did you mean relaxation_time"),
     ]:
         with subtests.test(before=before, after=after, said=said):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "case.toml"
             path.write_text(CASE.replace(before, after))
             with pytest.raises(sb.InputError, match=said):

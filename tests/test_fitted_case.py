@@ -82,20 +82,22 @@ def check_round_trip(capsys, folder, contact, tables, free):
         assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
 
 
-def test_a_fitted_case_of_every_law_has_the_fitted_curve(subtests, capsys, tmp_path):
+def test_a_fitted_case_of_every_law_has_the_fitted_curve(subtests, capsys, tmp_path_factory):
     for name in CASES:
         for free in [("roughness",), ("alpha", "beta")]:
             with subtests.test(name=name, free=free):
+                tmp_path = tmp_path_factory.mktemp("case")
                 contact, tables = CASES[name]
                 if "Greenwood" in name:  # its alpha is one
                     free = tuple(each for each in free if each != "alpha")
                 check_round_trip(capsys, tmp_path, contact, tables, free)
 
 
-def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(subtests, capsys, tmp_path):
+def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(subtests, capsys, tmp_path_factory):
     for name in INPUTS:
         for free in ["modulus", "viscosity", "load"]:
             with subtests.test(name=name, free=free):
+                tmp_path = tmp_path_factory.mktemp("case")
                 check_round_trip(capsys, tmp_path, INPUTS[name], {}, (free,))
 
 

@@ -292,9 +292,10 @@ def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests):
                 assert min(overlap) < 1.0, (text, other)
 
 
-def test_a_profile_of_any_state_can_be_drawn(subtests, solved, tmp_path):
+def test_a_profile_of_any_state_can_be_drawn(subtests, solved, tmp_path_factory):
     for groups in [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)]:
         with subtests.test(groups=groups):
+            tmp_path = tmp_path_factory.mktemp("case")
             solved(*groups).plot(tmp_path / "profile.png")
             assert (tmp_path / "profile.png").stat().st_size > 10_000
 
@@ -308,9 +309,10 @@ def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
 # --- files ---
 
 
-def test_the_ending_chooses_the_format(subtests, curve, tmp_path):
+def test_the_ending_chooses_the_format(subtests, curve, tmp_path_factory):
     for ending in SIGNATURES:
         with subtests.test(ending=ending):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / f"curve{ending}"
             curve.plot(path)
             assert path.read_bytes().startswith(SIGNATURES[ending])
@@ -358,9 +360,10 @@ def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
     assert answer.code == 0, answer.err
 
 
-def test_a_title_is_taken_by_the_letter(subtests, curve, tmp_path):
+def test_a_title_is_taken_by_the_letter(subtests, curve, tmp_path_factory):
     for title in ["costs $5", r"$\frac{1$", "a # b % c & d"]:
         with subtests.test(title=title):
+            tmp_path = tmp_path_factory.mktemp("case")
             figure = curve.plot(tmp_path / "curve.png", title=title)
             assert title in words(figure)
 

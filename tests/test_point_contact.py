@@ -198,7 +198,7 @@ def test_a_case_file_holds_a_ball(tmp_path):
     assert sb.load_case(path).contact == ball()
 
 
-def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_path):
+def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_path_factory):
     for text, sentence in [
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
         (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
@@ -210,6 +210,7 @@ def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_pa
         (CASE.format(load="1.3 N") + 'wetted_radius = "1 mm"', "lies inside the contact"),
     ]:
         with subtests.test(text=text, sentence=sentence):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "ball.toml"
             path.write_text(text)
             with pytest.raises(sb.InputError, match=sentence):

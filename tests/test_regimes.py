@@ -271,7 +271,7 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
     assert found["viscosity"]["unit"] == "Pa s"
 
 
-def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path):
+def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path_factory):
     for changes, sentence in [
         (
             {"speed": 0.0},
@@ -288,6 +288,7 @@ def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path):
         ),
     ]:
         with subtests.test(changes=changes, sentence=sentence):
+            tmp_path = tmp_path_factory.mktemp("case")
             text = command(capsys, tmp_path, "-v", **changes)
             assert sentence in text
             assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
@@ -307,9 +308,10 @@ def moved_by(capsys, tmp_path, uncertain, error=0.01, **changes):
     return {key: math.log(mark["interval_95"][1] / mark["interval_95"][0]) / width for key, mark in marks.items()}
 
 
-def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests, capsys, tmp_path):
+def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests, capsys, tmp_path_factory):
     for uncertain in ["roughness", "boundary_friction"]:
         with subtests.test(uncertain=uncertain):
+            tmp_path = tmp_path_factory.mktemp("case")
             found = moved_by(capsys, tmp_path, uncertain)
             curves = [
                 sb.stribeck_curve(

@@ -19,9 +19,10 @@ LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "ta
 
 
 @pytest.mark.quick
-def test_a_new_case_has_every_key_and_is_read_as_it_stands(subtests, tmp_path, capsys):
+def test_a_new_case_has_every_key_and_is_read_as_it_stands(subtests, tmp_path_factory, capsys):
     for geometry in ["line", "point"]:
         with subtests.test(geometry=geometry):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "new.toml"
             answer = call(capsys, "new", path, "--geometry", geometry)
             assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())

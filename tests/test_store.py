@@ -309,9 +309,10 @@ def test_through_a_link_its_target_is_written_and_the_link_kept(dataset, tmp_pat
     assert (tmp_path / "data" / "curve.csv").stat().st_size > 1000
 
 
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(subtests, tmp_path):
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(subtests, tmp_path_factory):
     for failure in [OSError(28, "No space left on device"), KeyboardInterrupt()]:
         with subtests.test(failure=failure):
+            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "curve.csv"
             path.write_text("precious")
             with (

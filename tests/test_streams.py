@@ -229,9 +229,10 @@ DEEP = {
 }
 
 
-def test_a_case_file_that_is_too_deep_is_refused_before_it_takes_minutes(subtests, capsys, tmp_path):
+def test_a_case_file_that_is_too_deep_is_refused_before_it_takes_minutes(subtests, capsys, tmp_path_factory):
     for text in DEEP.values():
         with subtests.test(text=text):
+            tmp_path = tmp_path_factory.mktemp("case")
             file = tmp_path / "deep.toml"
             file.write_text(text)
             answer = call(capsys, "solve", file)

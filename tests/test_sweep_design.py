@@ -63,9 +63,10 @@ def test_a_list_takes_the_lists_together(tmp_path):
     assert design.groups.tolist() == [[1e-4, 0.1, 1e-3], [2e-4, 0.1, 0.0]]
 
 
-def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(subtests, tmp_path):
+def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(subtests, tmp_path_factory):
     for kind in ["random", "latin-hypercube", "sobol"]:
         with subtests.test(kind=kind):
+            tmp_path = tmp_path_factory.mktemp("case")
             text = RANDOM.format(kind=kind, points=64)
             design, again = load(tmp_path, text), load(tmp_path, text)
             other = load(tmp_path, text.replace("20261", "20262"))
@@ -103,7 +104,7 @@ def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path)
 GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
 
 
-def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_path):
+def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_path_factory):
     for text, sentence in [
         ("", "is empty; a sweep file needs at least the table [vary]."),
         (GROUPS, "the table [vary] is missing."),
@@ -174,6 +175,7 @@ def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_pa
         (GROUPS + "[vary]\nspeed = [1]\n[solver]\nrtol = 1\n", "[solver] rtol = 1 must be a number from 1e-11 to 1e-2"),
     ]:
         with subtests.test(text=text, sentence=sentence):
+            tmp_path = tmp_path_factory.mktemp("case")
             with pytest.raises(sb.InputError) as caught:
                 load(tmp_path, text)
             lines = str(caught.value).splitlines()

@@ -150,9 +150,10 @@ def test_the_command_exports_every_number_text_and_unit(copy, filled, tmp_path, 
     assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
 
 
-def test_a_table_has_a_row_for_each_state_of_a_grid(subtests, filled, tmp_path):
+def test_a_table_has_a_row_for_each_state_of_a_grid(subtests, filled, tmp_path_factory):
     for ending in [".csv", ".parquet"]:
         with subtests.test(ending=ending):
+            tmp_path = tmp_path_factory.mktemp("case")
             write_it = filled.to_csv if ending == ".csv" else filled.to_parquet
             write_it(tmp_path / f"sweep{ending}")
             table = read(tmp_path / f"sweep{ending}")
@@ -256,9 +257,10 @@ def test_a_store_of_the_former_format_is_refused_and_kept(tmp_path):
     assert os.listdir(store) == ["zarr.json"]
 
 
-def test_a_place_that_is_no_store_is_refused_and_kept(subtests, tmp_path):
+def test_a_place_that_is_no_store_is_refused_and_kept(subtests, tmp_path_factory):
     for taken in ["file", "folder", "database", "pipe", "nowhere"]:
         with subtests.test(taken=taken):
+            tmp_path = tmp_path_factory.mktemp("case")
             folder = tmp_path / taken
             folder.mkdir()
             out = folder / "out"
@@ -316,9 +318,10 @@ def test_a_missing_extra_is_one_sentence(tmp_path, monkeypatch, filled, library,
             sb.sweep(write(tmp_path, SMALL), tmp_path / "store", scheduler="tcp://127.0.0.1:1")
 
 
-def test_a_number_of_workers_that_is_none_is_refused(subtests, tmp_path):
+def test_a_number_of_workers_that_is_none_is_refused(subtests, tmp_path_factory):
     for workers in [0, -1, 1.5, True, "2", 100_000]:
         with subtests.test(workers=workers):
+            tmp_path = tmp_path_factory.mktemp("case")
             with pytest.raises(sb.InputError, match=r"workers = .*; it must be a whole number from 1 to 1024\."):
                 sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=workers)
             with pytest.raises(sb.InputError, match=r"workers = 2 and scheduler = 'tcp://x:1' are both given"):

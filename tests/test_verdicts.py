@@ -27,9 +27,10 @@ def gel_case(folder, **changes):
     return path
 
 
-def test_commands_begin_with_what_must_hold_for_a_gel(subtests, capsys, tmp_path):
+def test_commands_begin_with_what_must_hold_for_a_gel(subtests, capsys, tmp_path_factory):
     for load, law in [("1 mN", ""), ("20 mN", ", with another law and")]:
         with subtests.test(load=load, law=law):
+            tmp_path = tmp_path_factory.mktemp("case")
             said = call(capsys, "solve", str(gel_case(tmp_path, load=load))).out
             assert said.replace("\n", " ").startswith(
                 f"The model applies{law} if adhesion is small and no liquid flows in pores"
@@ -51,7 +52,7 @@ def test_per_cent_is_advised_only_where_it_is_used(capsys, tmp_path):
     assert "alpha 20, usually" in said.replace("\n", " ") and "70 % is 0.7" in said.replace("\n", " ")
 
 
-def test_a_sweep_says_unusual_inputs(subtests, capsys, tmp_path):
+def test_a_sweep_says_unusual_inputs(subtests, capsys, tmp_path_factory):
     for old, new, said in [
         ("boundary_friction = 0.7", "boundary_friction = 70", "70 % is 0.7"),
         ("boundary_friction = 0.7", "boundary_friction = 0.7\nslide_to_roll = 50", "50 % is 0.5"),
@@ -59,6 +60,7 @@ def test_a_sweep_says_unusual_inputs(subtests, capsys, tmp_path):
         ('load = ["15 N/m", "30 N/m"]', 'load = ["1 mN/m", "30 N/m"]', "load 1 mN/m"),
     ]:
         with subtests.test(old=old, new=new, said=said):
+            tmp_path = tmp_path_factory.mktemp("case")
             text = (
                 (EXAMPLES / "sweep.toml").read_text().replace("points = 26", "points = 2").replace("points = 3", "points = 2")
             )
