@@ -340,3 +340,12 @@ def test_the_version_is_the_same_wherever_it_is_written():
     version = importlib.metadata.version("stribeck")
     assert f"\nversion: {version}\n" in citation
     assert f"\n## {version} " in changelog
+
+
+def test_numbers_of_the_numerical_core_stand_in_its_settings():
+    """A new number of the core is a row of numerics/settings.py: those that still stand elsewhere may only become fewer."""
+    house, root = load_benchmark("house"), Path(__file__).parents[1]
+    inside = {path: house.constants(path) for folder in house.CORE for path in house.files(root, f"src/stribeck/{folder}")}
+    elsewhere = sum(count for path, count in inside.items() if path.name != "settings.py")
+    assert sum(inside.values()) > elsewhere
+    assert elsewhere <= 42
