@@ -342,7 +342,7 @@ def test_the_version_is_the_same_wherever_it_is_written():
     assert f"\n## {version} " in changelog
 
 
-def test_numbers_of_the_numerical_core_stand_in_its_settings():
+def test_numbers_of_the_numerical_core_stand_in_its_settings(load_benchmark):
     """A new number of the core is a row of numerics/settings.py: those that still stand elsewhere may only become fewer."""
     house, root = load_benchmark("house"), Path(__file__).parents[1]
     inside = {path: house.constants(path) for folder in house.CORE for path in house.files(root, f"src/stribeck/{folder}")}
