@@ -215,14 +215,18 @@ class LineProblem:
         last: LinePoint = near[-1].point
         if base.model.cavitation is not last.state.groups.model.cavitation:
             base = replace(base, model=with_ending_of(last.state, base.model))
+        nearest = min(near, key=lambda each: abs(s - each.coordinate))
+        mesh_of = nearest.point
         if len(near) == 1:
-            w, doubt = beyond(last.unknowns, s - near[0].coordinate)
-            mesh_of = last
+            w, doubt = beyond(mesh_of.unknowns, s - nearest.coordinate)
         else:
             left, right = near
             part = (s - left.coordinate) / ((right.coordinate - left.coordinate) or 1.0)
-            mesh_of = left.point if part < 0.5 else right.point
             w = between(left, right, mesh_of, np.array([part]))[0]
+            # No gap follows a group by more than its first power: such a polynomial is made of series that do not converge.
+            gap = mesh_of.state.equations.layout.gap
+            if not np.abs((w - mesh_of.unknowns[0])[gap]).max() < 1 + abs(s - nearest.coordinate):
+                w = mesh_of.unknowns[0]
         return self.state(base, mesh_of, w), doubt
 
     def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
