@@ -99,8 +99,8 @@ def test_each_figure_comes_back_from_its_file_as_it_was(subtests, tmp_path_facto
             tmp_path = tmp_path_factory.mktemp("case")
             from stribeck.files.datasets import write_netcdf
 
-            write_netcdf(data_of(name), tmp_path / "data.nc")
-            found = opened(tmp_path / "data.nc")
+            write_netcdf(data_of(name), tmp_path / f"{name}.nc")
+            found = opened(tmp_path / f"{name}.nc")
             xr.testing.assert_identical(found, data_of(name))
             assert found.attrs == data_of(name).attrs
 

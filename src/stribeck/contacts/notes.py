@@ -24,8 +24,6 @@ __all__ = [
     "minimum_note",
     "pressure_notes",
     "shape_notes",
-    "spike_note",
-    "untested_note",
     "width_notes",
 ]
 
@@ -48,9 +46,6 @@ USUAL_BETA = 0.05  # Slope coefficient of self-affine surfaces, by which groups 
 NEGLIGIBLE_SHARE = 0.01  # Share of load and of friction of the asperities up to which their contact law does not matter
 TAIL_ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."  # Ends the note on a minimum that the law's tail decides
 ATMOSPHERE = 1.01325e5  # Ambient pressure [Pa], the largest suction of a contact in the open
-SPIKE_PRESSURE_EXPONENT = 2.5  # Pressure coefficient times Hertz pressure above which films with a pressure spike were seen
-# Ranges in which every state is solved (test_solve_random.py), speed and roughness zero too; many are outside.
-TESTED_RANGES = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 
 
 class Values(Protocol):
@@ -221,26 +216,4 @@ def cavitation_notes(
     return (
         f"{SUCTION_PREFIX} {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
         f"at atmospheric pressure the film cavitates there; cavitation = 'exit' or 'reform' models that. {consequence}",
-    )
-
-
-def untested_note(groups: Groups) -> str:
-    """Return the end of a failure message for groups outside the tested range, else an empty string."""
-    outside = []
-    for name, (low, high) in TESTED_RANGES.items():
-        value = float(getattr(groups, name))
-        if value != 0 and not low <= value <= high:
-            outside.append(f"{name.replace('_', ' ')} {value:.4g} (tested: {low:g} to {high:g})")
-    return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
-
-
-def spike_note(groups: Groups) -> str:
-    """Return the end of a failure message for a fluid with a pressure spike, else an empty string."""
-    a = groups.model.film.parameters.get("pressure_coefficient", 0.0)
-    if not isinstance(a, float) or a <= SPIKE_PRESSURE_EXPONENT:
-        return ""
-    return (
-        f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
-        "hard elastohydrodynamics, and without bound above 4.4 in a full film or above 5.2 in one that ends, earlier in a "
-        "fluid that stiffens faster than exponentially. Thinner films, at lower speed, have none."
     )

@@ -25,15 +25,19 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.numerics.settings import EPSILON
 from stribeck.numerics.trace import Matrix, Trace, act, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 from stribeck.solids.solid import Solid, deflecting
 
-LOAD = math.pi / 2  # Load in Hertz units: the integral of the pressure
+LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
-LOG_STEP: float = EPSILON ** (1 / 3)  # Step of the logarithm of a stretch in a central difference
+
+STRETCH_CELL = 0.05  # Range of ln(cavity stretch) on which the deflection of a solid with lengths of its own is interpolated
+
+STRETCHES_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
+
+MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,12 +187,18 @@ class Operators:
         """Return D at a cavity stretch d, or its derivative by the logarithm of d."""
         if isinstance(self.model.solid, HalfPlane):
             return np.zeros((1, self.mesh.size)) if derivative else self.deflection
-        if not 0 < d < math.inf:  # of a series beyond its radius, which shows in the gap
+        place = np.log(d) / STRETCH_CELL
+        if not np.isfinite(place):  # of a series beyond its radius, which shows in the gap
             return np.full((self.mesh.size, self.mesh.size), np.nan)
-        if not derivative:
-            return _stretched(self.mesh, self.model.solid, d)
-        more, less = (_stretched(self.mesh, self.model.solid, d * math.exp(step)) for step in (LOG_STEP, -LOG_STEP))
-        return np.asarray((more - less) / (2 * LOG_STEP))
+        cell = round(place)
+        at = place - cell
+        weights = (
+            _OF_CELL @ (np.arange(STRETCHES_PER_CELL) * at ** np.maximum(np.arange(STRETCHES_PER_CELL) - 1, 0) / STRETCH_CELL)
+            if derivative
+            else None
+        )
+        weights = _OF_CELL @ at ** np.arange(STRETCHES_PER_CELL) if weights is None else weights
+        return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,8 +217,17 @@ class OperatorsOfRows(Operators):
         return self._deflecting(pressure)
 
 
-@lru_cache(maxsize=1)  # it fills more memory than the rest of a mesh
-def _stretched(mesh: Mesh, solid: Solid, d: float) -> Array:
-    """Return D at a cavity stretch: the deflection in x over d, without its logarithm."""
-    stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)
-    return np.asarray(solid.deflection(stretched) / d + math.log(d) / math.pi * mesh.weights)
+@lru_cache(maxsize=MAX_CELLS)
+def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
+    """Return D at the cavity stretches of a cell: each the deflection in x over d, without its logarithm."""
+    # Only the last cells are cached: they fill more memory than the rest of a mesh.
+    found = []
+    for d in np.exp(STRETCH_CELL * (cell + _IN_CELL)).tolist():
+        stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)
+        found.append(solid.deflection(stretched) / d + math.log(d) / math.pi * mesh.weights)
+    return np.stack(found)
+
+
+_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(STRETCHES_PER_CELL) + 0.5) / STRETCHES_PER_CELL)
+# Coefficients of the polynomial that is one at one of these cavity stretches and zero at the others, a row for each.
+_OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
@@ -22,9 +21,9 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Decay, Film
-from stribeck.numerics.newton import Inverse, Root, StepControl, root_between, root_find
-from stribeck.numerics.panels import Mesh, adapt, graded, highest_degree, reference
-from stribeck.numerics.settings import COARSE_RTOL, COARSE_STEP, EPSILON, HALF_DIGITS, NEGLIGIBLE, ROUNDING, SAFETY, SAME_PLACE
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
+from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
+from stribeck.numerics.settings import COARSE_RTOL, COARSE_STEP, EPSILON, HALF_DIGITS, NEGLIGIBLE, ROUNDING, SAFETY
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
@@ -36,10 +35,54 @@ MONOTONE_AFTER_STEPS = 25  # Newton steps after which steps are monotone: most f
 
 CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
 
+# Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
+LONG_REACH_ORDER = 14
+
+END_RESOLUTION_GAIN = 5.0  # Factor by which the error of the exit falls, at least, when the panels beside it are halved
+
+END_TAIL_RTOL = 3.5e-4  # Mesh tolerance below which the panels beside the exit are halved: its error falls with their square
+
+LAYER_DOMAIN_RADIUS = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
+
+# Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
+# the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses.
+LAYER_DRAG_FRACTION = 0.02
+
+UNESTIMATED_RTOL_FRACTION = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
+
+LAYER_DECAY = 6.0  # Distance from the contact at which the gap has the far shape of the layer [thicknesses]
+
+# Extra refinement at infinity for power-law fluids, whose pressure decays with a non-integer exponent.
+FRACTIONAL_DECAY_FACTOR = 30.0
+
+FRACTIONAL_DECAY_RADIUS = 512.0  # Distance up to which panels resolve a non-integer decay [scale of the mesh]
+
+MINIMUM_ZONE = 0.05  # Distance from a moving minimum of the gap within which the gap is resolved better [a]
+
+MOVING_MINIMUM_FACTOR = 30.0  # Extra resolution near a moving minimum, where the gap's change along the path is steep
+
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 MIN_GAP = ROUNDING / COARSE_STEP
 
-TINY = np.finfo(float).tiny
+MAX_FAR_PANEL = 0.5  # Largest half-width over distance of panels that resolve a non-integer decay
+
+KINK_SEARCHES = 2  # Scans of the bracket of a kink, before linear interpolation
+
+KINK_SCAN_POINTS = 17  # Points of one scan of the bracket
+
+TAIL_RTOL_FRACTION = 0.2  # Tolerance of a mesh for an error of one
+
+# Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels].
+EXIT_PANEL_MAX = 16.0
+
+MAX_FRAME_RATIO = 1.5  # Ratio of the cavity's length to that of the mesh above which the mesh is made for another length
+
+SCAN_POINTS = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
+
+SCAN_REFINEMENTS = 3  # Places over nodes at which the lowest pressure is sought
+
+# Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike.
+MAX_SUCTION_RATIO = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +160,7 @@ class State:
         operators = self.equations.operators
         if not operators.has_exit or operators.has_reformation:
             return False
-        return bool(-SAFETY * self.fluid_pressure.min() > self.fluid_pressure.max())
+        return bool(-self.fluid_pressure.min() > MAX_SUCTION_RATIO * self.fluid_pressure.max())
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
@@ -159,11 +202,11 @@ class State:
     @property
     def lowest_pressure(self) -> float:
         """Lowest fluid pressure, also between the nodes [p_Hz]."""
-        mesh, rule, pressure = self.mesh, reference(self.mesh.order), self.fluid_pressure.reshape(self.mesh.panels, -1)
-        own = pressure[int(np.argmin(pressure)) // mesh.order] @ rule.to_legendre.T
-        turns = legendre.legroots(legendre.legder(own))
-        inside = np.real(turns[np.isreal(turns) & (np.abs(turns) <= 1)])
-        return float(min(pressure.min(), np.min(legendre.legval(inside, own), initial=np.inf)))
+        nodes, pressure = self.mesh.nodes, self.fluid_pressure
+        lowest = int(np.argmin(pressure))
+        low, high = float(nodes[max(lowest - 1, 0)]), float(nodes[min(lowest + 1, nodes.size - 1)])
+        between = float(self.mesh.interpolate(pressure, np.linspace(low, high, SCAN_POINTS)).min())
+        return min(between, float(self.mesh.to_order(pressure, SCAN_REFINEMENTS * self.mesh.order).min()))
 
     @cached_property
     def _nodal(self) -> Array:
@@ -221,28 +264,32 @@ def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
 
 
-def kinks_of(guess: Guess, closed_at: float, x: Array) -> list[float]:
-    """Return where the last path of the flow closes, between the places ``x`` of a guess."""
+def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Array:
+    """Return where the gradient has a kink, between the places ``x`` of a guess."""
+    # With flow factors that is where the last path of the flow closes, at the gap ``closed_at``; a fluid without a plateau has
+    # kinks where a wall is not sheared.
 
-    def above(x: Array) -> Array:
-        return np.asarray(guess.fields(x)[0] - math.log(closed_at))
+    def crossing(x: Array) -> Array:
+        found = guess.fields(x)
+        if closed_at is not None:
+            return found[:1] - math.log(closed_at)
+        pressure = found[1] if film.uses_pressure else None
+        return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
 
-    def root(low: float, high: float) -> float:
-        found = root_between(lambda x: float(above(np.array([x]))[0]), low, high, SAME_PLACE * float(x[-1]))
-        return low if found is None else found
-
-    at = np.flatnonzero(np.diff(np.signbit(above(x))))
-    return [root(float(x[k]), float(x[k + 1])) for k in at]
-
-
-def mesh_tolerance(rtol: float) -> float:
-    """Return the Legendre tail of the fields that leaves about an error, which is its square."""
-    return NEGLIGIBLE * math.sqrt(rtol)
-
-
-def tolerance_of_mesh(tail: float) -> float:
-    """Return the error that a Legendre tail leaves."""
-    return (tail / NEGLIGIBLE) ** 2
+    values = crossing(x)
+    count = len(values)
+    row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
+    if not len(row):
+        return NO_PLACES
+    each = np.arange(len(row))
+    low, high = x[at], x[at + 1]
+    for _ in range(KINK_SEARCHES):
+        within = np.linspace(low, high, KINK_SCAN_POINTS)
+        values = crossing(within.ravel()).reshape(count, *within.shape)[row, :, each].T
+        at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
+        low, high = within[at, each], within[at + 1, each]
+    before, after = values[at, each], values[at + 1, each]
+    return np.asarray(low + (high - low) * before / (before - after))
 
 
 def mesh_for(
@@ -254,15 +301,17 @@ def mesh_for(
     gap_tolerance: float = 1e-2,
     profile_tolerance: float = np.inf,
     halvings: int = 0,
-    doublings: int = 0,
     spread: float = 0.0,
     anew: bool = True,
 ) -> Mesh:
     """Return the coarsest mesh that resolves a guess; where a film re-forms its panels halve towards that place."""
-    model, highest, allowed = groups.model, highest_degree(order), tolerance_of_mesh(tolerance)
-    (plateau, fractional), jump = decay_of(model.film, float(groups.speed)), jump_of(model.film)
-    ends, reformation = model.cavitation is not Cavitation.NONE, math.inf
-    if model.cavitation is Cavitation.REFORM:
+    cavitation = groups.model.cavitation
+    film = groups.model.film
+    plateau, fractional = decay_of(film, float(groups.speed))
+    turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE_RTOL)
+    jump, closed_at = jump_of(film), closed_gap(film)
+    ends, reformation = cavitation is not Cavitation.NONE, math.inf
+    if cavitation is Cavitation.REFORM:
         reformation = _cavity_on_mesh(guess)
     to_guess = guess.reformation / reformation if reformation < math.inf else 1.0
     centre = -guess.exit / (guess.cavity_stretch * to_guess) if ends else 0.0
@@ -270,10 +319,17 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
+    strict = gap_tolerance
+    if spread > 0:
+        strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, ROUNDING / float(central_gap.min())))
     pressure_scale = 1.0
-    if tolerance < COARSE_RTOL and isinstance(guess, State):  # where no load feels it flux and drag do
-        pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), TINY))
-    thickness, memories = getattr(model.solid, "lengths", Lengths())
+    if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
+        pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
+    highest = highest_degree(order)
+    thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
+    sheared = 0.0
+    if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
+        sheared = float(guess.mesh.weights @ (1 / guess.gap))
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
@@ -281,81 +337,104 @@ def mesh_for(
         return np.asarray((size[:, None] * highest)[None])
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
-        flat, at_infinity = x.ravel(), stretch[0, 0] != 1.0
+        flat = x.ravel()
         found = guess.fields(flat * to_guess if ends else flat)
         # At infinity the guess is known from one side alone.
-        if ends and reformation == math.inf and at_infinity and len(found) == 2:
+        if ends and reformation == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:
             found[1] = guess.fields(-np.abs(flat))[1] * np.sign(flat)
         gap = np.exp(found[0])
         if len(found) == 2:
             fluid = found[1]
         else:
-            fluid = groups.speed * (gap - guess.flux_gap) / gap**3 * np.repeat(half_widths, x.shape[1])
-            if ends and not at_infinity:
+            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
+            fluid = slopes * np.repeat(half_widths, x.shape[1])
+            if ends and stretch[0, 0] == 1.0:
                 fluid = np.where(flat > 0, 0.0, fluid)
         edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
-        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), pressure_scale * fluid])
-        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
+        pressures = (
+            width
+            / np.repeat(edge_scale, x.shape[1], axis=-1)
+            * np.stack([law.pressure(gap), fluid if stretch[0, 0] != 1.0 else pressure_scale * fluid])
+        )
+        nodal = (*gap.shape[:-1], *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        read_off = np.abs(centres - centre) <= (1 + HALF_DIGITS) * half_widths
-        read_off |= np.abs(centres - minimum_position) <= half_widths + spread
-        weight = max(NEGLIGIBLE, tolerance / profile_tolerance)
-        shape *= np.where(read_off & ~at_infinity, max(weight, tolerance / gap_tolerance), weight)[:, None]
-        if fractional and at_infinity and tolerance < COARSE_RTOL:
-            # Of smooth fields the error is the square of the tail, of those that fall with any power it is the tail itself.
-            pressures *= tolerance / allowed
-        shear = (central_gap / gap).reshape(x.shape)
-        fields = [stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]]
-        jumps = jump(gap, fluid) if jump is not None and not at_infinity else None
+        at_centre = np.abs(centres - centre) <= (1 + HALF_DIGITS) * half_widths
+        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
+        read_off &= stretch[:, 0] == 1.0
+        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, MINIMUM_ZONE))
+        weight = max(0.1, tolerance / profile_tolerance)
+        parts = tolerance / np.where(moving, strict, gap_tolerance)
+        shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
+        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
+        fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
+        if fractional and stretch[0, 0] != 1.0:
+            fields[0] *= FRACTIONAL_DECAY_FACTOR
+        # The drag far away counts as that in the contact.
+        if fractional and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:
+            fields.append(asked(np.minimum(half_widths / (MAX_FAR_PANEL * np.abs(centres)), half_widths / (2 * scale))))
+        jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
-            wrong /= np.fmax(np.abs(fluid).max(), TINY)
-            fields.append(asked(wrong / allowed))
-        if ends and jump is not None and not at_infinity:  # the liquid behind the exit fills the gap up to a kink
+            wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
+            fields.append(asked(wrong / (tolerance / TAIL_RTOL_FRACTION) ** 2))
+        # Beside the place where the last path closes no load feels the gradient, but drag does.
+        if sheared and stretch[0, 0] == 1.0:
+            full = (flat < 0) | (flat > reformation) if ends else np.ones_like(flat, dtype=bool)
+            pressure = fluid if film.uses_pressure else None
+            stress = gap * film.at(groups.speed).gradient(gap, pressure, np.array(guess.flux_gap))
+            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, stress, 0.0) / sheared).reshape(nodal)[None])
+        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
             h = gap.reshape(x.shape)
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
             kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * allowed)
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_RTOL_FRACTION) ** 2)
             fields.append(asked(np.sqrt(wrong)))
+        if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
+            behind = x - (centre + float(width.mean()))
+            fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]
+            fields.append(np.where(np.all(behind > 0, axis=1)[:, None], np.stack(fading), 0.0))
         return np.concatenate(fields)
 
-    reach = 2**doublings * 8 * scale
-    if thickness < math.inf:
-        # What a layer feels falls off with the distance in thicknesses; what a polynomial in the inverse distance misses of it
-        # falls with the fourth power of the distance.
-        reach += min(-math.log(allowed) * thickness, reach * allowed**-0.25)
+    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
+        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_RTOL_FRACTION / tolerance
+        allowed = UNESTIMATED_RTOL_FRACTION * (tolerance / TAIL_RTOL_FRACTION) ** 2
+        dragged = reach * (LAYER_DRAG_FRACTION * min(1.0, float(central_gap.max())) / allowed) ** 0.25
+        reach = max(reach, min(reach + LAYER_DOMAIN_RADIUS * thickness, carried), min(LAYER_DECAY * thickness, dragged))
     if tolerance < COARSE_RTOL:
-        reach = max(reach, plateau)
+        reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if fractional else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, -math.log(EPSILON) * max(memories))
-    places = ([0.0] if reformation == math.inf else [0.0, reformation]) if ends else []
+    places: list[float] = []
+    start = guess.mesh if anew and isinstance(guess, State) else None
     if ends:
+        places = [0.0] if reformation == math.inf else [0.0, reformation]
         reach = 2 * max(reach, places[-1])
-    # Formulas are known on no panels.
+    if ends and start is not None:
+        lengths = {x * to_guess: math.inf if x else EXIT_PANEL_MAX * scale * to_guess for x in places}
+        start = replace(start, edges=ungraded(start.edges, lengths) / to_guess)
+    kinks = NO_PLACES
+    if (fractional or closed_at is not None) and tolerance < COARSE_RTOL:
+        about = Mesh(base_edges(scale, reach), order) if start is None else start
+        x = np.sort(about.nodes[: -about.order])
+        x = x[(x < 0) | (x > reformation)] if ends else x
+        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
+    # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
     known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
     shortest = None if known_on is None else lambda x: NEGLIGIBLE * known_on(x * to_guess) / to_guess
-    start = guess.mesh if anew and isinstance(guess, State) else None
-    if start is not None and ends:
-        edges = start.edges if start.coarse_edges is None else start.coarse_edges
-        start = replace(start, edges=edges / to_guess)
-    kinks: list[float] = []
-    if start is not None and (closed_at := closed_gap(model.film)) is not None and tolerance < COARSE_RTOL:
-        x = np.sort(start.nodes[: -start.order])
-        x = x[(x < 0) | (x > reformation)] if ends else x
-        kinks = [place / to_guess for place in kinks_of(guess, closed_at, x * to_guess)]
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
-    # Panels beside an end leave its error at that of a coarse state; it falls with the square of their length.
-    levels = halvings + max(0, math.ceil(0.5 * math.log2(COARSE_STEP / allowed)))
+    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL_RTOL / tolerance) / math.log(END_RESOLUTION_GAIN)))
     return replace(graded(mesh, places, levels), reformation=reformation)
 
 
 def _cavity_on_mesh(guess: Guess) -> float:
     """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
     length = guess.cavity_stretch * guess.reformation
-    near = 0.5 < guess.cavity_stretch < 2.0 and math.log2(guess.reformation).is_integer()
+    near = 1 / MAX_FRAME_RATIO < guess.cavity_stretch < MAX_FRAME_RATIO and math.log2(guess.reformation).is_integer()
     return guess.reformation if near else 2.0 ** round(math.log2(length))
 
 

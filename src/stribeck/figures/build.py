@@ -83,8 +83,8 @@ class FigureJob:
 
         try:
             found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **{"definition": "published"} | arguments)
-        except SolveError:
-            if interrupted:
+        except SolveError as problem:
+            if interrupted or problem.outcome is Outcome.INTERRUPTED:
                 raise KeyboardInterrupt from None
             raise
         if interrupted or found.outcome is Outcome.INTERRUPTED:

@@ -18,6 +18,8 @@ import numpy.typing as npt
 from stribeck._types import Array
 from stribeck.quantities.outcome import Outcome
 
+MAX_STEP_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
+
 
 class State(Protocol):
     """A state of :func:`march`: how its solve ended, and how many factorisations that took."""
@@ -100,7 +102,7 @@ def march(
                 return path(Outcome.PATH_LOST)
             continue
         points.append((s, state))
-        factor = 2.0 ** min(1.0, max(-1.0, 0.5 * (steps.aim - state.effort)))
+        factor = min(MAX_STEP_GROWTH, max(1.0 / MAX_STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
         if factor < 1.0:
             length = max(steps.shortest, factor * step)
         elif may_grow:

@@ -27,11 +27,17 @@ from scipy.linalg import lapack
 
 from stribeck._types import Array
 from stribeck.numerics.ending import go_on
-from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS, NEGLIGIBLE
+from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS
 from stribeck.quantities.outcome import Outcome
 
+MAX_CHORD_CONTRACTION = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
+CHORD_BELOW_STEP = 0.02  # the caller's inverse is taken to be good for a first step of this size
 STEP_REDUCTION = 0.25  # a part t of a monotone step must leave a step shorter by this part of t
 STEP_RECOVERY = 4.0  # growth of the part of a monotone step, from one to the next
+MAX_STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
+
+
+INVERSE_POINTS = 4  # Last places through which the next one is interpolated
 
 
 class Inverse(Protocol):
@@ -203,10 +209,8 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             if reusable and inverse is not None:
                 dx, t = step(inverse, r), 1.0
                 s_new = problem.size(x, dx)
-                # The caller's inverse is taken to be good where its first step is small.
-                rate = s_new / s if steps else s_new / NEGLIGIBLE * (chord or 0.0)
-                # Of a series of steps that fall at this rate the rest is within the tolerance.
-                contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate * s_new <= (1 - rate) * tolerance)
+                rate = s_new / s if steps else s_new / CHORD_BELOW_STEP * (chord or 0.0)
+                contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= MAX_CHORD_CONTRACTION)
                 chord_step = contracts and (steps > 0 or problem.admissible(x, dx) >= 1.0)
             if not chord_step:
                 inverse = None  # frees its memory for the next one
@@ -245,7 +249,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
                 if not chord_step:
                     stale = 0 if s <= 0.5 * smallest else stale + 1
                     smallest = min(smallest, s)
-                    if stale >= 2 and smallest <= COARSE_STEP:
+                    if stale >= MAX_STALE_STEPS and smallest <= COARSE_STEP:
                         return root(Outcome.ROUNDING)
         return root(Outcome.STEP_LIMIT)
 
@@ -267,7 +271,7 @@ def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: fl
 
 
 def root_between(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float | None:
-    """Return a zero between two places of unlike sign, by inverse quadratic interpolation and bisection."""
+    """Return a zero between two places of unlike sign, by inverse interpolation and bisection."""
     places, values = [low, high], [function(low), function(high)]
     if 0.0 in values:
         return places[values.index(0.0)]
@@ -275,7 +279,7 @@ def root_between(function: Callable[[float], float], low: float, high: float, to
         return None
     falls = True
     while high - low > tolerance and len(places) < MAX_STEPS:
-        c = _where_zero(places[-3:], values[-3:]) if falls else math.nan
+        c = _where_zero(places[-INVERSE_POINTS:], values[-INVERSE_POINTS:]) if falls else math.nan
         if abs(c - places[-1]) <= tolerance:
             return min(max(c, low), high)
         c = c if low < c < high else 0.5 * (low + high)

@@ -11,7 +11,7 @@ Here are nodes, weights, interpolation, the running integral and the choice of p
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -20,9 +20,15 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
-from stribeck.numerics.settings import MAX_PANELS, SAFETY, SAME_PLACE
+from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
+
+SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields
+
+MIN_SPLIT_FRACTION = 0.25  # Least length of a panel that is longer than the fields need, over that length
+
+NO_PLACES = np.empty(0)
 
 
 class MeshTooLargeError(Exception):
@@ -110,7 +116,6 @@ class Mesh:
     order: int  # Nodes on each panel, even (so that no node lies at infinity)
     scale: float = 1.0  # Length on which the fields vary in the middle; gaps are interpolated over `scale**2 + x**2`
     reformation: float = math.inf  # Edge beyond zero where a field that ends at zero re-forms; infinite where it does not
-    coarse_edges: Array | None = None  # Edges before panels were halved towards places; None where they were not
 
     @property
     def panels(self) -> int:
@@ -301,7 +306,7 @@ def adapt(
     tolerance: float,
     start: Mesh | None = None,
     anew: bool = True,
-    places: Sequence[float] = (),
+    places: Array = NO_PLACES,
     shortest: Callable[[Array], Array] | None = None,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields."""
@@ -323,20 +328,22 @@ def adapt(
         before = float(tail)
         reach *= 2.0
     edges = base_edges(scale, reach)
-    if start is not None:  # fields are polynomials on its panels, with kinks between them
+    if start is not None:
         reach = float(edges[-1])
         inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
     near = SAME_PLACE * scale
-    at = np.sort([place for place in places if abs(place) > near and abs(place) < edges[-1] - near])
-    at = at[np.diff(at, prepend=-np.inf) > near]
-    edges = np.unique(np.append(edges[(np.abs(edges[:, None] - at) > near).all(axis=1)], at))
+    places = np.sort(places[(np.abs(places) > near) & (np.abs(places) < edges[-1] - near)])
+    places = places[np.diff(places, prepend=-np.inf) > near]
+    apart = (np.abs(edges[:, None] - places) > near).all(axis=1)
+    edges = np.unique(np.append(edges[apart], places))
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done, sizes = [], []
     count = 0
+    smallest = SAME_PLACE * scale
     while len(open_panels):
         size = tails(open_panels)
-        least = near if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), near)
+        least = smallest if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), smallest)
         split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > least)
         done.append(open_panels[~split])
         sizes.append(size[~split])
@@ -350,14 +357,13 @@ def adapt(
     ascending = np.argsort(panels[:, 0])
     edges = np.append(panels[ascending, 0], panels[:, 1].max())
     # The fields are not evaluated on the evened panels: they are often polynomials on other panels, with kinks between these.
-    return Mesh(_evened(edges, size[ascending], order, at) if anew else edges, order, scale)
+    return Mesh(_evened(edges, size[ascending], order, places) if anew else edges, order, scale)
 
 
 def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
     """Return edges of as few panels as have tails of about one, with zero and ``places`` among them."""
-    # A tail goes with the power ``order - 1`` of the length, and a panel that was halved needs more than half of its own.
-    # What evened panels leave is not seen: hence the safety factor.
-    counts = np.fmin(1.0, np.fmax(0.5, (SAFETY * tails) ** (1 / (order - 1))))
+    # A tail goes with the power ``order - 1`` of the length.
+    counts = np.fmin(1.0, np.fmax(MIN_SPLIT_FRACTION, SPLIT_MARGIN * tails ** (1 / (order - 1))))
     fixed = [0, *(np.flatnonzero(np.isin(edges[1:-1], np.append(places, 0.0))) + 1), len(edges) - 1]
     found = []
     for first, last in pairwise(fixed):
@@ -378,4 +384,21 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         for side in (-1, 1):
             steps = (edges[at + side] - place) * halvings
             added.append(place + steps[np.abs(steps) > SAME_PLACE * abs(place)])
-    return replace(mesh, edges=np.unique(np.concatenate(added)), coarse_edges=edges)
+    return replace(mesh, edges=np.unique(np.concatenate(added)))
+
+
+def ungraded(edges: Array, places: Mapping[float, float]) -> Array:
+    """Return edges without those by which panels halve towards each of ``places``, up to the length given with the place."""
+    # The coarsest panels of base_edges halve towards zero too: without them one panel would reach from there to the end of a
+    # long cavity, with no node where the bodies touch.
+    for place, longest in places.items():
+        for side in (-1.0, 1.0):
+            distance = side * (edges - place)
+            beyond = np.sort(distance[distance > 0])
+            ratios = beyond[1:] / beyond[:-1]
+            halving = np.abs(ratios - 2) < 1e-9
+            count = len(halving) if halving.all() else int(np.argmin(halving))
+            count = min(count, int((beyond[1:] <= longest).sum()))
+            if count:
+                edges = edges[(distance <= 0) | (distance >= beyond[count])]
+    return edges

@@ -14,12 +14,18 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import State, decay_of, is_rough, mesh_for, mesh_tolerance, solve_state
+from stribeck.equations.state import END_RESOLUTION_GAIN, State, decay_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
-from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE, ROUNDING, SAFETY
+from stribeck.numerics.settings import MAX_REFINEMENTS, ROUNDING
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
+
+MIN_GAP_TAIL_RTOL_FRACTION = 0.02  # Tail of the gap over rtol below which refining where it is read does not help
+ROUNDING_ERROR_RATIO = 0.5  # Error over that on the last mesh above which what is left may be noise of the nodal gaps
+MAX_NOISE_RATIO = 4.0  # Error over that noise up to which it may be
+TAIL_RELAXATION = 10.0  # Growth of mesh tolerances, twice at most, where Newton's iteration fails on a fine first mesh
+FINER_SIZE_RATIO = 1.1  # Ratio of mesh sizes above which the difference of two solutions measures the coarser one's error
 
 
 def order_for(rtol: float) -> int:
@@ -29,7 +35,7 @@ def order_for(rtol: float) -> int:
 
 def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
     """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
-    return mesh_tolerance(rtol), NEGLIGIBLE * rtol
+    return min(1e-2, 0.2 * math.sqrt(rtol)), 0.3 * rtol
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,22 +77,22 @@ def converge(
     first = tail
     best = RefinedState(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
-    halvings = doublings = 0
+    halvings = 0
     outcome = Outcome.REFINEMENT_LIMIT
     newton = newton_tolerance(rtol, own_inverse)
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings, doublings, spread)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings, spread)
         except MeshTooLargeError:
-            profile_tolerance /= NEGLIGIBLE
-            tail *= SAFETY if profile_tolerance > tail / NEGLIGIBLE else 1.0
+            profile_tolerance *= 10.0
+            tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
             continue
         state = solve_state(base, Operators(mesh, base.model), guess, newton)
         if not state.outcome.ok:
             outcome = state.outcome
-            if best.state is not None or tail > first / NEGLIGIBLE:
+            if best.state is not None or tail > TAIL_RELAXATION * first:
                 break
-            tail, gap_tail = tail / NEGLIGIBLE, gap_tail / NEGLIGIBLE
+            tail, gap_tail = TAIL_RELAXATION * tail, TAIL_RELAXATION * gap_tail
             continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
@@ -98,7 +104,7 @@ def converge(
         film = state.equations.film
         shared = state.equations.operators.has_exit or decay_of(film, 1.0).fractional
         shared |= is_rough(film)
-        if last is not None and mesh.size >= (1 + NEGLIGIBLE) * last[0] and not shared:
+        if last is not None and mesh.size >= FINER_SIZE_RATIO * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array() - last[1]))
         last = mesh.size, values.array()
         before = math.inf if best.estimate is None else best.estimate.total
@@ -106,21 +112,21 @@ def converge(
             best = RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        hidden, stays = max(estimate.floor, _noise(best)), before < SAFETY * estimate.total
-        if estimate.total <= SAFETY * (SAFETY * hidden if stays else estimate.floor):
+        if estimate.total <= 3 * estimate.floor or ROUNDING_ERROR_RATIO * before < estimate.total <= MAX_NOISE_RATIO * _noise(
+            best
+        ):
             outcome = Outcome.ROUNDING
             break
-        doublings += stays  # what finer panels do not change lies beyond them
         halvings += halvings_for(estimate.of_ends / rtol)
         tail *= tolerance_factor(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = tolerance_factor(rtol / (estimate.between_nodes + 1e-300))
-        # At rest the gap may be a small difference of two.
-        if gap_tail * between >= NEGLIGIBLE * hidden * min(1.0, abs(values.minimum_gap) / float(state.gap.min())):
+        seen = abs(values.minimum_gap) / float(state.gap.min())  # at rest it may be a small difference of two gaps
+        if gap_tail * between >= MIN_GAP_TAIL_RTOL_FRACTION * rtol * min(1.0, seen):
             gap_tail *= between
         else:
             tail *= between
         guess = state
-    if best.estimate is not None and max(best.estimate.floor, _noise(best)) > NEGLIGIBLE * rtol:
+    if best.estimate is not None and max(best.estimate.floor, _noise(best)) > 0.3 * rtol:
         outcome = Outcome.ROUNDING
     return replace(best, outcome=outcome)
 
@@ -137,7 +143,7 @@ def tolerance_factor(excess: float) -> float:
 
 def halvings_for(excess: float) -> int:
     """Return how many halvings of the panels at the film's ends reduce their error by a factor."""
-    return 0 if not excess > 0.5 else math.ceil(0.5 * math.log2(2 * excess))  # it falls with the square of their length
+    return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_RESOLUTION_GAIN))
 
 
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:

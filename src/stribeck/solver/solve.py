@@ -17,16 +17,17 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes, spike_note, untested_note
+from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.settings import NEGLIGIBLE, SAFETY
+from stribeck.numerics.settings import SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
@@ -44,12 +45,24 @@ if TYPE_CHECKING:
     from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
+PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
+# A cavity too short for a mesh changes observables in proportion to what it takes from the largest suction: that fraction over
+# those of longer cavities, from which the change is extrapolated.
+CAVITY_SUCTION_RATIOS = (0.25, 0.1, 0.03, 0.01)
 NEWTON_FAILURES = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
+MIN_ESTIMATE_RTOL_FRACTION = 0.03  # Least stated error over rtol for the base model: smaller estimates are unreliable
+# Other models have kinks that finer nodes see only in part: their least stated error over rtol.
+MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS = 0.2
 
 TOO_THIN = (
     "Double precision does not hold this state: on the way to it the film falls below {:.1e} of the Hertz indentation, and "
     "gaps are known to about 4e-15 of that. No value was reached; ask for a larger speed or roughness."
 )
+
+SPIKE_PRESSURE_EXPONENT = 2.5  # Pressure coefficient times Hertz pressure above which films with a pressure spike were seen
+RELIABLE_ESTIMATE = 1e-10  # Error above which estimates are reliable whatever rtol is
+# Ranges in which every state is solved (test_solve_random.py), speed and roughness zero too; many are outside.
+TESTED_RANGES = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 
 
 @overload
@@ -209,7 +222,7 @@ def _newton_failed(point: RefinedState) -> bool:
 
 def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from a coarse one."""
-    return converge(start, groups, rtol, profile_tolerance=rtol / NEGLIGIBLE)
+    return converge(start, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
 
 
 def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
@@ -226,13 +239,41 @@ def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
     if point.state.lowest_pressure >= model.cavity_pressure:
         return replace(point, groups=groups)
     found = _solve_with_cavity(groups, point.state, rtol)
-    return found if found is not None and found.outcome.ok else _solve_by_paths(groups, groups, rtol, far)
+    if found is None or not found.outcome.ok:
+        found = _extrapolate_short_cavity(groups, point, rtol)
+    return _solve_by_paths(groups, groups, rtol, far) if found is None else found
 
 
 def _solve_with_cavity(groups: Groups, full: State, rtol: float) -> RefinedState | None:
     """Return the state of a film with a cavity, from its full film; None without a coarse one."""
     guess = cavitated_start(groups, full)
     return None if guess is None else _refined(guess, groups, rtol)
+
+
+def _extrapolate_short_cavity(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
+    """Return the full film with observables extrapolated to a cavity too short for a mesh, or None."""
+    if full.state is None or full.values is None or full.estimate is None:
+        return None
+    deepest = full.state.lowest_pressure
+    taken = 1.0 - groups.model.cavity_pressure / deepest
+    here, changes, errors = full.values.array(), list[Array](), full.estimate.discretisation
+    for part in CAVITY_SUCTION_RATIOS:
+        if taken >= part:
+            break
+        longer = replace(groups, model=replace(groups.model, cavity_pressure=deepest * (1.0 - taken / part)))
+        known = _solve_with_cavity(longer, full.state, rtol)
+        if known is None or known.values is None or known.estimate is None or not known.outcome.ok:
+            continue
+        changes.append(part * (known.values.array() - here))
+        if len(changes) == 2:
+            changed = here + changes[0]
+            missed = SAFETY * np.abs(changes[1] - changes[0])
+            estimate = replace(full.estimate, discretisation=errors + missed)
+            if not estimate.total <= rtol:
+                return None
+            values = replace(full.values, **dict(zip(ALL_NAMES, changed.tolist(), strict=True)))
+            return replace(full, groups=groups, values=values, estimate=estimate)
+    return None
 
 
 def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups | Contact:
@@ -264,6 +305,28 @@ def check_rtol(rtol: Any) -> float:
     return float(rtol)
 
 
+def untested_note(groups: Groups) -> str:
+    """Return the end of a failure message for groups outside the tested range, else an empty string."""
+    outside = []
+    for name, (low, high) in TESTED_RANGES.items():
+        value = float(getattr(groups, name))
+        if value != 0 and not low <= value <= high:
+            outside.append(f"{name.replace('_', ' ')} {value:.4g} (tested: {low:g} to {high:g})")
+    return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
+
+
+def spike_note(groups: Groups) -> str:
+    """Return the end of a failure message for a fluid with a pressure spike, else an empty string."""
+    a = groups.model.film.parameters.get("pressure_coefficient", 0.0)
+    if not isinstance(a, float) or a <= SPIKE_PRESSURE_EXPONENT:
+        return ""
+    return (
+        f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
+        "hard elastohydrodynamics, and without bound above 4.4 in a full film or above 5.2 in one that ends, earlier in a "
+        "fluid that stiffens faster than exponentially. Thinner films, at lower speed, have none."
+    )
+
+
 def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: float, on_failure: str = "raise") -> Solution:
     """Return a refined state as a solution, or raise the error of its outcome."""
     solution = solution_of(point, contact, rtol)
@@ -277,15 +340,16 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     )
 
 
-def minimum_estimate(rtol: float) -> float:
-    """Return the smallest stated error for a tolerance: finer nodes see only a part of what kinks leave."""
-    return SAFETY * NEGLIGIBLE * rtol
+def minimum_estimate(rtol: float, model: Model) -> float:
+    """Return the smallest stated error for a tolerance and a model."""
+    least = MIN_ESTIMATE_RTOL_FRACTION if model == BASE_MODEL else MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS
+    return max(least * rtol, min(RELIABLE_ESTIMATE, 0.3 * rtol))
 
 
 def stated_errors(point: RefinedState, rtol: float) -> Array:
     """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
     assert point.values is not None and point.estimate is not None
-    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol))
+    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
     return np.asarray(counted / drag_parts(point.values.array())[: len(counted)])
 
 
