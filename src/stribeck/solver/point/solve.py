@@ -213,11 +213,13 @@ def fields_at(level: Level, shift: float, x: Array, y: Array) -> PointFields:
     mesh, unknowns = level.mesh, level.unknowns
     r = np.hypot(x, y)
     inside = np.minimum(1.0, mesh.rim / np.maximum(r, 1e-300))
-    nodal = np.stack([unknowns.gap / (1.0 + mesh.radii**2), unknowns.fluid])
+    # Over the parabola of the lowest gap, which a thick film has: over that of the contact it would vary within a panel.
+    square = max(1.0, 2.0 * float(unknowns.gap.min()))
+    nodal = np.stack([unknowns.gap / (square + mesh.radii**2), unknowns.fluid])
     if unknowns.gap.min() > 0:
         nodal[0] = np.log(nodal[0])
     shape, fluid = mesh.interpolate(nodal, x * inside, y * inside)
-    gap = (np.exp(shape) if unknowns.gap.min() > 0 else shape) * (1.0 + r * r)
+    gap = (np.exp(shape) if unknowns.gap.min() > 0 else shape) * (square + r * r)
     contact = level.equations.law.pressure(gap)
     return PointFields(gap + shift, contact, np.maximum(fluid, level.equations.least) * inside**3)
 
