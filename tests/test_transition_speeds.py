@@ -55,17 +55,3 @@ def test_what_holds_at_all_speeds_asked_for_is_at_zero_and_what_never_does_at_in
     found = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3])), 0.7, 0.06, speeds=(1e-12, 1e-10))
     assert found.boundary[0] == found.hydrodynamic[0] == np.inf
     assert np.isnan(found.minimum[0])
-
-
-def test_shares_and_friction_are_those_of_the_single_functions():
-    groups = sb.Groups(np.geomspace(1e-9, 1e2, 23), 0.05, 0.002)
-    for definition in ("published", "balanced"):
-        found = sb.atlas.shares_and_friction(groups, 0.8, 0.05, definition)
-        expected = [
-            sb.atlas.fluid_load_share(groups),
-            sb.atlas.contact_load_share(groups),
-            sb.atlas.viscous_friction(groups, 0.05, definition),
-            sb.atlas.friction_derivatives(groups, 0.8, 0.05, definition)[0],
-        ]
-        assert np.allclose(found, expected, rtol=1e-12, atol=0)
-    assert sb.atlas.shares_and_friction(sb.Groups(0.0, 0.05, 0.002))[3] == 0

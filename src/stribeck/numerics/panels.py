@@ -340,10 +340,9 @@ def adapt(
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done, sizes = [], []
     count = 0
-    smallest = SAME_PLACE * scale
     while len(open_panels):
         size = tails(open_panels)
-        least = smallest if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), smallest)
+        least = near if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), near)
         split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > least)
         done.append(open_panels[~split])
         sizes.append(size[~split])
