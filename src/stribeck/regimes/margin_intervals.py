@@ -40,18 +40,23 @@ def with_intervals(
     if not sigmas:
         return margins
 
+    unknown: list[str] = []
+
     def known(name: str, mark: Crossing | None) -> Crossing | None:
         if mark is None or mark.value <= 0 or not math.isfinite(mark.factor):
             return mark
         try:
             sigma = _sigma(contact, name, mark, sigmas, "hydrodynamic" in (mark.regime, margins.regime), definition)
-        except (InputError, SolveError):
+        except (InputError, SolveError) as error:
+            unknown.append(f"The change to {mark.regime} lubrication along {name} has no interval: {error}")
             return mark
         reach = math.exp(QUANTILE * sigma)
         return replace(mark, interval_95=(mark.factor / reach, mark.factor * reach))
 
-    found = (replace(each, less=known(each.name, each.less), more=known(each.name, each.more)) for each in margins.margins)
-    return replace(margins, margins=tuple(found), counted=exact_inputs(contact, sigmas))
+    found = tuple(
+        replace(each, less=known(each.name, each.less), more=known(each.name, each.more)) for each in margins.margins
+    )
+    return replace(margins, margins=found, notes=(*margins.notes, *unknown), counted=exact_inputs(contact, sigmas))
 
 
 def _sigma(
