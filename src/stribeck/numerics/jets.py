@@ -74,7 +74,7 @@ class Jet(NDArrayOperatorsMixin):
 
     def __init__(self, tape: Tape, coefficients: Array, *parents: Jet) -> None:
         self.tape, self.coefficients, self.parents = tape, coefficients, parents
-        self.term: Term = _zero
+        self.term: Term = _no_term
         self.is_needed = False  # Whether other orders follow from its coefficients
         self.log: Jet | None = None  # What it is the exponential of
 
@@ -117,7 +117,7 @@ class Jet(NDArrayOperatorsMixin):
         return _made(operator(a[0]), lambda k, _: operator(a[k]), self)
 
 
-def _zero(k: int, own: Array) -> float:
+def _no_term(k: int, own: Array) -> float:
     """Return the coefficients of a jet that is given."""
     return 0.0
 
