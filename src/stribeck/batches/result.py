@@ -58,7 +58,7 @@ class BatchSolution(Exported, Shown, ByValue):
     rtol: Annotated[float, "the relative tolerance asked for"]
     outcome: Annotated[Objects, "how the solve of each state ended"]
     solutions: Annotated[
-        np.ndarray[Any, np.dtype[np.object_]],
+        Objects,
         "the states with their numbers, but without their fields; None if there is no state",
     ] = field(repr=False)
 
