@@ -30,7 +30,7 @@ import numpy as np
 import stribeck as sb
 from stribeck.contact_laws import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.scaling import SCALINGS
+from stribeck.contacts.groups import SCALINGS
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES, RUPTURE_ROWS

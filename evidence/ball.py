@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointObservables, PointState
 

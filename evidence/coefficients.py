@@ -20,7 +20,7 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import COEFFICIENT_RATIO, Formula
 from stribeck.asymptotics.rough import boundary, mixed, transitions, uniform
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 __all__ = ["JUDGED_FORMULAS", "COEFFICIENT_RATIOS", "largest_errors"]
 

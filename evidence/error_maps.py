@@ -18,8 +18,7 @@ from evidence import ball
 from evidence.formulas import CURVE_QUANTITIES, FIELDS, MEASURED, REFERENCE_RTOL, STATE_QUANTITIES, field_error, state_of
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.formula import Formula
-from stribeck.contacts.line import Groups
-from stribeck.contacts.scaling import SCALINGS
+from stribeck.contacts.groups import SCALINGS, Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.files.datasets import import_xarray
 from stribeck.quantities.units import InputError, show

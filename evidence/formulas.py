@@ -17,7 +17,7 @@ from evidence import ball
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.friction import DEFINITIONS, Definition
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.plot.style import CONTACT, GREY, INK, PICTURE_ENDINGS, TINTS, blank_figure

@@ -165,7 +165,7 @@ def test_a_problem_is_told_in_one_sentence_with_table_key_and_value(subtests, pr
         ),
         (
             {"contact": {"pressure_viscosity": "1e-8"}},
-            "[contact] pressure_viscosity = 1e-08 is not a known key; it is pressure_viscosity in the table [fluid]",
+            "[contact] pressure_viscosity = 1e-08 is not a known key; it is pressure_coefficient in the table [fluid]",
         ),
         ({"contact": {"pressure_viscosity_coefficient": "1"}}, "[contact] pressure_viscosity_coefficient = 1 is not a known"),
         (

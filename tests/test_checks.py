@@ -10,12 +10,11 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
+from stribeck.cases.facts import FACTS, fact_values
 from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of, checks_of_curve, checks_of_solution
 from stribeck.contact_laws import FiniteSurface
 from stribeck.numerics.dual import with_slope
-from stribeck.quantities.facts import ROWS as FACTS
-from stribeck.quantities.facts import fact_values
 from stribeck.surfaces import SelfAffine, persson_law
 
 STEEL = sb.LineContact(
@@ -63,7 +62,7 @@ def test_a_soft_contact_is_fine_and_steel_is_outside():
 @pytest.mark.quick
 def test_a_verdict_turns_at_its_limits(subtests):
     for name, fact, values in [
-        ("Hertz pressure", "pressure_viscosity", (0.09, 0.11, 1.1)),
+        ("Hertz pressure", "pressure_coefficient", (0.09, 0.11, 1.1)),
         ("layer a/thickness", "layer_thickness", (1 / 0.29, 1 / 0.31, 1 / 1.1)),
         ("loss tangent", "loss_tangent", (0.09, 0.11, 0.31)),
         ("viscous heating", "thermal_thinning", (0.09, 0.11, 1.1)),
@@ -71,7 +70,7 @@ def test_a_verdict_turns_at_its_limits(subtests):
     ]:
         with subtests.test(name=name, fact=fact, values=values):
             scale = {
-                "pressure_viscosity": 1 / TRUE.hertz.pressure,
+                "pressure_coefficient": 1 / TRUE.hertz.pressure,
                 "layer_thickness": TRUE.hertz.half_width,
                 "loss_tangent": 1.0,
                 "rms_slope": 1.0,
@@ -253,8 +252,8 @@ def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
 @pytest.mark.quick
 def test_facts_come_from_the_table_check_and_are_refused_if_impossible(tmp_path):
     case = tmp_path / "case.toml"
-    case.write_text(case_text(check={"pressure_viscosity": '"20 1/GPa"', "layer_thickness": '"2 mm"'}))
-    assert sb.load_case(case).facts == {"pressure_viscosity": pytest.approx(2e-8), "layer_thickness": 0.002}
+    case.write_text(case_text(check={"pressure_coefficient": '"20 1/GPa"', "layer_thickness": '"2 mm"'}))
+    assert sb.load_case(case).facts == {"pressure_coefficient": pytest.approx(2e-8), "layer_thickness": 0.002}
     case.write_text(case_text(check={"layer_thickness": '"2 kg"', "layer": "3"}))
     with pytest.raises(sb.InputError, match=r"\[check\] layer_thickness = '2 kg' is a mass") as problem:
         sb.load_case(case)
@@ -288,7 +287,7 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
     stiffens = hot.replace(fluid=sb.fluids.Barus("20 1/GPa"))
     found = checks_of(Subject(stiffens), "contact")["Hertz pressure"]
     assert found.verdict == "fine" and "is modelled (newtonian + barus)" in found.sentence
-    assert Subject(stiffens).fact("pressure_viscosity") == pytest.approx(2e-8)
+    assert Subject(stiffens).fact("pressure_coefficient") == pytest.approx(2e-8)
     layered = TRUE.replace(solid=sb.solids.Layer("0.2 mm", 0.49))
     layer = checks_of(Subject(layered), "contact")["layer a/thickness"]
     assert layer.value == pytest.approx(layered.hertz.half_width / 2e-4) and layer.verdict == "fine"
@@ -311,10 +310,9 @@ def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path_fa
     ]:
         with subtests.test(changes=changes, said=said):
             tmp_path = tmp_path_factory.mktemp("case")
-            motion = {"motion": {"slide_to_roll": changes.pop("slide_to_roll")}} if "slide_to_roll" in changes else {}
             texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
             path = tmp_path / "case.toml"
-            path.write_text(case_text(texts, **motion))
+            path.write_text(case_text(texts))
             for command in (["solve"], ["curve", *FEW], ["check"]):
                 answer = call(capsys, *command[:1], path, *command[1:])
                 assert said in " ".join((answer.out + answer.err).split()), command

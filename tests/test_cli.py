@@ -143,7 +143,7 @@ def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys)
 
 def test_friction_on_the_other_body_and_losses_of_a_body_that_remembers_stand_apart(capsys, tmp_path):
     path = tmp_path / "case.toml"
-    path.write_text(case_text(solid={"retardation_time": '"10 ms"', "modulus_ratio": "5"}, motion={"slide_to_roll": "0.5"}))
+    path.write_text(case_text({"slide_to_roll": "0.5"}, solid={"retardation_time": '"10 ms"', "modulus_ratio": "5"}))
     solution = sb.solve(sb.load_case(path).contact)
     lost = solution.hysteresis_friction * solution.contact.hertz.half_width / solution.contact.radius
     rows = {line[:36].strip(): line[36:].split() for line in call(capsys, "solve", path, "-v").out.splitlines()}

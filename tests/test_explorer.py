@@ -227,7 +227,8 @@ def some_case(random, kind, folder):
         contact |= {"slide_to_roll": ratio, "entrainment_speed": contact.pop("speed")} if random.random() < 0.5 else {}
         tables.pop("curve", None)
     else:
-        tables |= {name: table for name, table in PARTS[random.integers(len(PARTS))].items()}
+        for name, table in PARTS[random.integers(len(PARTS))].items():
+            (contact if name == "contact" else tables.setdefault(name, {})).update(table)
         if "preset" in tables.get("fluid", {}):
             del contact["viscosity"]
     title = random.choice(["", "a & b = ü #1", "x" * 200, 'two\nlines "quoted" \\ \x7f'])
@@ -241,10 +242,10 @@ PARTS = [
     {},
     {"fluid": {"preset": "saliva"}, "cavitation": {"model": "exit"}},
     {"fluid": {"preset": "pao-10"}, "solid": {"layer_thickness": "2 mm", "poisson_ratio": 0.4}},
-    {"fluid": {"model": "carreau", "relaxation_time": "1 ms", "exponent": 0.6}, "motion": {"slide_to_roll": 0.3}},
-    {"fluid": {"model": "eyring", "stress": "5 MPa", "density": "dowson-higginson"}},
-    {"fluid": {"pressure_viscosity": "1.5 1/GPa", "viscosity_law": "roelands"}, "motion": {"slide_to_roll": 0}},
-    {"cavitation": {"model": "reform", "pressure": "-0.1 MPa"}, "flow_factors": {"model": "effective-medium"}},
+    {"fluid": {"model": "carreau", "relaxation_time": "1 ms", "exponent": 0.6}, "contact": {"slide_to_roll": 0.3}},
+    {"fluid": {"model": "eyring", "eyring_stress": "5 MPa", "density": "dowson-higginson"}},
+    {"fluid": {"pressure_coefficient": "1.5 1/GPa", "viscosity_law": "roelands"}, "contact": {"slide_to_roll": 0}},
+    {"cavitation": {"model": "reform", "cavity_pressure": "-0.1 MPa"}, "flow_factors": {"model": "effective-medium"}},
     {"flow_factors": {"model": "patir-cheng", "gamma": 3}, "solid": {"layer_thickness": 1e-3}},
     {"solid": {"relaxation_times": ["1 ms", "10 ms"], "moduli": [1.0, 0.5]}},
 ]
@@ -407,7 +408,7 @@ def check_link_and_saved_case(shown):
     same_contact(saved.contact, shown.contact)
     again = inputs.from_case(saved)
     assert (again.definition, again.rtol, again.title) == (shown.definition, shown.rtol, shown.title)
-    for name in ("fluid", "cavitation", "motion", "flow_factors", "solid"):
+    for name in ("fluid", "cavitation", "slide_to_roll", "flow_factors", "solid"):
         assert getattr(again.contact, name, None) == getattr(shown.contact, name, None), name
 
 
@@ -529,9 +530,8 @@ def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
 def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
     shown = choices.choose(START, "law", "persson")
     longer = choices.with_detail(shown, "law", "longest_wavelength", "300 um")
-    surface = sb.surfaces.RoughSurface(
-        h_rms=1e-6, hurst=0.8, longest_wavelength="300 um", shortest_wavelength="1.5 um"
-    ).law.coefficients
+    q0, q1 = (2 * math.pi / length for length in (300e-6, 1.5e-6))
+    surface = sb.surfaces.persson_law(sb.surfaces.SelfAffine(1e-6, q0, q1, 0.8)).coefficients
     assert longer.contact.beta == pytest.approx(surface["beta"], rel=1e-9) != shown.contact.beta
     assert longer.contact.alpha == pytest.approx(surface["alpha"], rel=1e-9)
 

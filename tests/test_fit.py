@@ -26,7 +26,7 @@ MEASURED, CASE = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
 @pytest.fixture(scope="module")
 def fitted():
     """Return the fit of one noisy curve to friction coefficient, roughness and modulus."""
-    return sb.fit(noisy(7), START, free=["mu0", "h_rms", "E_star"])
+    return sb.fit(noisy(7), START, free=["boundary_friction", "roughness", "modulus"])
 
 
 def with_settings(tmp_path, contact=TRUE, **settings):
@@ -41,7 +41,9 @@ def with_settings(tmp_path, contact=TRUE, **settings):
 def test_data_without_noise_give_the_true_inputs_from_far_away():
     speeds, friction = exact()
     far = TRUE.replace(boundary_friction=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
-    found = sb.fit(measured(speeds, friction), far, free=["mu0", "h_rms", "E_star", "beta"], intervals=False)
+    found = sb.fit(
+        measured(speeds, friction), far, free=["boundary_friction", "roughness", "modulus", "beta"], intervals=False
+    )
     assert found.converged
     for each in found.inputs:
         assert each.value == pytest.approx(getattr(TRUE, each.name), rel=1e-4)
@@ -132,7 +134,7 @@ def test_a_prior_adds_its_information(tmp_path):
         settings = fit_settings({"free": ["boundary_friction", "roughness"], "priors": priors})
         return sb.fit(data, sb.Case(path=tmp_path / "case.toml", contact=TRUE, fit=settings))
 
-    alone, held = sb.fit(data, TRUE, free=["mu0", "h_rms"]), fit_with_prior(0.7, 1.05)
+    alone, held = sb.fit(data, TRUE, free=["boundary_friction", "roughness"]), fit_with_prior(0.7, 1.05)
     assert held.converged
     assert alone["boundary_friction"].standard_error > 0.3
     assert held["boundary_friction"].standard_error == pytest.approx(math.log(1.05), rel=0.05)
@@ -189,7 +191,7 @@ def test_a_shared_input_with_different_values_is_fitted_as_a_factor():
     speeds = np.append(u, exact(thin, high=3.0)[0])
     inputs = ({"viscosity": 0.04}, {"viscosity": 0.004})  # 20 % too low, both
     data = measured(speeds, np.append(first, second), curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=inputs)
-    found = sb.fit(data, TRUE, free=["mu0", "viscosity"], intervals=False)
+    found = sb.fit(data, TRUE, free=["boundary_friction", "viscosity"], intervals=False)
     assert found.inputs[1].label == "viscosity factor"
     assert found.inputs[1].value == pytest.approx(1.25, rel=1e-4)
     assert [contact.viscosity for contact in found.contacts] == pytest.approx([0.05, 0.005], rel=1e-4)
@@ -209,7 +211,7 @@ def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
 @pytest.mark.quick
 def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
     speeds, friction = exact(low=5.0, high=50.0, rows=8)
-    found = sb.fit(measured(speeds, friction), TRUE, free=["mu0"], intervals=False)
+    found = sb.fit(measured(speeds, friction), TRUE, free=["boundary_friction"], intervals=False)
     assert found["boundary_friction"].interval_95 == (0.0, math.inf)
     [weak] = found.undetermined
     share = float(re.search(r"asperities cause at most (\S+) % of the friction", weak.message)[1])
@@ -222,7 +224,7 @@ def test_a_curve_with_a_plateau_gives_it(fitted):
 
 
 def test_the_combination_that_the_data_give_is_named():
-    found = sb.fit(noisy(1), START, free=["mu0", "h_rms", "alpha"])
+    found = sb.fit(noisy(1), START, free=["boundary_friction", "roughness", "alpha"])
     [weak] = found.undetermined
     assert weak.names == ("roughness", "alpha") and weak.exponents == pytest.approx((1, 1))
     assert "does not change when both are multiplied by one factor" in weak.message
@@ -232,7 +234,7 @@ def test_the_combination_that_the_data_give_is_named():
     # Their product is left where the case had it, and the quotient is found.
     case, fit = START, found.contact
     assert fit.roughness * fit.alpha == pytest.approx(case.roughness * case.alpha, rel=1e-6)
-    alone = sb.fit(noisy(1), START, free=["mu0", "h_rms"])
+    alone = sb.fit(noisy(1), START, free=["boundary_friction", "roughness"])
     assert fit.roughness / fit.alpha == pytest.approx(alone.contact.roughness / alone.contact.alpha, rel=1e-4)
     assert found["boundary_friction"].interval_95 == pytest.approx(alone["boundary_friction"].interval_95, rel=1e-2)
 
@@ -240,7 +242,9 @@ def test_the_combination_that_the_data_give_is_named():
 @pytest.mark.quick
 def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
     smooth = TRUE.replace(roughness=0)
-    found = sb.fit(noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["mu0", "modulus", "beta"], intervals=False)
+    found = sb.fit(
+        noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["boundary_friction", "modulus", "beta"], intervals=False
+    )
     assert [weak.names for weak in found.undetermined] in (
         [("beta",), ("boundary_friction",)],
         [("boundary_friction",), ("beta",)],
@@ -251,7 +255,7 @@ def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
 
 
 def test_three_tied_inputs_are_told_apart_from_what_is_known():
-    found = sb.fit(noisy(1), TRUE, free=["mu0", "modulus", "viscosity", "load"], intervals=False)
+    found = sb.fit(noisy(1), TRUE, free=["boundary_friction", "modulus", "viscosity", "load"], intervals=False)
     tied = next(weak for weak in found.undetermined if len(weak.names) == 3)
     assert tied.names == ("modulus", "viscosity", "load")
     assert tied.exponents == pytest.approx((1, 1, 1))
@@ -263,7 +267,7 @@ def test_an_input_that_the_abscissa_holds_is_refused():
     data = measured(speeds * 0.05 / 30, friction, abscissa="hersey_number")
     with pytest.raises(sb.InputError, match="viscosity is free, but friction was measured against Hersey number"):
         sb.fit(data, TRUE, free=["viscosity"])
-    found = sb.fit(data, START, intervals=False, free=["mu0", "h_rms", "E_star"])
+    found = sb.fit(data, START, intervals=False, free=["boundary_friction", "roughness", "modulus"])
     assert found["modulus"].value == pytest.approx(TRUE.modulus, rel=1e-4)
 
 
@@ -284,7 +288,7 @@ def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
     assert persson.law == "persson" and persson.converged and math.isnan(persson.solver_shift)
     assert persson.quality.structure_probability < 0.001
     assert "do not follow the model" in persson.quality.messages[0]
-    exponential = sb.fit(data, contact.replace(law=None), free=["mu0", "h_rms", "beta"], intervals=False)
+    exponential = sb.fit(data, contact.replace(law=None), free=["boundary_friction", "roughness", "beta"], intervals=False)
     assert exponential.quality.structure_probability < 0.01
 
 
@@ -340,7 +344,7 @@ FEW = {
     "two rows": (2, ["boundary_friction"], "2 rows with speed and friction are too few to fit 1 input"),
     "as many as inputs": (
         3,
-        ["boundary_friction", "h_rms", "beta"],
+        ["boundary_friction", "roughness", "beta"],
         "3 rows with speed and friction are too few to fit 3 inputs",
     ),
 }
@@ -361,8 +365,8 @@ def test_bad_arguments_are_one_sentence(tmp_path):
         (3, None, "case = 3"),
         (TRUE, [], "free is empty"),
         (TRUE, ["stiffness"], "'stiffness'"),
-        (TRUE.replace(roughness=0), ["h_rms"], "roughness is 0 in the case"),
-        (with_settings(tmp_path, bounds={"roughness": (2e-6, 3e-6)}), ["h_rms"], "outside its bounds 2 µm to 3 µm"),
+        (TRUE.replace(roughness=0), ["roughness"], "roughness is 0 in the case"),
+        (with_settings(tmp_path, bounds={"roughness": (2e-6, 3e-6)}), ["roughness"], "outside its bounds 2 µm to 3 µm"),
     ):
         with pytest.raises(sb.InputError) as caught:
             sb.fit(data, case, free=free)
@@ -452,7 +456,16 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     speeds, friction = exact(low=0.03, high=3.0)
     lines = "\n".join(f"{u};{m}" for u, m in zip(speeds, friction * np.exp(0.03 * np.sin(7 * np.arange(25.0))), strict=True))
     (tmp_path / "lab.csv").write_text("speed [m/s];friction\n" + lines)
-    answer = call(capsys, "fit", tmp_path / "lab.csv", EXAMPLES / "pdms_cylinder.toml", "--free", "mu0", "h_rms", "--robust")
+    answer = call(
+        capsys,
+        "fit",
+        tmp_path / "lab.csv",
+        EXAMPLES / "pdms_cylinder.toml",
+        "--free",
+        "boundary_friction",
+        "roughness",
+        "--robust",
+    )
     assert answer.code == 0
     assert "The fit converged." in answer.out
     assert re.search("Warning: boundary_friction .*cannot be determined.*boundary plateau", answer.out)

@@ -143,7 +143,7 @@ def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys):
     noise = np.exp(1e-3 * np.random.default_rng(3).standard_normal(5))
     rows = zip(SPEEDS / 2, frictions(TRUE) * noise, strict=True)
     file.write_text("mean speed [m/s],friction\n" + "".join(f"{v:.8g},{m:.8g}\n" for v, m in rows))
-    answer = call(capsys, "fit", file, case, "--out", tmp_path / "fitted.toml", "--free", "mu0", "h_rms")
+    answer = call(capsys, "fit", file, case, "--out", tmp_path / "fitted.toml", "--free", "boundary_friction", "roughness")
     assert answer.code == 0, answer.err
     out = answer.out
     assert "boundary_friction" in out

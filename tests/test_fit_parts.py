@@ -120,10 +120,10 @@ beta = 0.06
 boundary_friction = 0.7
 
 [fluid]
-pressure_viscosity = "600 1/GPa"
+pressure_coefficient = "600 1/GPa"
 
 [fit]
-free = ["boundary_friction", "pressure_viscosity"]
+free = ["boundary_friction", "pressure_coefficient"]
 
 [fit.bounds]
 pressure_coefficient = ["10 1/GPa", "1000 1/GPa"]
@@ -133,7 +133,7 @@ viscosity = "20 mPa*s"
 
 [fit.curves.second.fluid]
 model = "eyring"
-stress = "1 kPa"
+eyring_stress = "1 kPa"
 """
 
 
@@ -151,7 +151,7 @@ def test_a_case_file_names_numbers_of_its_fluid_and_gets_them_back(tmp_path, cap
     path.write_text(CASE.partition("[fit.curves")[0])
     assert call(capsys, "fit", tmp_path / "lab.csv", path, "--out", tmp_path / "fitted.toml").code == 0
     text = (tmp_path / "fitted.toml").read_text()
-    assert '# before the fit: pressure_viscosity = "600 1/GPa"' in text
+    assert '# before the fit: pressure_coefficient = "600 1/GPa"' in text
     assert sb.load_case(tmp_path / "fitted.toml").contact.pressure_coefficient == pytest.approx(5e-7, rel=3e-3)
 
 
@@ -160,7 +160,7 @@ def test_what_is_wrong_with_numbers_of_the_fluid_is_said(subtests, tmp_path_fact
         ('["10 1/GPa", "1000 1/GPa"]', '["0 1/GPa", "1 1/GPa"]', "pressure_coefficient = '0 1/GPa' must be positive"),
         ('model = "eyring"', 'model = "eyrin"', r"second: \[fluid\] model = 'eyrin' must be one of"),
         ('viscosity = "20 mPa*s"', 'speedy = "20 mm/s"', "second: speedy = '20 mm/s' is not a known key"),
-        ('"pressure_viscosity"]', '"relaxation_tim"]', "did you mean relaxation_time"),
+        ('"pressure_coefficient"]', '"relaxation_tim"]', "did you mean relaxation_time"),
     ]:
         with subtests.test(before=before, after=after, said=said):
             tmp_path = tmp_path_factory.mktemp("case")

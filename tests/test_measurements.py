@@ -262,13 +262,13 @@ def test_any_text_is_read_or_refused_with_a_sentence(tmp_path_factory, text):
 
 
 TABLES = {
-    "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free."),
+    "unknown key": ({"fre": ["boundary_friction"]}, "fre", "did you mean free."),
     "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
-    "former name": ({"free": ["friction_coefficient"]}, "'friction_coefficient'", "write boundary_friction."),
+    "symbol": ({"free": ["mu0"]}, "'friction_coefficient'", "write boundary_friction."),
     "speed": ({"free": ["speed"]}, "'speed'", "measured"),
-    "twice": ({"free": ["mu0", "boundary_friction"]}, "boundary_friction", "twice"),
+    "twice": ({"free": ["boundary_friction", "boundary_friction"]}, "boundary_friction", "twice"),
     "none": ({"free": []}, "free = []", "list"),
-    "per_curve only": ({"free": ["mu0"], "per_curve": ["beta"]}, "beta", "not in free"),
+    "per_curve only": ({"free": ["boundary_friction"], "per_curve": ["beta"]}, "beta", "not in free"),
     "noise": ({"noise": "white"}, "'white'", "'relative' or 'absolute'"),
     "error": ({"relative_error": -1}, "-1", "positive"),
     "robust": ({"robust": "yes"}, "'yes'", "true or false"),

@@ -151,7 +151,7 @@ def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, caps
     path.write_text(case_text(STIFF))
     rows = np.transpose(exact()).tolist()
     data.write_text("speed [m/s],friction\n" + "\n".join(f"{u!r},{f!r}" for u, f in rows))
-    commands = (("solve", path), ("curve", path, *FEW), ("regimes", path), ("fit", data, path, "--free", "mu0"))
+    commands = (("solve", path), ("curve", path, *FEW), ("regimes", path), ("fit", data, path, "--free", "boundary_friction"))
     for tokens in commands:
         answer = call(capsys, *tokens)
         assert answer.code == 0

@@ -198,9 +198,9 @@ def test_an_unknown_input_is_answered_with_the_nearest_name():
     with pytest.raises(InputError, match="viscosty = 1.0 is not an input of LineContact; did you mean viscosity"):
         contact(viscosty=1.0)
     with pytest.raises(
-        InputError, match=r"pressure_viscosity = '20 1/GPa' is a number of .*'barus' or 'roelands'.* sb\.fluids"
+        InputError, match=r"pressure_coefficient = '20 1/GPa' is a number of .*'barus' or 'roelands'.* sb\.fluids"
     ):
-        contact(pressure_viscosity="20 1/GPa")
+        contact(pressure_coefficient="20 1/GPa")
 
 
 def test_the_signature_of_a_contact_names_every_input():

@@ -47,8 +47,8 @@ def test_a_contact_area_that_vanishes_is_zero(capsys, tmp_path):
 def test_the_model_line_names_what_differs_from_the_article_in_si_units(capsys, tmp_path):
     case = tmp_path / "ball.toml"
     fluid = {"model": '"carreau"', "relaxation_time": '"10 ms"', "exponent": "0.6"}
-    ball = {"geometry": '"point"', "load": '"1 N"', "speed": None, "entrainment_speed": '"30 mm/s"'}
-    case.write_text(case_text(ball, fluid=fluid, motion={"slide_to_roll": "0.5"}, solver={"rtol": "1e-2"}))
+    ball = {"geometry": '"point"', "load": '"1 N"', "speed": None, "entrainment_speed": '"30 mm/s"', "slide_to_roll": "0.5"}
+    case.write_text(case_text(ball, fluid=fluid, solver={"rtol": "1e-2"}))
     said = call(capsys, "solve", case, "-v").out
     assert "Model: fluid carreau, relaxation time 10 ms, exponent 0.6, infinite viscosity 0 Pa*s.\n" in said
     assert said.count("slide-to-roll ratio 0.5") == 1 and "slide to roll" not in said

@@ -11,16 +11,15 @@ import pytest
 from command_line import call
 
 import stribeck as sb
-from stribeck.cases.law import INPUTS_OF_SURFACES
+from stribeck.cases.facts import FACTS
+from stribeck.cases.law import INPUTS_OF_SURFACES, SURFACE
 from stribeck.cases.reading import check_case
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.greenwood import SUMMITS, GreenwoodTripp
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
-from stribeck.contacts.part_inputs import KINDS
-from stribeck.contacts.parts import Parts
+from stribeck.contacts.inputs import read_inputs
+from stribeck.contacts.parts import KINDS, Parts
 from stribeck.explorer.inputs import choices, inputs
-from stribeck.quantities.facts import FACTS
 from stribeck.quantities.schema import Series, needed_of, numbers_of
 from stribeck.quantities.units import DIMENSIONS
 
@@ -107,12 +106,12 @@ def of_laws():
 
 
 def of_surfaces():
-    table = RoughSurface.INPUTS
+    table = SURFACE
     surface = {"h_rms": "1 um", "hurst": 0.8, "longest_wavelength": "150 um", "shortest_wavelength": "1.5 um"}
     contact = {key: value for key, value in kept("line").items() if key not in INPUTS_OF_SURFACES}
     for key, row in table.quantities.items():
         given = {name: value for name, value in surface.items() if table.stands_for.get(name) != key}
-        make = functools.partial(lambda given, key, value: RoughSurface(**given | {key: value}), given, key)
+        make = functools.partial(lambda given, key, value: read_inputs(given | {key: value}, SURFACE).checked(), given, key)
         yield Place(
             row, make, {"contact": contact | {"law": "persson"}, "surface": given}, "surface", field("law", "persson", key)
         )
@@ -124,10 +123,11 @@ def of_others():
         yield Place(row, lambda value, name=name: sb.check(ready, **{name: value}), {"contact": kept("line")}, "check")
     for name, table, beside, parts, choice in (
         ("cavity_pressure", "cavitation", {"model": "reform"}, {"cavitation": "reform"}, ("cavitation", "reform")),
-        ("slide_to_roll", "motion", {}, {}, ("motion", "rolling")),
+        ("slide_to_roll", "contact", {}, {}, ("motion", "rolling")),
     ):
         make = functools.partial(lambda name, parts, value: ready.replace(**parts | {name: value}), name, parts)
-        yield Place(numbers_of(Parts)[name], make, {"contact": kept("line"), table: beside}, table, field(*choice, name))
+        tables = {"contact": kept("line")} | ({} if table == "contact" else {table: beside})
+        yield Place(numbers_of(Parts)[name], make, tables, table, field(*choice, name))
 
 
 def wrong(row):
@@ -142,7 +142,7 @@ def wrong(row):
             yield low, bound
     yield math.nan, "finite|begin with a number"
     yield True, "single real number"
-    yield {"a": 1}, "single real number|table of value and error"
+    yield {"a": 1}, "single real number"
     if DIMENSIONS[row.dimension].unit:
         yield "lots", "does not begin with a number"
         yield "7 K", "expected .* such as|mean turns or radians"

@@ -12,7 +12,7 @@ import stribeck as sb
 from stribeck.fluids import presets
 
 FACTS = (
-    *("pressure_viscosity", "layer_thickness", "loss_tangent", "supply_film", "thinning_rate", "molecular_size"),
+    *("pressure_coefficient", "layer_thickness", "loss_tangent", "supply_film", "thinning_rate", "molecular_size"),
     *("thermal_conductivity", "thermal_thinning", "density", "work_of_adhesion", "diffusivity", "permeability", "rms_slope"),
 )
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")

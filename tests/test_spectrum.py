@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from command_line import toml_of
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.surfaces import RoughSurface, SelfAffine, Spectrum, persson_law
+from stribeck.surfaces import SelfAffine, Spectrum, persson_law
 
 SHAPES = [
     SelfAffine(h_rms=1e-6, q0=1e4, q1=1e8, hurst=0.8),
@@ -106,8 +107,8 @@ def test_a_table_that_is_no_spectrum_is_refused_by_row(subtests):
 
 def test_an_impossible_self_affine_surface_is_refused(subtests):
     for change, words in [
-        ({"hurst": 1.2}, "hurst = 1.2 is above 1"),
-        ({"hurst": 0.0}, "hurst = 0.0 is not a positive number"),
+        ({"hurst": 1.2}, "hurst = 1.2 must be between 0 and 1"),
+        ({"hurst": 0.0}, "hurst = 0.0 must be between 0 and 1"),
         ({"q1": 10.0}, "q1 = 10 is not above q0 = 100"),
         ({"roll_off": 50.0}, "roll_off = 50 lies outside"),
         ({"h_rms": -1.0}, "h_rms = -1.0"),
@@ -121,23 +122,31 @@ def test_an_impossible_self_affine_surface_is_refused(subtests):
 # --- the table [surface] of a case ---
 
 
-def test_wavelengths_and_wave_numbers_say_the_same():
-    by_length = RoughSurface(
-        h_rms="1 um", hurst=0.8, longest_wavelength="100 um", roll_off_wavelength="20 um", shortest_wavelength="50 nm"
-    )
+def law_of(folder, **surface):
+    """Return Persson's law of a case with these numbers in the table [surface]."""
+    contact = dict(radius="10 mm", modulus="2 MPa", load="30 N/m", viscosity="50 mPa*s", speed="1 mm/s", law="persson")
+    path = folder / "case.toml"
+    path.write_text(toml_of(contact=contact | {"boundary_friction": 0.7}, surface=surface))
+    return sb.load_case(path).contact.law
+
+
+def test_wavelengths_and_wave_numbers_say_the_same(tmp_path):
+    lengths = {"longest_wavelength": "100 um", "roll_off_wavelength": "20 um", "shortest_wavelength": "50 nm"}
+    by_length = law_of(tmp_path, h_rms="1 um", hurst=0.8, **lengths)
     q0, q1, q_r = (2 * math.pi / length for length in (1e-4, 5e-8, 2e-5))
-    by_number = RoughSurface(h_rms=1e-6, hurst=0.8, q0=q0, q1=f"{q1!r} 1/m", roll_off=f"{q_r / 1e6!r} um^-1")
-    assert (by_length.q0, by_length.q1) == (by_number.q0, by_number.q1)
-    assert by_length.roughness.roll_off == pytest.approx(by_number.roughness.roll_off, rel=1e-14, abs=0)
-    assert by_length.law.alpha == pytest.approx(by_number.law.alpha, rel=1e-12, abs=0)
+    by_number = law_of(tmp_path, h_rms=1e-6, hurst=0.8, q0=q0, q1=f"{q1!r} 1/m", roll_off=f"{q_r / 1e6!r} um^-1")
+    assert by_length.parameters == pytest.approx(by_number.parameters, rel=1e-12, abs=0)
+    numbers = SelfAffine("1 um", f"{q0!r} 1/m", q1, 0.8, q_r)
+    assert persson_law(numbers).alpha == pytest.approx(by_number.alpha, rel=1e-12, abs=0)
 
 
-def test_an_impossible_table_surface_is_refused(subtests):
+def test_an_impossible_table_surface_is_refused(subtests, tmp_path):
     for change, words in [
         ({"q0": None}, "q0 .* is missing; give it, or longest_wavelength"),
         ({"q1": None}, "q1 .* is missing; give it, or shortest_wavelength"),
         ({"longest_wavelength": "1 mm"}, "are both given; give either q0, or longest_wavelength"),
     ]:
         with subtests.test(change=change, words=words):
+            surface = {"h_rms": "1 um", "hurst": 0.8, "q0": "1e5 1/m", "q1": "1e8 1/m"} | change
             with pytest.raises(sb.InputError, match=words):
-                RoughSurface(**{"h_rms": "1 um", "hurst": 0.8, "q0": "1e5 1/m", "q1": "1e8 1/m"} | change)
+                law_of(tmp_path, **{name: value for name, value in surface.items() if value is not None})

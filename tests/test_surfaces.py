@@ -11,7 +11,6 @@ from command_line import call
 
 import stribeck as sb
 from stribeck.surfaces import (
-    RoughSurface,
     SelfAffine,
     Topography,
     analyse,
@@ -340,8 +339,8 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
         assert text in words.out
     assert re.search(rf"alpha by Persson's theory +{expected['alpha']:.4g} ", words.out)
     table = tomllib.loads(out.read_text())["surface"]
-    again = RoughSurface(**table)
-    assert exponential_limit(again.roughness) == pytest.approx((expected["alpha"], expected["beta"]), rel=1e-5, abs=0)
+    again = SelfAffine(**table)
+    assert exponential_limit(again) == pytest.approx((expected["alpha"], expected["beta"]), rel=1e-5, abs=0)
     assert plot.read_bytes()[:4] == b"\x89PNG"
     refused = call(capsys, "surface", scan, "--out", out)
     assert refused.code == 2 and "--force" in refused.err

@@ -15,6 +15,7 @@ roughness = "1 um"
 alpha = 2.0
 beta = 0.06
 boundary_friction = 0.8
+slide_to_roll = 1.0
 
 [vary]
 load = ["20 N/m", "50 N/m"]
@@ -27,9 +28,6 @@ exponent = 0.5
 
 [cavitation]
 model = "exit"
-
-[motion]
-slide_to_roll = 1.0
 
 [solid]
 layer_thickness = "5 mm"
@@ -108,6 +106,7 @@ roughness = "0.4 um"
 alpha = 2.0
 beta = 0.05
 boundary_friction = 0.7
+slide_to_roll = 0.5
 
 [vary]
 load = ["0.5 N", "1.3 N"]
@@ -116,9 +115,6 @@ load = ["0.5 N", "1.3 N"]
 model = "carreau"
 relaxation_time = "1 ms"
 exponent = 0.5
-
-[motion]
-slide_to_roll = 0.5
 
 [solver]
 rtol = 1e-2

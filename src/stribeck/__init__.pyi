@@ -8,8 +8,8 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.checks.table import check
 from stribeck.cli.reports.regimes import explain
-from stribeck.contacts.line import Groups, InputError, LineContact
-from stribeck.contacts.point import PointContact
+from stribeck.contacts.geometries import LineContact, PointContact
+from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import regime_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.data_sheet.new_case import new_case
@@ -19,6 +19,7 @@ from stribeck.experiments.next_runs import next_runs
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import read_measurements
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError

@@ -20,8 +20,7 @@ from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
 from stribeck.asymptotics.documentation import completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
-from stribeck.contacts.groups import Geometry
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property

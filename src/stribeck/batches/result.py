@@ -14,7 +14,6 @@ from stribeck.batches.states import Objects
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.keywords import answers_typos
@@ -211,7 +210,7 @@ class BatchSolution(Exported, Shown, ByValue):
         if self.contacts is None:
             return "1"
         first: Contact = self.contacts.ravel()[0]
-        return all_input_rows(first.INPUTS)[name].unit
+        return first.INPUTS.rows[name].unit
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"

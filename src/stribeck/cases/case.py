@@ -16,8 +16,6 @@ from stribeck.contacts.inputs import InputTable
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["Case", "CurveSettings", "curve_range"]
-
 Axis = Literal["speed", "load", "roughness"]
 
 

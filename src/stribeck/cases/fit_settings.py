@@ -14,15 +14,12 @@ from stribeck.cases.hints import advice_on
 from stribeck.cases.model_parts import take_parts
 from stribeck.cases.tables import TRUTH, Check, Key, must, noted, one_of, read_tables, rising_pair, unknown, whole
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.geometries import INPUT_TABLES, LETTERS, LINE
+from stribeck.contacts.geometries import INPUT_TABLES, LINE
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
-from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.contacts.parts import PART_INPUTS, PURE_SLIDING, Parts
 from stribeck.quantities.docstrings import complete_docstring
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["FREE_INPUTS", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
@@ -32,8 +29,6 @@ Entry = Callable[[str, str, Any, InputTable], tuple[str, Any]]  # Returns the na
 CONTACT_INPUTS = tuple(sorted((name for name in LINE.names if name != "speed"), key=lambda name: LINE.kept[name].known))
 
 FREE_INPUTS = (*CONTACT_INPUTS, *PART_INPUTS)  # Inputs of all contacts and numbers of fluids and solids, which a fit may free
-
-INPUT_OF_LETTER = {**PART_LETTERS, **LETTERS}  # Other names of what may be fitted
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
@@ -61,15 +56,14 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
         raise InputError(f"{where} = {show(names)} must be a list of inputs, such as ['boundary_friction', 'roughness'].")
     found = []
     for name in names:
-        meant = INPUT_OF_LETTER.get(name, name) if isinstance(name, str) else name
-        if meant in ("speed", "U"):
+        if name in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
-        if meant not in FREE_INPUTS:
+        if name not in FREE_INPUTS:
             hint = advice_on(str(name), FREE_INPUTS) or f"known are {', '.join(FREE_INPUTS)}"
             raise InputError(f"{where} has {show(name)}, which cannot be fitted; {hint}.")
-        if meant in found:
-            raise InputError(f"{where} has {meant} twice; name each input once.")
-        found.append(meant)
+        if name in found:
+            raise InputError(f"{where} has {name} twice; name each input once.")
+        found.append(name)
     return tuple(sorted(found, key=FREE_INPUTS.index))
 
 
@@ -96,18 +90,17 @@ def _entries(key: str, value: Any, read: Entry, inputs: InputTable) -> Any:
 def _column(table: str, name: str, value: Any, inputs: InputTable) -> tuple[str, Any]:
     columns = (each for each in COLUMNS if table == "columns" or each not in ("curve", "run"))
     known = (*columns, *(each for each in CONTACT_INPUTS if each != "boundary_friction"))
-    meant = LETTERS.get(name, name)
-    if meant not in known:
+    if name not in known:
         unknown(name, value, known)
     texts = value if table == "columns" and name in ("friction", "surface_speeds") and isinstance(value, list) else [value]
     if not texts or not all(isinstance(text, str) and text.strip() for text in texts):
         wanted = "the header of a column" if table == "columns" else "a unit"
         raise InputError(f"{name} = {show(value)} must be {wanted}, as text in quotes.")
-    return meant, value
+    return name, value
 
 
 def _positive_input(name: str, value: Any, inputs: InputTable) -> float:
-    found = all_input_rows(inputs)[name].checked(value)
+    found = inputs.rows[name].checked(value)
     if found <= 0:
         raise InputError(f"{name} = {show(value)} must be positive.")
     return found
@@ -134,16 +127,15 @@ def _curve(table: str, name: str, entry: Any, inputs: InputTable) -> tuple[str, 
         raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
     rest, parts, problems = take_parts({**entry, "contact": {}}, inputs.geometry)
     found: dict[str, Any] = {**rest.pop("contact"), **parts}
-    rows = all_input_rows(inputs)
-    known = (*(each for each in inputs.names if each != "speed"), *PART_INPUTS)
+    rows = numbers_of(Parts) | inputs.rows
+    known = (*(each for each in inputs.names if each != "speed"), *PART_INPUTS, "slide_to_roll")
     for key, value in rest.items():
-        meant = INPUT_OF_LETTER.get(key, key)
         with noted(problems):
-            if meant not in known:
+            if key not in known:
                 unknown(key, value, known)
-            if meant in found:
-                raise InputError(f"{meant} = {show(value)} is given beside a preset, which has its own; remove one.")
-            found[meant] = rows[meant].checked(value)
+            if key in found:
+                raise InputError(f"{key} = {show(value)} is given beside a preset, which has its own; remove one.")
+            found[key] = rows[key].checked(value)
     if problems:
         raise InputError("\n".join(f"{name}: {each}" for each in problems))
     return name, found

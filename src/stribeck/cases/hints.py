@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from stribeck.contacts.geometries import LETTERS
+from stribeck.contacts.parts import LAW_NUMBERS
 from stribeck.quantities.units import FROM_HARDNESS
 
-__all__ = ["MEANT", "advice_on"]
-
 # Input that a symbol or a usual name stands for
-MEANT = LETTERS | {"poisson": "poisson_ratio"} | dict.fromkeys(("mu", "cof", "friction_coefficient"), "boundary_friction")
+MEANT = {
+    **{letter: row.name for row in LAW_NUMBERS.values() for letter in row.letters},
+    **LETTERS,
+    "poisson": "poisson_ratio",
+    **dict.fromkeys(("mu", "cof", "friction_coefficient"), "boundary_friction"),
+    **dict.fromkeys(("name", "fluid", "liquid"), "preset"),
+    **dict.fromkeys(("type", "kind", "law"), "model"),
+}
 
 MIN_SIMILARITY = 0.8  # Smallest similarity, 0 to 1, of a typing error and the word meant: 0.8 allows one letter in five
 
@@ -27,7 +33,7 @@ _HINTS = (
     (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS_HINT),
     (
         ("pressure_viscosity", "piezoviscous", "barus", "roelands"),
-        "it is pressure_viscosity in the table [fluid]",
+        "it is pressure_coefficient in the table [fluid]",
     ),
     (
         ("temperature", "viscosity_index", "thermal"),
@@ -54,7 +60,7 @@ _HINTS = (
         "for a ball write geometry = 'point' and its radius; elliptic contacts are not modelled",
     ),
     (
-        ("slide_to_roll", "srr", "slip"),
+        ("slide_to_roll", "srr", "slip", "motion"),
         "write slide_to_roll in [contact], and the sum of both speeds as speed or their mean as entrainment_speed",
     ),
     (
@@ -64,16 +70,20 @@ _HINTS = (
 )
 
 
-def advice_on(key: str, known: Iterable[str]) -> str | None:
-    """Return what to write in place of an unknown key, to complete "... is not a known key; ..."; None where nothing fits."""
+def advice_on(key: str, known: Iterable[str], file: Mapping[str, Iterable[str]] | None = None) -> str:
+    """Return what to write in place of an unknown key, or where in the file it belongs; empty where nothing fits."""
     names = list(known)
     if MEANT.get(key) in names:
         return f"write {MEANT[key]}"
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
-    absent = next((hint for words, hint in _HINTS if any(f"_{word}_" in text for word in words)), None)
-    if absent is not None:
+    absent = next((hint for words, hint in _HINTS if any(f"_{word}_" in text for word in words)), "")
+    if absent:
         return absent
+    for table, keys in (file or {}).items():
+        if key in keys or MEANT.get(key, key) in keys:
+            where = f"in the table [{table}]" if table else "at the top of the file, before the first table"
+            return f"it belongs {where}"
     whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
     # Only a slip of the pen is taken for another key: pressure_viscosity is no viscosity.
     near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
-    return f"did you mean {near[0]}" if near else None
+    return f"did you mean {near[0]}" if near else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,30 +11,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.cases.tables import AS_GIVEN, NUMBERS, TRUTH, Key, Keys, one_of
 from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.greenwood import SUMMITS
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
+from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, persson_law
 from stribeck.contact_laws.scaled import NAMED_LAWS, named_law
-from stribeck.contact_laws.spectrum import Spectrum
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.contact_laws.table import TableLaw
+from stribeck.contacts.forms import Form
+from stribeck.contacts.inputs import InputTable, read_inputs
 from stribeck.files.text_table import read_two_columns
-from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
-
-__all__ = [
-    "KEYS_OF_SURFACES",
-    "INPUTS_OF_SURFACES",
-    "LAWS",
-    "LAW_KEY",
-    "NEEDED_TABLE",
-    "SOURCES",
-    "Law",
-    "law_of_file",
-    "self_contained",
-]
 
 Law = str
 """Name of a contact law in a file."""
@@ -41,6 +31,25 @@ Law = str
 Made = tuple[AsperityLaw | None, dict[str, float]]  # A contact law, and alpha, beta and roughness where its tables give them
 
 INPUTS_OF_SURFACES = ("alpha", "beta", "roughness")  # Inputs of a contact that follow from a table of its surface
+
+
+def _of_wavelength(of: str, which: str, typical: str, without: str = "") -> Form:
+    """Return how a wave number follows from a wavelength."""
+    name, label = f"{which.replace('-', '_')}_wavelength", f"{which} wavelength"
+    length = Input(name=name, label=label, dimension="length", typical=typical, without=without)
+    meaning = "" if without else f"the wave number of the {which} roughness"
+    return Form(of=of, inputs=(length,), value=lambda wavelength: 2 * math.pi / wavelength, meaning=meaning)
+
+
+# The numbers of a self-affine surface; each cut-off is given as a wave number or as a wavelength.
+SURFACE = InputTable(
+    SelfAffine,
+    (
+        _of_wavelength("q0", "longest", "150 um"),
+        _of_wavelength("q1", "shortest", "1.5 um"),
+        _of_wavelength("roll_off", "roll-off", "20 um", without="no roll-off"),
+    ),
+)
 
 
 class Source(NamedTuple):
@@ -108,7 +117,8 @@ def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], fold
         wavenumber, density = _of_spectrum(entries, folder)
         full = _law_of_spectrum(tuple(wavenumber.tolist()), tuple(density.tolist()), entries.get("gamma", GAMMA))
     else:
-        full = _law_of_roughness(RoughSurface(**entries))
+        gamma = GAMMA_INPUT.checked(entries.pop("gamma", GAMMA))
+        full = _law_of_roughness(SelfAffine(**read_inputs(entries, SURFACE).checked()), gamma)
     return (full if law == "persson" else SpectralExponential(full.area_slope), full.coefficients)
 
 
@@ -119,8 +129,8 @@ def _law_of_spectrum(wavenumber: tuple[float, ...], density: tuple[float, ...], 
 
 
 @functools.lru_cache(maxsize=16)
-def _law_of_roughness(surface: RoughSurface) -> PerssonLaw:
-    return surface.law
+def _law_of_roughness(surface: SelfAffine, gamma: float) -> PerssonLaw:
+    return persson_law(surface, gamma)
 
 
 def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:
@@ -183,7 +193,7 @@ def _lists(table: str, entries: dict[str, Any]) -> tuple[Array, Array]:
 SOURCES = {
     "surface": Source(
         ("exponential", "persson"),
-        (*RoughSurface.INPUTS.quantities, "spectrum", "wavenumber", "density", "shape_only"),
+        (*SURFACE.quantities, "gamma", "spectrum", "wavenumber", "density", "shape_only"),
         _of_surface,
         "spectrum",
         ("wavenumber", "density"),

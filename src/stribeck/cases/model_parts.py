@@ -1,4 +1,4 @@
-"""The tables ``[fluid]``, ``[cavitation]``, ``[motion]``, ``[flow_factors]`` and ``[solid]`` of a case file.
+"""The tables ``[fluid]``, ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` of a case file.
 
 Each becomes one or two arguments of the contact; what a number may be is checked by the law that it goes into.
 """
@@ -10,23 +10,19 @@ import json
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from stribeck.cases.tables import noted, one_of, unknown
+from stribeck.cases.tables import AS_GIVEN, noted, one_of, read_tables
 from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.contacts.part_inputs import KINDS, LAW_NUMBERS, PART_LETTERS, Kind
+from stribeck.contacts.parts import KINDS, LAW_NUMBERS, Kind
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.presets import PRESETS, Liquid
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["PART_TABLES", "in_file", "preset_facts", "preset_source_text", "take_parts"]
-
-
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
 
 CONDITIONS = ("weight_fraction", "temperature", "grade")
-KEYS_OF_NAME = ("name", "type", "kind", "law", "fluid", "liquid")  # Keys that people write for the one that says which
 
 
 def _keys(*kinds: Kind) -> tuple[str, ...]:
@@ -43,13 +39,6 @@ class PartTable(NamedTuple):
     missing: str = ""  # What to say where the first of its keys is missing; empty if none is needed
 
 
-# Where a key of another table belongs, for those who write it below the wrong one.
-ELSEWHERE = {"contact": (*INPUT_TABLES["point"].quantities, "geometry")}
-
-# Other keys of a table, as they stood in former files -> the key.
-LETTERS = {"pressure": "cavity_pressure", **PART_LETTERS}
-
-
 def in_file(problem: str, table: str) -> str:
     """Return a sentence on a problem with its place in a case: its own, that of the argument it begins with, or ``table``."""
     if problem.startswith(("[", "the table")):
@@ -64,66 +53,24 @@ def in_file(problem: str, table: str) -> str:
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Return the tables without those of the model, what these say, and what is wrong with them."""
     rest = {name: value for name, value in tables.items() if name not in PART_TABLES}
-    parts: dict[str, Any] = {}
-    problems: list[str] = []
     if isinstance(rest.get("contact"), dict):
         rest["contact"] = dict(rest["contact"])
-    for name in (name for name in PART_TABLES if name in tables):
-        written: dict[str, str] = {}
-        try:
-            parts |= _read(name, tables[name], rest.get("contact"), written)
-        except InputError as problem:
-            problems += [_as_written(in_file(line, name), written) for line in str(problem).split("\n")]
-    problems += _slide_to_roll(rest.get("contact"), parts, geometry)
-    return rest, parts, problems
-
-
-def _read(name: str, given: Any, contact: Any, written: dict[str, str]) -> dict[str, Any]:
-    """Return what a table says; ``written`` takes the keys that stand there in the place of others."""
-    part = PART_TABLES[name]
-    if not isinstance(given, dict):
-        raise InputError(f"{name} = {show(given)} must be a table, [{name}].")
-    written |= {LETTERS[key]: key for key in given if LETTERS.get(key) in part.keys}
-    for key, letter in written.items():
-        if key in given:
-            raise InputError(f"{letter} = {show(given[letter])} is {key}, which is given too; remove one of them.")
-    table = {LETTERS[key] if key in written.values() else key: value for key, value in given.items()}
+    elsewhere = {"contact": dict.fromkeys((*INPUT_TABLES["point"].quantities, "geometry"), AS_GIVEN)}
+    parts: dict[str, Any] = {}
     problems: list[str] = []
-    for key in table.keys() - set(part.keys):
-        with noted(problems, name):
-            _unknown(key, table[key], part.keys)
-    if problems:
-        raise InputError("\n".join(problems))
-    if part.missing and part.keys[0] not in table:
-        raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
-    return part.read(table, contact)
-
-
-def _as_written(problem: str, letters: dict[str, str]) -> str:
-    """Return a sentence with the keys that a table has for those that it stands for."""
-    for key, written in letters.items():
-        problem = problem.replace(f"] {key} ", f"] {written} ")
-    return problem
-
-
-def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[str]:
-    """Take the ratio from ``[contact]`` or ``[motion]``, whichever has it: of a ball it is an input, of a cylinder a part."""
-    if not isinstance(contact, dict):
-        return []
-    if "slide_to_roll" in contact and "slide_to_roll" in parts:
-        given = show(contact.pop("slide_to_roll")), show(parts["slide_to_roll"])
-        return [f"slide_to_roll = {given[0]} in [contact] and {given[1]} in [motion] are both given; remove one of them."]
-    source, target = (parts, contact) if geometry == "point" else (contact, parts)
-    if "slide_to_roll" in source:
-        target["slide_to_roll"] = source.pop("slide_to_roll")
-    return []
-
-
-def _unknown(key: str, value: Any, known: tuple[str, ...]) -> None:
-    meant = [each for each in ("preset", "model") if key in KEYS_OF_NAME and each in known]
-    if meant:
-        raise InputError(f"{key} = {show(value)} is not a known key; did you mean {' or '.join(meant)}.")
-    unknown(key, value, () if key in ELSEWHERE["contact"] else known, ELSEWHERE)
+    for name, part in PART_TABLES.items():
+        wrong: list[str] = []
+        given = {name: tables[name]} if name in tables else {}
+        read = read_tables(given, {name: dict.fromkeys(part.keys, AS_GIVEN), **elsewhere}, wrong)
+        if given and not wrong:
+            with noted(wrong, name):
+                if part.missing and part.keys[0] not in read[name]:
+                    raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
+                parts |= part.read(read[name], rest.get("contact"))
+        problems += wrong
+    if geometry == "line" and isinstance(rest.get("contact"), dict) and "slide_to_roll" in rest["contact"]:
+        parts["slide_to_roll"] = rest["contact"].pop("slide_to_roll")  # of a ball it is an input that groups do not have
+    return rest, parts, problems
 
 
 def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
@@ -223,9 +170,6 @@ PART_TABLES = {
         ("model", "cavity_pressure"),
         lambda table, contact: {"cavitation" if key == "model" else key: value for key, value in table.items()},
         'add model = "exit", "reform" or "none"',
-    ),
-    "motion": PartTable(
-        ("slide_to_roll",), lambda table, contact: table, "2 is pure sliding with the cylinder at rest, 0 pure rolling"
     ),
     "flow_factors": PartTable(
         _keys(KINDS["flow_factors"]),

@@ -10,25 +10,21 @@ from pathlib import Path
 from typing import Any, get_args
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
+from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
-from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, law_of_file
+from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, preset_source_text, take_parts
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, numbers, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.friction import DEFINITIONS
-from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES, check_geometry
-from stribeck.contacts.groups import Geometry
+from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
+from stribeck.contacts.groups import Geometry, check_geometry
 from stribeck.contacts.inputs import InputTable, ReadInputs, apply_forms, check_motion, read_inputs
-from stribeck.contacts.part_inputs import PART_INPUTS
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
-from stribeck.quantities.facts import FACTS, fact_values
-from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.uncertain import has_error, split_error
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["check_case", "contact_inputs", "geometry_of", "group_inputs", "load_case"]
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
@@ -40,7 +36,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         A TOML file: a table ``[contact]`` (``geometry``, the arguments of :class:`LineContact` or
         :class:`PointContact`, and ``law`` by its name), a table
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and optionally ``[fluid]``,
-        ``[cavitation]``, ``[motion]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
+        ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
         (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
         ``[check]`` (facts for :func:`stribeck.check`), ``title`` and ``notes``.
 
@@ -122,7 +118,7 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
     """Return what the tables of a case may have; the inputs of its contact are read before."""
     points, rtol = DEFAULT_POINTS_AND_RTOL[geometry]
     return {
-        "contact": {**dict.fromkeys(INPUT_TABLES[geometry].quantities, AS_GIVEN), "law": LAW_KEY},
+        "contact": {**dict.fromkeys((*INPUT_TABLES[geometry].quantities, "slide_to_roll"), AS_GIVEN), "law": LAW_KEY},
         "curve": {
             "over": Key(one_of(*get_args(Axis)), CurveSettings.over),
             "range": AS_GIVEN,
@@ -149,7 +145,7 @@ def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
 # Table, number and name of what may have an error, but for ``[contact]``.
 UNCERTAIN = (
     *((row.table, row, name) for name, row in PART_INPUTS.items()),
-    ("surface", numbers_of(RoughSurface)["h_rms"], "roughness"),
+    ("surface", SURFACE.kept["h_rms"], "roughness"),
 )
 
 
@@ -202,10 +198,3 @@ def contact_inputs(checked: dict[str, Any], folder: Path, inputs: InputTable) ->
     tables = {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}
     shape, coefficients = law_of_file(law, known.values, tables, folder)
     return given | coefficients | {"law": shape}
-
-
-def group_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the groups and coefficients in a checked file, and ``law``, of which tables give nothing but the shape."""
-    inputs = dict(checked["groups"])
-    tables = {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}
-    return inputs | {"law": law_of_file(inputs.pop("law"), {}, tables, folder)[0]}

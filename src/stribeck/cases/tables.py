@@ -7,31 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
-from stribeck.cases.hints import MEANT, advice_on
+from stribeck.cases.hints import advice_on
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
-
-__all__ = [
-    "AS_GIVEN",
-    "HEAD",
-    "NUMBERS",
-    "TEXT",
-    "TRUTH",
-    "Check",
-    "Key",
-    "Keys",
-    "is_number",
-    "is_real",
-    "must",
-    "noted",
-    "numbers",
-    "one_of",
-    "read_tables",
-    "rising_pair",
-    "tolerance",
-    "unknown",
-    "whole",
-]
 
 Check = Callable[[str, Any], Any]  # `check(name, value)` returns what is kept, or refuses it
 
@@ -79,16 +57,8 @@ def unknown(key: str, value: Any, known: Iterable[str], file: Mapping[str, Itera
     tables, names = file or {}, list(known)
     if known is tables.get(""):
         names = [*filter(None, tables), *names]
-    advice = advice_on(key, names) or _place_of(MEANT.get(key, key), tables)
-    shown = key if key.isprintable() else repr(key)
-    raise InputError(f"{shown} = {show(value)} is not a known key; {advice or 'known are ' + ', '.join(names)}.")
-
-
-def _place_of(key: str, tables: Mapping[str, Iterable[str]]) -> str:
-    """Return where in a file a key belongs, in words; nothing of one that it does not have."""
-    table = next((table for table, keys in tables.items() if key in keys), None)
-    at_top = "it belongs at the top of the file, before the first table"
-    return "" if table is None else f"it belongs in the table [{table}]" if table else at_top
+    advice = advice_on(key, names, tables) or f"known are {', '.join(names)}"
+    raise InputError(f"{key if key.isprintable() else repr(key)} = {show(value)} is not a known key; {advice}.")
 
 
 AS_GIVEN = Key(lambda name, value: value)  # A key that its own reader checks

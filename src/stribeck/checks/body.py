@@ -143,7 +143,7 @@ def pores(subject: Subject) -> Check | None:
 def pressure(subject: Subject) -> Check:
     """Return the check of the Hertz pressure against the growth of viscosity with pressure."""
     p = subject.contact.hertz.pressure
-    given = subject.fact("pressure_viscosity")
+    given = subject.fact("pressure_coefficient")
     coefficient = OIL_COEFFICIENT if given is None else given
     growth = coefficient * p
     limit, outside = (part / coefficient if coefficient > 0 else math.inf for part in (STIFFENING_FINE, MAX_PRESSURE_EXPONENT))
@@ -157,7 +157,7 @@ def pressure(subject: Subject) -> Check:
     if given is None and verdict == "outside":
         [sentence] = pressure_notes(subject.contact)
     else:
-        of_oil = f"of an oil, {OIL_COEFFICIENT * 1e9:g} 1/GPa (give pressure_viscosity)"
+        of_oil = f"of an oil, {OIL_COEFFICIENT * 1e9:g} 1/GPa (give pressure_coefficient)"
         about = of_oil if given is None else f"{given * 1e9:.3g} 1/GPa"
         begin = f"{HARD_PREFIX} at" if verdict == "outside" else "At"
         sentence = (

@@ -12,7 +12,7 @@ import numpy as np
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -51,7 +51,7 @@ class Subject:
     """A contact under examination."""
 
     contact: Contact  # The contact
-    facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.quantities.facts.ROWS` in SI units
+    facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.cases.facts.FACTS` in SI units
     definition: Definition = "balanced"  # Definition of the viscous friction
     solved: Solution | None = None  # State of the contact, if already solved
     traced: StribeckCurve | None = None  # Curve of the contact over the speed, if already solved
@@ -104,8 +104,7 @@ class Subject:
         """Return a fact that was given, or that the contact's own fluid, solid or cavitation holds; else None."""
         if name in self.facts:
             return self.facts[name]
-        kept = PART_LETTERS.get(name, name)
-        found = getattr(self.contact, kept, None) if kept in PART_INPUTS else None
+        found = getattr(self.contact, name, None) if name in PART_INPUTS else None
         return float(found) if found is not None and math.isfinite(found) else None
 
     def note(self, beginning: str) -> str:

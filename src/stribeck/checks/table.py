@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
+from stribeck.cases.facts import fact_values
 from stribeck.checks import body, film, law
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.subject import Subject
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.facts import fact_values
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError
@@ -74,7 +74,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     definition : {"balanced", "published"}
         Definition of the viscous friction, on which the minimum depends.
     **facts : str or float
-        Further facts about the contact: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
+        Further facts about the contact: ``pressure_coefficient``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
         ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``, ``rms_slope``,
         ``work_of_adhesion``, ``diffusivity``, ``permeability``;
         text with units, or numbers in SI units.

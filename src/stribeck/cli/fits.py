@@ -34,7 +34,7 @@ def fit_command(
 
     Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
 
-    Example: stribeck fit measured.csv case.toml --free boundary_friction h_rms modulus --robust
+    Example: stribeck fit measured.csv case.toml --free boundary_friction roughness modulus --robust
     """
     from stribeck.fits.case_file import check_fitted_case, load_fit_case, write_fitted_case
 

@@ -150,7 +150,7 @@ def new_command(
 
     Example: stribeck new ball.toml --geometry point
     """
-    from stribeck.contacts.geometries import check_geometry
+    from stribeck.contacts.groups import check_geometry
 
     text = sb.new_case(check_geometry(geometry))
     if file is None:

@@ -22,13 +22,26 @@ from stribeck.contact_laws.persson_integral import Integral, tabulate
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness, table_of
 from stribeck.numerics.trace import value_of
 from stribeck.quantities.results import ByValue
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.schema import Input
 
-__all__ = ["GAMMA", "PerssonLaw", "check_gamma", "exponential_limit", "persson_law"]
+__all__ = ["GAMMA", "GAMMA_INPUT", "PerssonLaw", "exponential_limit", "persson_law"]
 
 GAMMA = 0.45  # Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08].
 
 MIN_GAMMA = 0.01  # Least gamma: far below simulations, and beta, which grows as exp(1.2/gamma), stays finite.
+
+GAMMA_INPUT = Input(
+    name="gamma",
+    label="coefficient γ",
+    dimension="number",
+    typical="0.45",
+    lowest=MIN_GAMMA,
+    zero=True,
+    highest=1.0,
+    reason="0.45 fits simulations",
+    optional=True,
+    default=GAMMA,
+)
 
 SEALING_CONTACT_FRACTION = 0.42  # Fraction of the surface in contact above which no path of the fluid is left [Dapp 2012].
 
@@ -292,16 +305,8 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
     return integral.alpha, integral.beta * table.lowest * table.rms_height
 
 
-def check_gamma(gamma: object) -> float:
-    """Return a reduction of the elastic energy as a float, from :data:`MIN_GAMMA` to 1."""
-    value = to_si(gamma, "number", "gamma", "0.45")
-    if not MIN_GAMMA <= value <= 1:
-        raise InputError(f"gamma = {show(gamma)} must be from {MIN_GAMMA:g} to 1; 0.45 fits simulations.")
-    return value
-
-
 def _unit_integral(spectrum: Spectrum | SelfAffine, gamma: float) -> tuple[Integral, Spectrum]:
     """Return the integral for unit rms height and unit q_0, on which the shape does not depend, and the spectrum."""
-    table, gamma = table_of(spectrum), check_gamma(gamma)
+    table, gamma = table_of(spectrum), GAMMA_INPUT.checked(gamma)
     unit = Spectrum(table.wavenumber / table.lowest, table.density / table.density.max()).scaled(1.0)
     return Integral.of(unit, gamma), table

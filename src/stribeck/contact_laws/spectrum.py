@@ -24,6 +24,7 @@ from stribeck._types import Array
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
+from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
@@ -225,15 +226,15 @@ class SelfAffine:
 
     Parameters
     ----------
-    h_rms : float
+    h_rms : str or float
         Root mean square of the height, which sets :math:`C_r` [m].
-    q0 : float
+    q0 : str or float
         Wave number :math:`q_0` of the longest roughness [1/m].
-    q1 : float
+    q1 : str or float
         Wave number :math:`q_1` of the shortest roughness [1/m].
     hurst : float
         Hurst exponent :math:`0 < H \le 1` [-].
-    roll_off : float, optional
+    roll_off : str or float, optional
         Wave number :math:`q_r` from which the spectrum falls [1/m]; :math:`q_0` by default, that is no roll-off.
 
     Raises
@@ -247,24 +248,27 @@ class SelfAffine:
 
     Examples
     --------
-    >>> surface = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e8, hurst=0.8)
+    >>> surface = SelfAffine(h_rms="1 um", q0="1e5 1/m", q1="1e8 1/m", hurst=0.8)
     >>> round(surface.spectrum.rms_height, 18)
     1e-06
     """
 
-    h_rms: float
-    q0: float
-    q1: float
-    hurst: float
-    roll_off: float | None = None
+    h_rms: Input = Input(label="rms height", dimension="length", typical="1 um")
+    q0: Input = Input(label="wave number q₀", dimension="wavenumber", typical="6e4 1/m")
+    q1: Input = Input(label="wave number q₁", dimension="wavenumber", typical="6e7 1/m")
+    hurst: Input = Input(label="Hurst exponent", dimension="number", typical="0.8", highest=1.0, reason="it is often near 0.8")
+    roll_off: Input = Input(
+        label="roll-off wave number",
+        dimension="wavenumber",
+        typical="3e5 1/m",
+        zero=True,
+        optional=True,
+        default=0.0,  # which stands for q0
+    )
 
     def __post_init__(self) -> None:
-        """Check the values and make them floats."""
-        for name in ("h_rms", "q0", "q1", "hurst"):
-            object.__setattr__(self, name, positive(name, getattr(self, name)))
-        if self.hurst > 1:
-            raise InputError(f"hurst = {self.hurst:g} is above 1; the Hurst exponent lies between 0 and 1, often near 0.8.")
-        roll_off = self.q0 if self.roll_off is None else positive("roll_off", self.roll_off)
+        """Check the values together."""
+        roll_off = self.roll_off or self.q0
         object.__setattr__(self, "roll_off", roll_off)
         if not self.q0 < self.q1:
             raise InputError(
@@ -276,10 +280,9 @@ class SelfAffine:
     @cached_property
     def spectrum(self) -> Spectrum:
         """The spectrum as a table of two or three points."""
-        roll_off = self.q0 if self.roll_off is None else self.roll_off
-        falling = (self.q1 / roll_off) ** (-2 * (1 + self.hurst))
-        if roll_off > self.q0:
-            table = Spectrum(np.array([self.q0, roll_off, self.q1]), np.array([1.0, 1.0, falling]))
+        falling = (self.q1 / self.roll_off) ** (-2 * (1 + self.hurst))
+        if self.roll_off > self.q0:
+            table = Spectrum(np.array([self.q0, self.roll_off, self.q1]), np.array([1.0, 1.0, falling]))
         else:
             table = Spectrum(np.array([self.q0, self.q1]), np.array([1.0, falling]))
         return table._with_height(self.h_rms)

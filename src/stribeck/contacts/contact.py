@@ -18,12 +18,19 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.forms import FORMS
-from stribeck.contacts.groups import BETA, Groups
+from stribeck.contacts.groups import BETA, SCALINGS, Geometry, Groups, Scaling
 from stribeck.contacts.inputs import InputTable, check_motion, read_inputs
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.part_inputs import LAW_NUMBERS, PART_INPUTS, PART_LETTERS, part_value, with_part_value
-from stribeck.contacts.parts import BASE_PARTS, PART_KEYWORDS, PURE_SLIDING, Parts, part_parameters
-from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
+from stribeck.contacts.parts import (
+    LAW_NUMBERS,
+    PART_INPUTS,
+    PART_KEYWORDS,
+    PURE_SLIDING,
+    Parts,
+    part_parameters,
+    part_value,
+    with_part_value,
+)
 from stribeck.files.results import Record
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
@@ -34,8 +41,6 @@ from stribeck.quantities.outputs import HERTZ
 from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["Contact", "HertzScales", "described", "in_words", "input_texts", "model_words", "part_attributes"]
 
 Kind = TypeVar("Kind", bound="Contact")
 
@@ -162,24 +167,20 @@ class Contact(Parts):
         self._keep(law, inputs)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        for name in inputs.keys() & {*PART_INPUTS, *PART_LETTERS}:
-            row = PART_INPUTS[PART_LETTERS.get(name, name)]
+        for name in inputs.keys() & PART_INPUTS.keys():
+            row = PART_INPUTS[name]
             raise InputError(
                 f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
                 f"to the contact as {row.table}."
             )
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
         values = read_inputs({name: each for name, each in inputs.items() if name not in parts}, self.INPUTS).checked()
-        # The numbers are checked with the parts of the article's model first, so that what is wrong with them is said of them.
-        vars(self).update(BASE_PARTS.part_values())
+        super().__init__(**parts)
         for name in self.INPUTS.names:
             object.__setattr__(self, name, values.get(name))
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
-        if parts:
-            super().__init__(**{**self.part_values(), **parts})
-            vars(self).pop("own_parts", None)  # which were none
         _ = self.groups.model
 
     @classmethod
@@ -383,7 +384,7 @@ class Contact(Parts):
         """Refuse values, each possible alone, whose groups leave the range of double precision."""
         try:
             scales = self.hertz
-            in_range = math.isfinite(scales.indentation * scales.pressure) and self.groups is not None
+            in_range = math.isfinite(scales.indentation * scales.pressure) and self._base_groups is not None
         except (InputError, ZeroDivisionError, OverflowError):
             in_range = False
         if not in_range:

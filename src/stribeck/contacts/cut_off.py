@@ -55,17 +55,6 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 
-__all__ = [
-    "COUETTE",
-    "POISEUILLE",
-    "CUT_OFF_SLIDING",
-    "CUT_OFF_ROTATION",
-    "far_error",
-    "friction_integral",
-    "is_far",
-    "log_cut_offs",
-]
-
 CUT_OFF_SLIDING = 0.954293  # K, the offset of ln X by sliding [-]
 CUT_OFF_ROTATION = -0.257268  # K', the offset of ln X by rotation [-]
 

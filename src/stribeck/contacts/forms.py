@@ -11,8 +11,6 @@ from typing import Any
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["FORMS", "Form"]
-
 _TURNS = re.compile(r"hz|1\s*/\s*s\b|s\s*\^?\s*-1|s⁻¹", re.IGNORECASE)
 
 
@@ -151,7 +149,13 @@ FORMS = (
         of="viscosity",
         inputs=(
             Input(name="kinematic_viscosity", label="kinematic viscosity", dimension="kinematic", typical="46 cSt"),
-            Input(name="density", label="density", dimension="density", typical="870 kg/m^3"),
+            Input(
+                name="density",
+                label="density of the fluid",
+                dimension="density",
+                typical="870 kg/m^3",
+                source="oil; water 1000",
+            ),
         ),
         value=lambda nu, rho: nu * rho,
         formula="eta = nu rho",

@@ -15,17 +15,6 @@ from stribeck.files.results import Record
 from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import checked_word
 
-__all__ = [
-    "DEFINITIONS",
-    "Definition",
-    "Friction",
-    "FrictionArray",
-    "check_definition",
-    "coefficients",
-    "friction_of",
-    "sliding_part",
-]
-
 Definition = Literal["balanced", "published"]
 
 # Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6).

@@ -1,14 +1,206 @@
-"""The contacts by geometry: what ``geometry = "line"`` or ``"point"`` stands for, in files and in groups."""
+"""The contacts by geometry: a cylinder, ``geometry = "line"``, or a ball, ``"point"``, in SI units.
+
+They are what a tribologist knows; they turn into :class:`Groups` and back, and give the Hertz scales with which results
+return to SI.  No equation is solved here.
+
+Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the cylinder; H. Hertz (1882), as in K. L. Johnson, Contact Mechanics
+(1985), for the ball; theory.md, section 11.
+"""
 
 from __future__ import annotations
 
-from stribeck.contacts.contact import Contact
-from stribeck.contacts.groups import Geometry, check_geometry
-from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.line import LineContact
-from stribeck.contacts.point import PointContact
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
-__all__ = ["CONTACTS", "INPUT_TABLES", "LETTERS", "LINE", "POINT", "check_geometry"]
+from stribeck.contacts.contact import Contact, described
+from stribeck.contacts.groups import Geometry
+from stribeck.contacts.inputs import InputTable
+from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError
+
+
+@described("line")
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class LineContact(Contact):
+    r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
+
+    Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
+
+    Attributes
+    ----------
+    groups : Groups
+        The dimensionless groups.
+    hertz : HertzScales
+        The scales with which dimensionless results return to SI.
+    hersey_number : float
+        :math:`\eta U/F_N` [-], with that sum :math:`U`: twice the number that is made with a mean speed.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible, a unit is wrong, or the modulus is given twice or not at all.
+
+    Notes
+    -----
+    Where both surfaces move, films of Newtonian fluids and load shares are those of :math:`U = u_1 + u_2`, and friction is
+    that of the sliding speed :math:`u_1 - u_2`, by ``slide_to_roll``.
+
+    ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.
+
+    Source: [Bertin & Pouliquen] Eq. (contact_pressure) for the contact law, Section "Dimensional analysis"
+    for the groups. The paper calls :math:`\beta` a number of order unity; for real surfaces it is small.
+
+    Examples
+    --------
+    >>> contact = LineContact(radius="10 mm", modulus="2.1 MPa", load="50 N/m", viscosity="1 mPa*s",
+    ...                       speed="0.1 m/s", roughness="1 um", alpha=2.0, beta=0.05,
+    ...                       boundary_friction=0.8)
+    >>> round(contact.groups.load, 3)
+    0.303
+    """
+
+    load: Input = Input(
+        label="load",
+        symbol="$F_N$",
+        dimension="load",
+        typical="30 N/m",
+        source="as in examples/pdms_cylinder.toml",
+        usual=(0.1, 1e5),
+        units=("N/m", "kN/m", "N/mm"),
+        letters=("F_N",),
+        known=6,
+    )
+
+    WIDTH: ClassVar[str] = "Hertz half-width"
+
+
+class HamrockDowsonNumbers(NamedTuple):
+    """The numbers of B. J. Hamrock and D. Dowson, with the mean speed and E' = 2 E*."""
+
+    speed: float  # Viscosity times mean speed over E' R [-]
+    load: float  # Load over E' R**2 [-]
+
+
+@described("point")
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class PointContact(Contact):
+    r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
+
+    Every quantity is text with a unit (``"9.5 mm"``) or a bare number in SI units; floats in SI are kept.
+
+    Attributes
+    ----------
+    groups : Groups
+        The dimensionless groups, with ``geometry="point"``.
+    hertz : HertzScales
+        The scales with which dimensionless results return to SI.
+    hersey_number : float
+        :math:`\eta U R/F_N` [-], with the sum :math:`U`: twice the number that is made with a mean speed.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible, a unit is wrong, the modulus is given twice or not at all, ``speed`` is given with a
+        slide-to-roll ratio other than 2, or the wetted radius lies inside the contact.
+
+    Notes
+    -----
+    Films and load shares are those of :math:`U`, whatever the slide-to-roll ratio; friction takes the sliding speed
+    :math:`u_1 - u_2 = S U/2`, for the shear of the fluid.  ``modulus``, ``radius`` and ``speed`` always hold :math:`E^*`,
+    :math:`R` and :math:`U` afterwards, and :meth:`replace` takes them as such.
+
+    Friction depends on where the liquid ends, by a logarithm: see ``wetted_radius`` and theory.md, section 11.
+
+    Source: theory.md, section 11.
+
+    Examples
+    --------
+    >>> ball = PointContact(radius="9.5 mm", modulus="1.6 MPa", load="1.3 N", viscosity="10 mPa*s",
+    ...                     entrainment_speed="50 mm/s", slide_to_roll=0.5, roughness="0.4 um", alpha=2.0, beta=0.05,
+    ...                     boundary_friction=0.9)
+    >>> round(ball.slope, 3), round(ball.groups.load, 1)
+    (0.189, 13.9)
+    """
+
+    load: Input = Input(
+        label="load",
+        symbol="$F_N$",
+        dimension="force",
+        typical="1.3 N",
+        source="as in examples/pdms_ball.toml",
+        usual=(1e-6, 1e3),
+        units=("mN", "N"),
+        letters=("F_N",),
+        known=6,
+    )
+    slide_to_roll: Input = Input(
+        label="slide-to-roll ratio",
+        symbol="$S$",
+        dimension="number",
+        typical="2.0",
+        source="one surface at rest; 2 (u1 - u2)/(u1 + u2) in general",
+        usual=(0.01, 2.0),
+        letters=("srr", "SRR", "slide_roll_ratio"),
+        zero=True,
+        highest=2.0,
+        optional=True,
+        default=PURE_SLIDING,
+    )
+    wetted_radius: Input = Input(
+        label="radius of the wetted disc",
+        symbol="$X_c$",
+        dimension="length",
+        typical="3 mm",
+        source="where the liquid around the contact ends; without it the whole ball is immersed",
+        usual=(1e-4, 1.0),
+        units=("mm", "cm"),
+        optional=True,
+        without="a whole ball is immersed",
+    )
+
+    WIDTH: ClassVar[str] = "Hertz radius"
+
+    @property
+    def sliding_speed(self) -> float:
+        """Difference of the surface speeds, :math:`u_1 - u_2` [m/s]."""
+        return float(0.5 * self.slide_to_roll * self.speed)
+
+    @property
+    def moes_number(self) -> float:
+        r"""The load number of H. Moes [-]; infinite at rest.
+
+        .. math:: M = \frac{F_N}{E' R^2} \left(\frac{\eta U}{E' R}\right)^{-3/4}
+            = \frac23 \left(\frac{6\pi}{\lambda}\right)^{3/4}, \qquad E' = 2 E^*
+
+        His lubricant number L is zero, as viscosity does not depend on the pressure.
+        """
+        speed = float(self.groups.speed)
+        return 2 / 3 * (6 * math.pi / speed) ** 0.75 if speed > 0 else math.inf
+
+    @property
+    def hamrock_dowson_numbers(self) -> HamrockDowsonNumbers:
+        r"""The speed and load numbers of B. J. Hamrock and D. Dowson.
+
+        .. math:: \frac{\eta U/2}{E' R} = \frac{\lambda}{12 \pi} \left(\frac aR\right)^4, \qquad
+            \frac{F_N}{E' R^2} = \frac23 \left(\frac aR\right)^3, \qquad E' = 2 E^*
+        """
+        R, stiffness = self.radius, 2 * self.modulus
+        return HamrockDowsonNumbers(0.5 * self.viscosity * self.speed / stiffness / R, self.load / stiffness / R / R)
+
+    def _check_scales(self) -> None:
+        """Refuse what leaves double precision, and a wetted radius inside the contact."""
+        super()._check_scales()
+        a = self.hertz.half_width
+        if self.wetted_radius is not None and self.wetted_radius <= a:
+            wetted, radius = (format_si(value, "length") for value in (self.wetted_radius, a))
+            raise InputError(
+                f"wetted_radius = {wetted} lies inside the contact, whose Hertz radius is {radius}; give the radius at "
+                "which the liquid around the contact ends, or leave it out if the ball is immersed."
+            )
+
 
 # The contact of each geometry, by name.
 CONTACTS: dict[Geometry, type[Contact]] = {"line": LineContact, "point": PointContact}

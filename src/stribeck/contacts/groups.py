@@ -1,13 +1,25 @@
 r"""The three dimensionless groups of the model: all that the equations see.
 
-Source: [Bertin & Pouliquen] the definitions of :math:`\lambda`, :math:`\bar F_N` and :math:`\bar h_\mathrm{rms}` below
-Eq. (Hertz_scales).
+With the dry smooth contact of Hertz as the unit, its half-width or radius a, indentation :math:`u = a^2/R` and largest
+pressure :math:`p_\mathrm{Hz}`,
+
+.. math::
+
+    \frac{p_\mathrm{Hz}}{\beta E^*} = \bar F_N^{e}, \qquad \kappa = \frac{h_\mathrm{rms}}{\alpha u}
+    = \frac{\bar h_\mathrm{rms}}{\bar F_N^{2e}}, \qquad \frac{a}{R} = c \, \beta \bar F_N^{e}
+    = \left(\frac{k F_N}{R^r E^*}\right)^{e}
+
+with r = 1, e = 1/2, c = 2 and k = 4/pi on the line, and r = 2, e = 1/3, c = pi/2 and k = 3/4 on the ball.
+
+Source: [Bertin & Pouliquen] Eq. (Hertz_scales) and the definitions of :math:`\lambda`, :math:`\bar F_N` and
+:math:`\bar h_\mathrm{rms}` below it for the line; the same with Hertz's contact of a sphere for the ball.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
-from typing import Any, TypedDict, cast
+from typing import Any, Literal, TypedDict, cast
 
 import numpy as np
 
@@ -16,12 +28,9 @@ from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw, law_of
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
-
-__all__ = ["BETA", "MAX_GROUP", "MIN_GROUP", "Geometry", "Groups", "Physics", "check_geometry"]
 
 MIN_GROUP = 1e-300  # Smallest group that is not zero: products and squares of the groups stay in double precision
 MAX_GROUP = 1e300  # Largest group: products and squares of the groups stay in double precision
@@ -29,6 +38,50 @@ MAX_GROUP = 1e300  # Largest group: products and squares of the groups stay in d
 # Relative excess of a group over its bound that rounding explains: the exponential of its logarithm has some
 BOUND_RTOL = 1e-9
 
+Geometry = Literal["line", "point"]  # A cylinder or a ball
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How the groups of one geometry scale."""
+
+    name: Geometry  # Name of the geometry
+    body: str  # What it is of
+    dimensions: int  # r, directions in which the contact is small
+    slope_factor: float  # c
+    hertz_factor: float  # k
+    hertz_pressure: float  # Largest Hertz pressure over the mean one
+    hersey_power: int  # Power of a/R in the Hersey number over the speed group
+    hersey_divisor: float  # Divisor of the Hersey number
+    pressure_exponent: float = field(init=False)  # e
+    roughness_exponent: float = field(init=False)  # 2e
+
+    def __post_init__(self) -> None:
+        """Set the exponents, which every group asks for."""
+        object.__setattr__(self, "pressure_exponent", 1 / (1 + self.dimensions))
+        object.__setattr__(self, "roughness_exponent", 2 / (1 + self.dimensions))
+
+    @property
+    def exponents(self) -> dict[str, tuple[float, float, float]]:
+        """Exponents with which inputs of a contact enter the groups of speed, load and roughness."""
+        r, shift = self.dimensions, self.pressure_exponent * self.hersey_power
+        return {
+            "radius": (r - 1 + r * shift, -r, -1),
+            "modulus": (shift, -1, 0),
+            "load": (-1 - shift, 1, 0),
+            "viscosity": (1, 0, 0),
+            "speed": (1, 0, 0),
+            "roughness": (0, 0, 1),
+            "alpha": (0, 0, -1),
+            "beta": (0, -1 - r, -2),
+        }
+
+
+# The geometries by name: a cylinder, whose load is per unit length, and a ball.
+SCALINGS: dict[Geometry, Scaling] = {
+    "line": Scaling("line", "cylinder", 1, 2.0, 4 / math.pi, 4 / math.pi, 2, 3 * math.pi),
+    "point": Scaling("point", "ball", 2, 0.5 * math.pi, 0.75, 1.5, 1, 4 * math.pi),
+}
 
 BETA = Input(
     name="beta",

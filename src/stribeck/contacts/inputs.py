@@ -9,16 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from stribeck.contacts.forms import Form
-from stribeck.contacts.parts import Parts
-from stribeck.contacts.scaling import SCALINGS, Geometry
+from stribeck.contacts.groups import SCALINGS, Geometry
+from stribeck.contacts.parts import PART_INPUTS, Parts
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.uncertain import split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
-
-__all__ = ["InputTable", "ReadInputs", "apply_forms", "check_motion", "note_missing", "read_inputs"]
 
 _UNCHANGED = (0.0, 0.0, 0.0)
 
@@ -46,6 +44,11 @@ class InputTable:
     def quantities(self) -> dict[str, Input]:
         """All inputs by name."""
         return self.kept | {each.name: each for form in self.forms for each in (*form.inputs, *form.second)}
+
+    @cached_property
+    def rows(self) -> dict[str, Input]:
+        """All inputs by name, numbers of laws among them."""
+        return {**self.quantities, **PART_INPUTS}
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -159,8 +162,8 @@ def apply_forms(found: ReadInputs, given: Mapping[str, Any], table: InputTable) 
             found.values |= {name: value for name, value in form.assumed.items() if name not in found.values}
 
 
-def note_missing(found: ReadInputs, table: InputTable, elsewhere: Collection[str] = (), hint: str = "") -> None:
-    """Note those inputs that neither stand there nor follow, nor are given elsewhere; the hint says where they may be."""
+def note_missing(found: ReadInputs, table: InputTable, elsewhere: Collection[str] = ()) -> None:
+    """Note those inputs that neither stand there nor follow, nor are given elsewhere."""
     for form in table.forms:
         if form.meaning and form.of not in (*found.values, *elsewhere):
             together = " together" if len(form.inputs) > 1 else ""
@@ -169,7 +172,7 @@ def note_missing(found: ReadInputs, table: InputTable, elsewhere: Collection[str
             found.values[form.of] = table.quantities[form.of].typical_value
     for name, row in table.kept.items():
         if not row.optional and name not in (*found.values, *elsewhere):
-            found.problems.append(f"{name} is missing; {row.advice}{hint}.")
+            found.problems.append(f"{name} is missing; {row.advice}.")
 
 
 def check_motion(given: Mapping[str, Any], table: InputTable) -> None:
@@ -221,11 +224,8 @@ def _check(form: Form, values: Mapping[str, float], given: Mapping[str, Any]) ->
 
 
 def _shown(name: str, values: Mapping[str, float], given: Mapping[str, Any]) -> str:
-    """Return a value as it was given, ``{ value, error }`` as people write it."""
-    value = values[name] if given.get(name) is None else given[name]
-    if isinstance(value, Mapping) and value.keys() == {"value", "error"}:
-        return show(f"{value['value']} +- {value['error']}")
-    return show(value)
+    """Return a value as it was given."""
+    return show(values[name] if given.get(name) is None else given[name])
 
 
 def _slope(form: Form, numbers: list[float], i: int) -> float:

@@ -11,8 +11,6 @@ from stribeck.quantities.units import InputError, checked_word, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
-__all__ = ["BASE_MODEL", "Model"]
-
 
 @dataclass(frozen=True)
 class Model:

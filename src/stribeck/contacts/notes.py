@@ -12,21 +12,6 @@ from stribeck.contacts.groups import Groups
 from stribeck.fluids.fluid import Film
 from stribeck.quantities.formats import format_percent, format_si
 
-__all__ = [
-    "TAIL_ADVICE",
-    "FLUID_PREFIX",
-    "HARD_PREFIX",
-    "SUCTION_PREFIX",
-    "cavitation_notes",
-    "fluid_notes",
-    "law_notes",
-    "matters",
-    "minimum_note",
-    "pressure_notes",
-    "shape_notes",
-    "width_notes",
-]
-
 # Beginnings of notes, by which outputs order them and checks find them
 HARD_PREFIX = "Hard elastohydrodynamics:"
 FLUID_PREFIX = "The fluid leaves the range of its laws:"

@@ -9,16 +9,6 @@ import numpy as np
 from stribeck._types import Array, Indices, Numbers
 from stribeck.quantities.units import to_si
 
-__all__ = [
-    "BOUNDARY_FLUID_SHARE",
-    "HYDRODYNAMIC_CONTACT_SHARE",
-    "REGIMES",
-    "Regime",
-    "friction_share",
-    "regime_numbers",
-    "regime_of",
-]
-
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
 
 # The regimes in the order of rising speed; their places are their numbers.

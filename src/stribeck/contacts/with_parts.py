@@ -16,15 +16,6 @@ from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.keywords import nearest
 from stribeck.quantities.units import InputError, show
 
-__all__ = [
-    "refuse_fixed_memory",
-    "hertz_units",
-    "model_at",
-    "models_at_both_sides",
-    "admissible_steps",
-    "with_parts",
-]
-
 CENTRAL_STEP = 1e-5  # Change of a logarithm to both sides by which a model is differentiated
 ONE_SIDED_STEP = 1e-7  # Change of a logarithm to one side, where the model refuses the other side
 

@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.part_inputs import part_names
+from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
 from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
 from stribeck.equations.point.sensitivity import LOG_STEP

@@ -15,7 +15,7 @@ from stribeck.contacts.friction import Definition, check_definition, sliding_par
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.part_inputs import part_names
+from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of

@@ -11,8 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
 from stribeck.contacts.contact import model_words
-from stribeck.contacts.part_inputs import PART_INPUTS
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_si

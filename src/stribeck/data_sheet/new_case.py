@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
+from stribeck.cases.facts import FACTS
 from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLUID_KINDS
-from stribeck.contacts.geometries import INPUT_TABLES, check_geometry
-from stribeck.contacts.groups import Geometry
-from stribeck.contacts.part_inputs import KINDS
+from stribeck.contacts.geometries import INPUT_TABLES
+from stribeck.contacts.groups import Geometry, check_geometry
+from stribeck.contacts.parts import KINDS
 from stribeck.fluids.presets import PRESETS
-from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.schema import Input, needed_of, numbers_of
@@ -125,7 +125,9 @@ def new_case(geometry: Geometry = "line") -> str:
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]
-    lines += [f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS]
+    lines += [
+        f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS.values()
+    ]
     return "\n".join(lines) + "\n"
 
 

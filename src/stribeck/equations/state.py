@@ -14,8 +14,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators

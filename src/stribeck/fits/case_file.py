@@ -19,7 +19,7 @@ from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit
@@ -95,7 +95,7 @@ def _write(
         back = load_case(temporary).contact
     except InputError as problem:
         raise InputError(str(problem).replace(str(temporary), str(path))) from None
-    for name in all_input_rows(contact.INPUTS):
+    for name in contact.INPUTS.rows:
         value, kept = getattr(contact, name, None), getattr(back, name, None)
         if value is not None and (kept is None or not math.isclose(kept, value, rel_tol=AGREEMENT)):
             table, key = _place(name)
@@ -180,7 +180,7 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
             lines.append(f"# before the fit: {line.strip()}")
             continue
         key = re.match(r"\s*(\w+)\s*=", line)
-        new = edits.at.get((table, PART_LETTERS.get(key[1], key[1]))) if key else None
+        new = edits.at.get((table, key[1])) if key else None
         if new is not None:
             lines += [f"# before the fit: {line.strip()}", *new]
         elif key and key[1] in ("file", "spectrum") and table in ("table", "surface"):
@@ -218,7 +218,7 @@ def _comments(name: str, fit: Fit) -> list[str]:
 
 def _entry_of(name: str, contact: Contact) -> str:
     _, key = _place(name)
-    return _entry(key, getattr(contact, name), all_input_rows(contact.INPUTS)[name].dimension)
+    return _entry(key, getattr(contact, name), contact.INPUTS.rows[name].dimension)
 
 
 def _entry(key: str, value: float, dimension: str) -> str:

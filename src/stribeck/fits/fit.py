@@ -21,7 +21,6 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.identifiability import undetermined
@@ -372,7 +371,7 @@ def _result(
             interval_68=_interval(free, ends[i][0]),
             interval_95=_interval(free, ends[i][1]),
             at_bound=bool(bound[i]),
-            dimension="number" if free.is_factor else all_input_rows(contact.INPUTS)[free.name].dimension,
+            dimension="number" if free.is_factor else contact.INPUTS.rows[free.name].dimension,
         )
         for i, free in enumerate(model.free)
     )

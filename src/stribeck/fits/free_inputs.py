@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.part_inputs import PART_INPUTS, all_input_rows
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
@@ -103,7 +103,7 @@ def _free_input(
 
 
 def _text(name: str, value: float, contact: Contact) -> str:
-    return format_si(value, all_input_rows(contact.INPUTS)[name].dimension)
+    return format_si(value, contact.INPUTS.rows[name].dimension)
 
 
 def _check_matters(name: str, data: Measurements) -> None:

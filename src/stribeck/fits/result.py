@@ -16,7 +16,6 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.identifiability import Unidentifiable
@@ -370,7 +369,7 @@ class Fit(Exported, Told, ByValue):
         for name in self.held:
             values = {getattr(contact, name, None) for contact in self.contacts}
             [value, *others] = values
-            dimension = all_input_rows(self.contact.INPUTS)[name].dimension
+            dimension = self.contact.INPUTS.rows[name].dimension
             known = "of each curve" if others or value is None else format_si(value, dimension, 4)
             shown.append(f"{name} {known}")
         if not shown:
@@ -403,7 +402,7 @@ class Fit(Exported, Told, ByValue):
 
 def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[all_input_rows(table)[name].dimension].unit
+    return "" if is_factor else DIMENSIONS[table.rows[name].dimension].unit
 
 
 def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:

@@ -9,8 +9,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["real_array"]
-
 
 def real_array(name: str, value: Any) -> Array:
     """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists."""

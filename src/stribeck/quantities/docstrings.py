@@ -12,8 +12,6 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
-__all__ = ["Described", "Words", "complete_docstring"]
-
 
 class Words(NamedTuple):
     """What is said of a field."""

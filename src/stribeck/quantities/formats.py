@@ -7,17 +7,6 @@ import re
 
 from stribeck.quantities.units import DIMENSIONS
 
-__all__ = [
-    "figures",
-    "format_bound",
-    "format_error",
-    "format_factor",
-    "format_number",
-    "format_percent",
-    "format_share",
-    "format_si",
-]
-
 
 def format_si(value: float, dimension: str, digits: int = 3) -> str:
     """Return an SI number as short text with a fitting prefix, such as ``310 µm/s``, that :func:`to_si` reads back."""

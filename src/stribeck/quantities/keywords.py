@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["answers_typos", "known_names", "nearest", "with_nearest"]
-
 P = ParamSpec("P")
 R = TypeVar("R")
 

@@ -9,8 +9,6 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TypeVar
 
-__all__ = ["cached_property", "lazy_names"]
-
 T = TypeVar("T")
 
 

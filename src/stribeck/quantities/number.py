@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from stribeck.quantities.formats import figures, format_bound, format_error, format_number, format_si
 
-__all__ = ["Number", "plain_numbers"]
-
 
 @dataclass(frozen=True)
 class Number:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from enum import Enum
 
-__all__ = ["Outcome"]
-
 
 class Outcome(Enum):
     """How a solve ended, as a sentence; :attr:`ok` is whether the result can be trusted."""

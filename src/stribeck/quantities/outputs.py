@@ -12,25 +12,6 @@ from typing import Literal
 
 from stribeck.quantities.lazy import cached_property
 
-__all__ = [
-    "ALL_NAMES",
-    "AREA_ROWS",
-    "LINE_BY_CAVITATION",
-    "RUPTURE_ROWS",
-    "FILMS",
-    "COLUMNS",
-    "GROUPS",
-    "HERTZ",
-    "OBSERVABLES",
-    "OUTPUT_TABLES",
-    "ROWS",
-    "UNITS",
-    "UNIT_SUFFIXES",
-    "Observable",
-    "OutputTable",
-    "friction_rows",
-]
-
 GROUPS = ("speed", "load", "roughness")
 
 Scale = Literal["number", "gap", "width", "pressure", "friction"]

@@ -15,8 +15,6 @@ from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
 
-__all__ = ["law_class", "laws_of"]
-
 
 @functools.cache
 def laws_of(package: str, kind: type) -> dict[str, Any]:

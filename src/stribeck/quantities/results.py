@@ -13,8 +13,6 @@ import numpy as np
 
 from stribeck.quantities.docstrings import Described
 
-__all__ = ["ByValue", "Card", "Shown", "Told", "brief_text", "equal_values", "table_lines", "table_rows"]
-
 
 @dataclass(frozen=True)
 class Card:

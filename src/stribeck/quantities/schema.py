@@ -19,9 +19,8 @@ from typing import Any
 
 import numpy as np
 
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
-
-__all__ = ["Input", "Series", "arguments_of", "made_of", "needed_of", "numbers_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +100,11 @@ class Input:
         source = f" ({self.source})" if self.source else ""
         other = f", {self.or_else}" if self.or_else else ""
         return f"add {DIMENSIONS[self.dimension].noun}, for example {self.name} = {self.example}{source}{other}"
+
+    @property
+    def without_it(self) -> str:
+        """What stands where it is not given."""
+        return self.without or ("" if self.default is None else format_si(self.default, self.dimension))
 
     @property
     def typical_value(self) -> float:

@@ -16,18 +16,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-__all__ = [
-    "DIMENSIONS",
-    "Dimension",
-    "InputError",
-    "checked_callback",
-    "checked_kind",
-    "checked_word",
-    "read_number",
-    "show",
-    "to_si",
-]
-
 
 class InputError(ValueError):
     """A value given by the user cannot be used; the message says why and what to try."""

@@ -10,8 +10,6 @@ import numpy as np
 
 from stribeck.quantities.units import InputError
 
-__all__ = ["GUIDE", "check_user_part", "refusal"]
-
 GUIDE = "See Add a fluid in for_developers.md."
 
 

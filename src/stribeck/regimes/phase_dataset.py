@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import law_attributes
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.datasets import import_xarray
 from stribeck.quantities.outputs import COLUMNS, GROUPS, OBSERVABLES

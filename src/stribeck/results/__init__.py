@@ -7,7 +7,7 @@ _HOMES = {
     "checks.check": ("Check", "Checks"),
     "cli.reports.regimes": ("Explanation",),
     "contacts.friction": ("Friction",),
-    "contacts.line": ("HertzScales",),
+    "contacts.contact": ("HertzScales",),
     "curves.landmarks": ("Landmark",),
     "curves.result": ("StribeckCurve",),
     "experiments.compare": ("Comparison",),

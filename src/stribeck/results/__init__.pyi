@@ -3,8 +3,8 @@
 from stribeck.batches.result import BatchSolution
 from stribeck.checks.check import Check, Checks
 from stribeck.cli.reports.regimes import Explanation
+from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.friction import Friction
-from stribeck.contacts.line import HertzScales
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.experiments.compare import Comparison

@@ -15,8 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators

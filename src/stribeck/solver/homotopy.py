@@ -19,8 +19,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.fixed_exit import distance_to_flux_gap, solve_at_fixed_exit
 from stribeck.equations.guess import Guess

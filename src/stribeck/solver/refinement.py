@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators

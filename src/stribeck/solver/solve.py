@@ -40,8 +40,7 @@ from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError, describe
 
 if TYPE_CHECKING:
-    from stribeck.contacts.line import LineContact
-    from stribeck.contacts.point import PointContact
+    from stribeck.contacts.geometries import LineContact, PointContact
     from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below

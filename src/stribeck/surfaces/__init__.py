@@ -1,6 +1,5 @@
 """Surfaces: from measured heights to a spectrum and a contact law."""
 
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.surfaces.analysis import Surface, analyse
@@ -18,7 +17,6 @@ __all__ = [
     "Estimate",
     "MeasuredSpectrum",
     "PerssonLaw",
-    "RoughSurface",
     "SelfAffine",
     "SelfAffineFit",
     "Form",

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, exponential_limit, persson_law
+from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.datasets import number_columns
 from stribeck.files.results import Exported, Labelled
@@ -252,7 +252,7 @@ def analyse(
     """
     if not isinstance(topography, Topography):
         raise InputError(f"topography = {show(topography)}; it must be a Topography, as of read_topography(path).")
-    gamma = check_gamma(gamma)
+    gamma = GAMMA_INPUT.checked(gamma)
     shortest = None
     if resolution is not None:
         shortest = to_si(resolution, "length", "resolution", "1 um")

@@ -16,7 +16,6 @@ from stribeck.cases.tables import Key, noted, one_of, read_tables, rising_pair, 
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_word, show
 
@@ -101,7 +100,7 @@ def read_axes(
         return design, {}
     if not vary:
         problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
-    rows = None if inputs is None else all_input_rows(inputs)
+    rows = None if inputs is None else inputs.rows
     known = (*GROUPS, *COEFFICIENTS) if rows is None else tuple(rows)
     axes, before = {}, len(problems)
     for name, entry in vary.items():

@@ -8,7 +8,6 @@ from typing import NamedTuple
 from stribeck.batches.states import Ended, States
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Physics
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.solver.numbers import numbers_of
 
@@ -39,6 +38,6 @@ def row_of(ended: Ended, states: States, i: int) -> Row:
 
 def input_columns(names: Iterable[str], physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of the inputs and groups of a state."""
-    rows = all_input_rows(INPUT_TABLES[physics["geometry"]])
+    rows = INPUT_TABLES[physics["geometry"]].rows
     inputs = {name: (rows[name].unit, rows[name].label) for name in names}
     return inputs | {f"{name}_group": ("1", f"{name} group") for name in GROUPS}

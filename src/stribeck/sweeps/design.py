@@ -28,7 +28,6 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, Groups, Physics
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.datasets import Column
 from stribeck.files.results import Labelled, Tabled
 from stribeck.files.toml import read_toml
@@ -76,7 +75,7 @@ class SweepDesign(Tabled, Shown, States):
     def _range(self, name: str) -> str:
         """Return how many values an input takes, and between which."""
         values = np.unique(self.inputs[name] if name in self.inputs else self.groups[:, GROUPS.index(name)])
-        rows = all_input_rows(INPUT_TABLES[self.physics["geometry"]])
+        rows = INPUT_TABLES[self.physics["geometry"]].rows
         dimension = "number" if self.contacts is None else rows[name].dimension
         low, high = (format_si(float(end), dimension) for end in (values[0], values[-1]))
         return f"{len(values)} values, {low} to {high}"

@@ -14,7 +14,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.part_inputs import PART_INPUTS, PART_LETTERS, all_input_rows
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
@@ -170,10 +170,10 @@ def propagate(
 
 def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
     """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
-    rows = all_input_rows(contact.INPUTS)
+    rows = contact.INPUTS.rows
     found: dict[str, float] = {}
     for name, error in errors.items():
-        kept, exponent = SUBSTITUTES.get(name, (PART_LETTERS.get(name, name), 1.0))
+        kept, exponent = SUBSTITUTES.get(name, (name, 1.0))
         value = getattr(contact, kept, None) if kept in rows else None
         if value is None and kept in PART_INPUTS:
             raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[kept].of}.")

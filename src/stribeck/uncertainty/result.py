@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told
@@ -145,7 +144,7 @@ class Uncertainty(Exported, Told):
     @property
     def sources(self) -> tuple[str, ...]:
         """What intervals count, the share of each input in the variance of friction, and the notes, a sentence each."""
-        labels = all_input_rows(self.contact.INPUTS)
+        labels = self.contact.INPUTS.rows
         exact = (exact_inputs(self.contact, self.errors),) if self.errors else ()
         named = {name: part for name, part in self.contributions.items() if part >= MIN_NAMED_SHARE}
         parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
@@ -154,7 +153,7 @@ class Uncertainty(Exported, Told):
 
 def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
     """Return the sentence that says which inputs have an error in intervals, and which count as exact."""
-    rows = all_input_rows(contact.INPUTS)
+    rows = contact.INPUTS.rows
     known = [row.label for name, row in rows.items() if name in errors]
     exact = [
         row.label

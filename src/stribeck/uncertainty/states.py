@@ -24,8 +24,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Geometry
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Geometry, Groups
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError

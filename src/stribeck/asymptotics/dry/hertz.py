@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 

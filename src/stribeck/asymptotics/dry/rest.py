@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))

@@ -25,7 +25,7 @@ from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.asymptotics.point.slow_contact import of_gap
 from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
 PhiForm = Literal["quadrature", "closed"]

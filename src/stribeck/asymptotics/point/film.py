@@ -40,7 +40,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT, MINIMUM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 # Flux lost up to the middle of the contact over the flux that enters, as a multiple of lambda**(1/5).
 LEAKAGE_COEFFICIENT = math.pi * BALL_FILM_CONSTANT**2

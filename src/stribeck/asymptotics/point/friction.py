@@ -31,7 +31,7 @@ from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
 from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 # Friction integral over lambda**(2/5) of the slow horseshoe, 1.4054.
 SLOW_INTEGRAL = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)

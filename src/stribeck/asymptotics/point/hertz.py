@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 HERTZ_OFFSET = -1.0  # Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation.

@@ -24,7 +24,7 @@ import math
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
 

@@ -28,7 +28,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.asymptotics.smooth.edge_layer import layer
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 CATALAN = 0.915965594177219  # Catalan's constant.
 

@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid over lambda**2 h_0**(-5/2).
 

@@ -30,7 +30,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
 

@@ -23,7 +23,7 @@ from stribeck.asymptotics.dry.rest import (
 )
 from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
 from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
 __all__ = [

@@ -28,7 +28,7 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.asymptotics.smooth.hydrodynamic import GAP_SLOPE
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
 

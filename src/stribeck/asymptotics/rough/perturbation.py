@@ -25,7 +25,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
 from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
 PhiForm = Literal["quadrature", "closed", "asymptote", "power", "printed"]

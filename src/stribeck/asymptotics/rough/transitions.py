@@ -37,7 +37,7 @@ from stribeck.asymptotics.rough.weakening import (
     weakening_number,
 )
 from stribeck.asymptotics.smooth.hydrodynamic import central_gap
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 __all__ = [
     "MAX_WEAKENING",

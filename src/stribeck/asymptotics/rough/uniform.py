@@ -18,7 +18,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.rough.load_sharing import FIT_RANGE, film_speed_ratio, gaps, log_odds
 from stribeck.asymptotics.smooth import hydrodynamic
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
 Definition = Literal["published", "balanced"]

@@ -20,7 +20,7 @@ from stribeck.asymptotics.formula import Value, coefficient
 from stribeck.asymptotics.rough import mixed
 from stribeck.asymptotics.rough.mixed import lambert_w
 from stribeck.asymptotics.rough.perturbation import phi_of
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["MAX_WEAKENING", "Criterion", "Form", "has_minimum", "roughness_without_minimum", "weakening_number"]

@@ -28,7 +28,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 

@@ -23,7 +23,7 @@ from stribeck.asymptotics.smooth.small_deformation import (
     gap_small,
     pressure_small,
 )
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 __all__ = [
     "FILM_CONSTANT",

@@ -12,7 +12,7 @@ import math
 
 from stribeck.asymptotics.constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 SLOW_RANGE = (Limit("speed", 0.0, 1e-3),)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 
 FAST_RANGE = (Limit("speed", 1e3),)
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.panels import reference
 from stribeck.numerics.threads import one_blas_thread

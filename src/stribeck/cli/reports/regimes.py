@@ -11,7 +11,6 @@ import stribeck as sb
 from stribeck.cli.reports.text import all_lines, answer_lines, mark_table, mark_texts, outcome_line
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.part_inputs import all_input_rows
 from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import table_lines
@@ -92,7 +91,7 @@ def _sensitivity_table(found: Overview) -> list[str]:
     slopes, contact = found.sensitivities, found.case.contact
     if not slopes:
         return []
-    rows, labels = [("input", "value", "sensitivity", "10 % increase gives")], all_input_rows(contact.INPUTS)
+    rows, labels = [("input", "value", "sensitivity", "10 % increase gives")], contact.INPUTS.rows
     for name in sorted(slopes, key=lambda name: -abs(slopes[name])):
         value = format_si(getattr(contact, name), labels[name].dimension)
         change = _change_text(slopes[name])

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Fields, Operators
 from stribeck.equations.state import State, unknowns_of

@@ -6,9 +6,10 @@ Each list is a table of a case and one of its keys; laws and their numbers are t
 from __future__ import annotations
 
 import functools
+import json
 import math
-import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,23 +17,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
-from stribeck.cases.law import LAWS, SOURCES, law_of_file
+from stribeck.cases.law import LAWS, SOURCES, SURFACE, law_of_file
 from stribeck.cases.model_parts import FLUID_KINDS
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contact_laws.persson import GAMMA_INPUT
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.model import Model
-from stribeck.contacts.part_inputs import KINDS, LAW_NUMBERS
+from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, fluid_table
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
-from stribeck.quantities.formats import format_si
-from stribeck.quantities.schema import Input, needed_of, numbers_of
+from stribeck.quantities.schema import needed_of, numbers_of
 from stribeck.quantities.units import InputError, checked_word
 from stribeck.solver.point.solve import check_model
-
-__all__ = ["CHOICES", "Choice", "choose", "list_of", "with_detail"]
 
 
 class Option(NamedTuple):
@@ -49,9 +47,9 @@ class Option(NamedTuple):
 
 
 # The numbers of laws and surfaces, which are the keys of options.
-NUMBERS = LAW_NUMBERS | RoughSurface.INPUTS.quantities
+NUMBERS = LAW_NUMBERS | SURFACE.quantities | {"gamma": GAMMA_INPUT}
 
-SURFACE = Option("", ("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+OF_SURFACE = Option("", ("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
 NO_DETAILS = ("h_rms", "wavenumber", "density", "title", "shape_only")  # Keys of a surface that no field shows
 
 
@@ -76,30 +74,19 @@ class Choice:
         return "surface" if self.name == "law" else self.table
 
 
-def _option(name: str, law: type | None) -> Option:
-    """Return a law as an option: numbers without default are needed."""
-    needed = needed_of(law)
-    words = "Newtonian" if name == "newtonian" else name if law is None else name.replace("-", " ")
-    label = getattr(law, "label", words)
-    return Option(label, needed, tuple(key for key in numbers_of(law) if key not in needed))
-
-
-def _bodies() -> dict[str, Option]:
-    """Return the bodies; one with a memory may be a layer too."""
-    laws = sorted(KINDS["solid"].laws.items(), key=lambda each: hasattr(each[1], "base"))
-    found = {name: _option(name, law) for name, law in laws}
-    shapes = tuple(key for name, law in laws if not hasattr(law, "base") for key in found[name].keys)
-    return {
-        name: option._replace(optional=(*option.optional, *shapes)) if hasattr(dict(laws)[name], "base") else option
-        for name, option in found.items()
-    }
-
-
 def _of_kind(name: str) -> Choice:
-    """Return the list of the laws of a kind."""
+    """Return the list of the laws of a kind; a body with a memory may have the numbers of one without it too."""
     kind, names = KINDS[name], {"rheology": "fluid", "viscosity": "viscosity_law"}
-    options = {each: _option(each, law) for each, law in kind.laws.items()}
-    return Choice(names.get(name, name), kind.label, kind.table, kind.key, options)
+    laws = sorted(kind.laws.items(), key=lambda each: hasattr(each[1], "base"))
+    shapes = [key for _, law in laws if not hasattr(law, "base") for key in numbers_of(law)]
+    options = {}
+    for each, law in laws:
+        words = "Newtonian" if each == "newtonian" else each if law is None else each.replace("-", " ")
+        keys = (*numbers_of(law), *(shapes if hasattr(law, "base") else ()))
+        needed = needed_of(law)
+        options[each] = Option(getattr(law, "label", words), needed, tuple(key for key in keys if key not in needed))
+    # Which body it is, its numbers say.
+    return Choice(names.get(name, name), kind.label, kind.table, "" if name == "solid" else kind.key, options)
 
 
 CHOICES = {
@@ -118,7 +105,7 @@ CHOICES = {
             "contact",
             "law",
             {
-                law: (SURFACE if law == "persson" else Option(""))._replace(
+                law: (OF_SURFACE if law == "persson" else Option(""))._replace(
                     label=" and ".join(map(str.capitalize, law.split("-")))
                 )
                 for law in LAWS
@@ -146,12 +133,12 @@ CHOICES = {
         Choice(
             "motion",
             "Motion",
-            "motion",
+            "contact",
             "",
             {"sliding": Option("one surface at rest"), "rolling": Option("both surfaces move", ("slide_to_roll",))},
         ),
         _of_kind("flow_factors"),
-        Choice("solid", KINDS["solid"].label, "solid", "", _bodies()),
+        _of_kind("solid"),
     )
 }
 """The lists, in the order of the page."""
@@ -175,31 +162,22 @@ def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
 def available_values(name: str, geometry: str) -> tuple[str, ...]:
     """Return what contacts of a geometry can have of a choice."""
     choice = CHOICES[name]
+    if name == "motion" and "slide_to_roll" in INPUT_TABLES[geometry].names:  # which has a field
+        return (choice.first,)
     if geometry not in CHECKS or choice.table in ("", "contact"):
         return tuple(choice.options)
-    if choice.table == "motion":  # of a ball the slide-to-roll ratio is one of its inputs
-        return (choice.first,)
     numbers = {key: row.typical_value for key, row in INPUT_TABLES[geometry].kept.items() if not row.optional}
-    typical = Inputs.of({"contact": {"geometry": geometry, **numbers}})
-    return tuple(value for value in choice.options if _can_have(typical, name, value))
-
-
-def _can_have(now: Inputs, name: str, value: str) -> bool:
-    try:
-        choose(now, name, value)
-    except InputError:
-        return False
-    return True
+    typical, found = Inputs.of({"contact": {"geometry": geometry, **numbers}}), []
+    for value in choice.options:
+        with suppress(InputError):
+            choose(typical, name, value)
+            found.append(value)
+    return tuple(found)
 
 
 def first_value(key: str) -> Any:
     """Return the first value of a key that a choice needs."""
-    return tomllib.loads(f"value = {NUMBERS[key].example}")["value"]
-
-
-def _if_empty(row: Input) -> str:
-    """Return what stands where a number is not given."""
-    return row.without or ("" if row.default is None else format_si(row.default, row.dimension))
+    return json.loads(NUMBERS[key].example)
 
 
 def list_of(now: Inputs, name: str) -> dict[str, Any]:
@@ -211,7 +189,7 @@ def list_of(now: Inputs, name: str) -> dict[str, Any]:
         # A measured spectrum has no numbers to change; others keep those with which they came.
         own = [key for key in given if key not in NO_DETAILS]
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
-    details = [[key, NUMBERS[key].label, _text(given.get(key, "")), _if_empty(NUMBERS[key])] for key in keys]
+    details = [[key, NUMBERS[key].label, _text(given.get(key, "")), NUMBERS[key].without_it] for key in keys]
     # A table of a contact law comes from a file only.
     known = [key for key in available_values(name, now.table.geometry) if key != "table"]
     options = [[key, option.label] for key, option in choice.options.items() if key in known or key == value]
@@ -242,7 +220,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
             return now
         # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         known, before = INPUT_TABLES[value].quantities, now.contact
-        contact = {key: each for key, each in contact.items() if key in known} | {name: value} | tables.pop("motion", {})
+        contact = {key: each for key, each in contact.items() if key in known} | {name: value}
         solver = tables.pop("solver", {}) | {"rtol": DEFAULT_POINTS_AND_RTOL[value][1]}
         tables.pop("title", None)
         R, E, p = before.radius, before.modulus, before.hertz.pressure

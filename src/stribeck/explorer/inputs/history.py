@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from stribeck.explorer.inputs.inputs import Inputs
 
-__all__ = ["History"]
-
 MAX_STEPS = 100  # Steps of undo that are kept.
 
 

@@ -32,24 +32,6 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
-__all__ = [
-    "FIELDS",
-    "GROUP_FIELDS",
-    "Abscissa",
-    "Inputs",
-    "exact_text",
-    "fluid_table",
-    "from_case",
-    "in_unit",
-    "number_text",
-    "position",
-    "refuse_files",
-    "row_of",
-    "value_of",
-    "with_slider",
-    "with_text",
-]
-
 Abscissa = Literal["speed", "hersey"]
 
 FRICTION = "boundary_friction"
@@ -224,7 +206,6 @@ def _units_of(text: str) -> dict[str, str]:
     for key, entry in json.loads(text)["contact"].items():
         name = table.stands_for.get(key, key)
         if name in found and table.quantities[key].dimension == table.quantities[name].dimension:
-            entry = entry["value"] if isinstance(entry, dict) else entry
             given = _UNIT.fullmatch(entry.strip()) if isinstance(entry, str) else None
             if given is not None and given[2]:
                 found[name] = _known_unit(table.quantities[name], given[2])
@@ -238,7 +219,7 @@ def _known_unit(row: Input, unit: str) -> str:
 def from_case(case: Case) -> Inputs:
     """Return the inputs of a case, with the numbers of files, surfaces and presets that it names."""
     tables = {name: dict(table) if isinstance(table, dict) else table for name, table in case.tables.items()}
-    contact, geometry = tables["contact"], case.contact.groups.geometry
+    contact = tables["contact"]
     tables |= self_contained(case.law, case.tables, case.path.parent, case.contact.law)
     own: list[str] = []
     if "surface" in tables or hasattr(NAMED_LAWS.get(case.law), "coefficients"):
@@ -252,10 +233,6 @@ def from_case(case: Case) -> Inputs:
         tables["fluid"] = fluid_table(case.contact.fluid)
         tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
         own.append("viscosity")
-    if geometry == "point":
-        contact |= tables.pop("motion", {})
-    elif "slide_to_roll" in contact:
-        tables["motion"] = {"slide_to_roll": contact.pop("slide_to_roll")}
     for name in own:
         row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
         contact[name] = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value

@@ -18,8 +18,6 @@ from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs, refuse_files
 from stribeck.quantities.units import InputError, checked_word
 
-__all__ = ["MAX_PINS", "MAX_URL_LENGTH", "Opened", "check_length", "decode", "encode"]
-
 MAX_URL_LENGTH = 60_000  # Characters of an address that the server and all browsers take.
 MAX_PINS = 6  # Pinned contacts of a page.
 

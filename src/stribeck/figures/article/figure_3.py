@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style

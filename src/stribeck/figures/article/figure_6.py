@@ -9,7 +9,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.rough import boundary
 from stribeck.asymptotics.smooth import edge_layer
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report

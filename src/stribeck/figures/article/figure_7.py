@@ -10,7 +10,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.rough import transitions
 from stribeck.asymptotics.smooth import hydrodynamic
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import (
     CASES,

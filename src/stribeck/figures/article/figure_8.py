@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stribeck.asymptotics.rough import boundary
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report

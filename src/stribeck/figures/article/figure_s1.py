@@ -8,7 +8,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.rough import perturbation
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report

@@ -14,8 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import contact_law
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.cavities.fixed_cavity_length import solve_of_length
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import SeenFrom

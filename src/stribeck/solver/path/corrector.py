@@ -6,7 +6,7 @@ import math
 from collections import deque
 from dataclasses import replace
 
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators

@@ -14,9 +14,9 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far, log_cut_offs
 from stribeck.contacts.friction import Definition, sliding_part
+from stribeck.contacts.geometries import PointContact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.contacts.point import PointContact
 from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property

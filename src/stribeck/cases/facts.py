@@ -9,36 +9,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from stribeck.contacts.geometries import LINE
+from stribeck.contacts.parts import LAW_NUMBERS
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["FACTS", "ROWS", "Fact", "fact_values"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Fact(Input):
-    """One fact that checks ask for; a law of the contact may hold a number of its name already."""
+    """One fact that checks ask for and that is no number of a law."""
 
     zero: bool = True
 
 
-# The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
+# The facts that are numbers of nothing else. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
 ROWS = (
-    Fact(
-        name="pressure_viscosity",
-        label="pressure-viscosity coefficient",
-        dimension="pressure coefficient",
-        typical="20 1/GPa",
-        source="mineral oil 15 to 25, water below 1",
-    ),
-    Fact(
-        name="layer_thickness",
-        label="thickness of the soft layer",
-        dimension="length",
-        typical="2 mm",
-        source="rubber of a seal",
-    ),
     Fact(
         name="loss_tangent",
         label="loss tangent at the frequency U/a",
@@ -82,13 +68,6 @@ ROWS = (
         source="oil; water 0.02",
     ),
     Fact(
-        name="density",
-        label="density of the fluid",
-        dimension="density",
-        typical="870 kg/m^3",
-        source="oil; water 1000",
-    ),
-    Fact(
         name="work_of_adhesion",
         label="work of adhesion in the liquid",
         dimension="surface energy",
@@ -118,7 +97,11 @@ ROWS = (
     ),
 )
 
-FACTS = {row.name: row for row in ROWS}  # The facts by name
+# The facts by name, those first that a law of the contact may hold already, or a data sheet.
+FACTS = {
+    **{name: LAW_NUMBERS[name] for name in ("pressure_coefficient", "layer_thickness")},
+    **{row.name: row for row in (*ROWS, LINE.quantities["density"])},
+}
 
 
 def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
