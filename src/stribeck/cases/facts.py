@@ -23,7 +23,7 @@ class Fact(Input):
     zero: bool = True
 
 
-# The facts that are numbers of nothing else. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`.
+# The facts that are numbers of nothing else. A new one is a row here, used by a row of :data:`stribeck.checks.table.ROWS`.
 ROWS = (
     Fact(
         name="loss_tangent",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -45,15 +44,11 @@ def lazy_names(
             if law is not None:
                 return law
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}{_nearest(name, public)}")
+            # Of names that Python itself asks for nothing is near.
+            near = "" if name.startswith("_") else import_module("stribeck.quantities.keywords").nearest(name, public)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{f'; did you mean {near}?' if near else ''}")
         found = getattr(import_module(f"{root or package}.{modules[name]}"), name)
         setattr(sys.modules[package], name, found)
         return found
 
     return public, find, lambda: public
-
-
-def _nearest(name: str, public: Sequence[str]) -> str:
-    """Return the name that was probably meant, as the end of a sentence; nothing of names that Python itself asks for."""
-    near = [] if name.startswith("_") else difflib.get_close_matches(name, public, n=1)
-    return f"; did you mean {near[0]}?" if near else ""

@@ -203,7 +203,7 @@ POINT = OutputTable(
 
 OUTPUT_TABLES = {"line": LINE, "point": POINT}  # The observables by geometry
 
-NAMES, ABSOLUTE, OBSERVABLES, FILMS = LINE.names, LINE.absolute, LINE.listed, LINE.films  # Of the line
+NAMES, ABSOLUTE = LINE.names, LINE.absolute  # Of the line
 
 # Observables of the line with an estimated error for any model, in the order of every array of them.
 ALL_NAMES = (*NAMES, UPPER_DRAG.name, *(row.name for row in RUPTURE_ROWS))

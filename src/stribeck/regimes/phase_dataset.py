@@ -12,7 +12,7 @@ from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.datasets import import_xarray
-from stribeck.quantities.outputs import COLUMNS, GROUPS, OBSERVABLES
+from stribeck.quantities.outputs import COLUMNS, GROUPS, LINE
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
 from stribeck.solver.about import input_attributes
 
@@ -30,7 +30,7 @@ FLAGS = {
 
 LABELS = {
     **{name: COLUMNS[name][1] for name in ("friction", "friction_error", "contact_friction_share")},
-    **{name: OBSERVABLES[name][1] for name in ("fluid_load_share", "central_gap", "lambda_ratio", "error_estimate")},
+    **{name: LINE.listed[name][1] for name in ("fluid_load_share", "central_gap", "lambda_ratio", "error_estimate")},
     **{variable: f"speed at which {name}, on solved states" for variable, name in MARKS.items()},
     "speed_at_minimum": "speed of the minimum of friction, on solved states",
     "friction_at_minimum": "friction coefficient there",
