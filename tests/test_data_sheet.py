@@ -175,7 +175,7 @@ def test_errors_that_say_nothing_are_refused():
     for errors, sentence in (
         ({"rough": 0.1}, "no input of a contact"),
         ({"roughness": 0}, "must be a number such as 0.2"),
-        ({"roughness": "x %"}, "is not a number of per cent"),
+        ({"roughness": "x %"}, "the error of roughness in % = 'x' must be a bare number"),
     ):
         with pytest.raises(sb.InputError, match=sentence):
             sb.propagate(TRUE, errors)

@@ -264,7 +264,7 @@ def test_any_text_is_read_or_refused_with_a_sentence(tmp_path_factory, text):
 TABLES = {
     "unknown key": ({"fre": ["boundary_friction"]}, "fre", "did you mean free."),
     "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
-    "symbol": ({"free": ["mu0"]}, "'friction_coefficient'", "write boundary_friction."),
+    "symbol": ({"free": ["mu0"]}, "'mu0'", "write boundary_friction."),
     "speed": ({"free": ["speed"]}, "'speed'", "measured"),
     "twice": ({"free": ["boundary_friction", "boundary_friction"]}, "boundary_friction", "twice"),
     "none": ({"free": []}, "free = []", "list"),

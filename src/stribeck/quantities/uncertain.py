@@ -37,8 +37,8 @@ def split_error(name: str, value: Any, dimension: str, example: str = "") -> tup
 
 def relative_error(name: str, value: float, error: Any, dimension: str) -> float:
     """Return the error of a value over it, given as text (``"20 %"``, ``"0.2 um"``) or as a number in SI units."""
-    if isinstance(error, str) and error.strip().endswith("%"):
-        relative = _number(f"the error of {name}", error.strip().removesuffix("%"), "number") / 100
+    if isinstance(error, str) and error.endswith("%"):
+        relative = _number(f"the error of {name} in %", error.removesuffix("%").strip(), "number") / 100
     else:
         relative = _number(f"the error of {name}", error, dimension) / value if value else math.inf
     if not 0 < relative <= MAX_RELATIVE_ERROR:
