@@ -32,10 +32,10 @@ def split_error(name: str, value: Any, dimension: str, example: str = "") -> tup
         (f"{number} {unit}", f"{size} %") if last == "%" else (f"{number} {unit or last}", f"{size} {last or unit}")
     )
     known = _number(name, center, dimension, example)
-    return known, relative_error(name, known, error, dimension)
+    return known, relative_error(name, known, error, dimension, written=value)
 
 
-def relative_error(name: str, value: float, error: Any, dimension: str) -> float:
+def relative_error(name: str, value: float, error: Any, dimension: str, written: str | float | None = None) -> float:
     """Return the error of a value over it, given as text (``"20 %"``, ``"0.2 um"``) or as a number in SI units."""
     if isinstance(error, str) and error.endswith("%"):
         relative = _number(f"the error of {name} in %", error.removesuffix("%").strip(), "number") / 100
@@ -43,7 +43,7 @@ def relative_error(name: str, value: float, error: Any, dimension: str) -> float
         relative = _number(f"the error of {name}", error, dimension) / value if value else math.inf
     if not 0 < relative <= MAX_RELATIVE_ERROR:
         raise InputError(
-            f"{name} = {value:g} has an error of {format_percent(relative, 3)}; it must be positive and below "
+            f"{name} = {show(value if written is None else written)} has an error of {format_percent(relative, 3)}; it must be positive and below "
             f"{100 * MAX_RELATIVE_ERROR:.0f} % of a positive value."
         )
     return relative
