@@ -89,7 +89,7 @@ def test_what_is_wrong_with_a_table_is_told_with_its_name(tmp_path):
 
 
 def test_films_that_form_anew_have_the_columns_of_both_ends(tmp_path):
-    text = TEXT.replace('model = "exit"', 'model = "reform"\npressure = "-1 kPa"').replace('"5 mm/s", ', "")
+    text = TEXT.replace('model = "exit"', 'model = "reform"\ncavity_pressure = "-1 kPa"').replace('"5 mm/s", ', "")
     table = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     assert np.isfinite(table["exit_position"].values).all()
     assert (table["reformation_position"].values > table["exit_position"].values).all()
