@@ -43,7 +43,8 @@ def relative_error(name: str, value: float, error: Any, dimension: str, written:
         relative = _number(f"the error of {name}", error, dimension) / value if value else math.inf
     if not 0 < relative <= MAX_RELATIVE_ERROR:
         raise InputError(
-            f"{name} = {show(value if written is None else written)} has an error of {format_percent(relative, 3)}; it must be positive and below "
+            f"{name} = {show(value if written is None else written)} has an error of {format_percent(relative, 3)}; "
+            "it must be positive and below "
             f"{100 * MAX_RELATIVE_ERROR:.0f} % of a positive value."
         )
     return relative
