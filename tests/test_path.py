@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from stribeck import Outcome
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.series import radius
-from stribeck.solver.path.path import Expansion, Interval, follow
+from stribeck.solver.path.follow import follow
+from stribeck.solver.path.path import Expansion, Interval, SolvedPath
 
 pytestmark = pytest.mark.quick
 
@@ -27,6 +29,7 @@ def values(s):
 class Known:
     """The problem whose states are those functions."""
 
+    path = SolvedPath
     error: float = 0.0
     order: int = ORDER
     longest: float = math.inf
@@ -145,8 +148,8 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.path.path.MAX_PATH_STATES", 50)
-    monkeypatch.setattr("stribeck.solver.path.path.MAX_LOG_STEP", 0.2)
+    monkeypatch.setattr("stribeck.solver.path.follow.MAX_PATH_STATES", 50)
+    monkeypatch.setattr("stribeck.solver.path.follow.MAX_LOG_STEP", 0.2)
 
     class Doubted(Known):
         def checked_error(self, left, right, parts, values):
@@ -173,10 +176,10 @@ def test_an_interrupted_path_keeps_what_was_reported():
     assert [high for _, high in seen[1:]] == [low for low, _ in seen[:-1]]
 
 
-def test_values_along_a_path_have_derivatives_by_a_step_into_the_complex_plane():
+def test_values_along_a_path_bring_their_derivatives():
     path = follow(Known(), 3.0, -9.0, 1e-9)
     s = np.linspace(-8, 2, 41)
-    slope = path.smooth(s + 1e-20j)[:, 1].imag / 1e-20
+    slope = path.smooth(Dual(s, np.ones_like(s))).slope[:, 1]
     np.testing.assert_allclose(slope, 0.2 * np.exp(0.2 * s), rtol=1e-6)
 
 
@@ -205,8 +208,7 @@ def test_what_two_states_have_and_no_series_tells_between_them_is_wrong_without_
 def test_a_path_may_end_itself_and_go_on_from_both_ends():
     part = follow(Known(), 3.0, -9.0, 1e-6, until=lambda found: found.expansions[0].series[0, 0] > 0.9)
     assert -9.0 < part.coordinates[0] < 0.0 and part.outcome.ok
-    low = part.joined(follow(part.problem, part.expansions[0], -6.0, 1e-6))
-    both = low.joined(follow(part.problem, low.expansions[-1], 5.0, 1e-6))
+    both = follow(part.problem, follow(part.problem, part, -6.0, 1e-6), 5.0, 1e-6)
     assert (both.coordinates[0], both.coordinates[-1]) == (-6.0, 5.0) and (np.diff(both.coordinates) > 0).all()
     difference, errors = wrong(both, np.linspace(-6.0, 5.0, 301))
     assert (difference <= errors + ROUNDING).all()

@@ -194,7 +194,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
 
 
 def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Definition) -> tuple[Array, Array]:
-    """Return contact load share and viscous friction of states, by unchecked inputs that may be arrays, even complex.
+    """Return contact load share and viscous friction of states, by unchecked inputs that may be arrays and bring derivatives.
 
     Parameters
     ----------

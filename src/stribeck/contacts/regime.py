@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from stribeck._types import Array, Indices, Numbers
+from stribeck._types import Array, Indices
 from stribeck.quantities.units import to_si
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
@@ -25,15 +25,14 @@ HYDRODYNAMIC_CONTACT_SHARE = 0.1
 MIN_FRICTION = 1e-300  # Smallest friction in a quotient
 
 
-def friction_share(contact: Numbers, viscous: Numbers) -> Array:
+def friction_share(contact: Any, viscous: Any) -> Any:
     """Return the part of the friction that asperities cause, zero without friction.
 
     Parts count by their size: a substrate that the cylinder overtakes is dragged along, and both are negative; near pure
-    rolling they may have different signs.  Complex parts give derivatives by complex steps.
+    rolling they may have different signs.  Both may bring derivatives.
     """
-    size, other = (np.where(part.real < 0, -part, part) for part in map(np.asarray, (contact, viscous)))
-    total = size + other
-    return np.asarray(size / np.where(total.real <= MIN_FRICTION, MIN_FRICTION, total))
+    size = np.abs(contact)
+    return size / np.maximum(size + np.abs(viscous), MIN_FRICTION)
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:

@@ -17,9 +17,11 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.line_source import PathSource
 from stribeck.curves.source import Coefficients, Parts, Progress
 from stribeck.equations.point.observables import OBSERVABLES
+from stribeck.numerics.settings import MAX_LOG_STEP, WINDOW
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.hermite_path import HermitePath, interpolate_to
+from stribeck.solver.path.follow import follow
+from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.knots import BallKnots
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
@@ -132,6 +134,20 @@ def _has_closed_friction(coordinate: Coordinate, ends: Array) -> bool:
     return rule.is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
 
 
+def _fastest(problem: BallKnots, start: float, end: float) -> tuple[Knot | None, Outcome]:
+    """Return the first state from fast to slow that can be solved, and why none is faster."""
+    outcome, step = Outcome.CONVERGED, MAX_LOG_STEP / WINDOW
+    try:
+        while isinstance(found := problem.solve(start), Outcome):
+            outcome = found
+            if start - end <= step:
+                return None, outcome
+            start -= step
+    except KeyboardInterrupt:
+        return None, Outcome.INTERRUPTED
+    return found, outcome
+
+
 def ball_source(
     coordinate: Coordinate,
     values: Array,
@@ -146,13 +162,16 @@ def ball_source(
     ends = values[[0, -1]] if ends is None else ends
     is_closed = _has_closed_friction(coordinate, ends)
     problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta))
-    path = interpolate_to(problem, float(places[-1]), float(places[0]), rtol_of_states, Progress(places, on_point))
+    fastest, failure = _fastest(problem, float(places[-1]), float(places[0]))
+    path = HermitePath(problem, (), failure)
+    if fastest is not None:
+        path = follow(problem, fastest, float(places[0]), rtol_of_states, Progress(places, on_point))
     problem.release()
     if not len(path.coordinates):
         if problem.failure is not None:
             finish_point(problem.failure, coordinate.base if isinstance(coordinate.base, Contact) else None)
         raise SolveError(path.outcome, None, f"{describe(start)}: {path.outcome.value}")
-    source, found, missing = BallSource(coordinate, rtol, path), {}, path.outcome
+    source, found, missing = BallSource(coordinate, rtol, path), {}, failure if path.outcome.ok else path.outcome
     try:
         for value in coordinate.inside(values, source.ends)[::-1].tolist():
             [solution] = source.read(np.log([value])).solutions

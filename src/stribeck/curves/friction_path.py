@@ -17,6 +17,7 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.line_source import PathSource
 from stribeck.curves.regime import Transition, excess
 from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
+from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.events import Event, first_zero, least_by_slope
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
@@ -25,17 +26,16 @@ from stribeck.solver.solve_error import SolveError
 __all__ = ["FrictionPath", "vanishing"]
 
 LOCATION_LOG_TOLERANCE = 1e-9  # Change of ln(value) to which a landmark is located; errors of its state are added
-COMPLEX_STEP = 1e-20  # Imaginary step of a derivative, which cancels nothing
 LOG_STEP = 1e-3  # Step of ln(value) in derivatives by real differences
 MAX_POLISH_STATES = 4  # Most states solved for one landmark: each squares the error
 
 
-def vanishing(mark: Transition, fluid: Array, contact: Array, viscous: Array) -> Array:
+def vanishing(mark: Transition, fluid: Any, contact: Any, viscous: Any) -> Any:
     """Return what vanishes at a transition, from the fluid's load share and both parts of the friction."""
     # Of the minimum the friction itself: where it changes its sign its size is least.
     if mark is Transition.MINIMUM:
-        return np.asarray(contact + viscous)
-    return np.asarray(excess(mark, fluid, friction_share(contact, viscous)))
+        return contact + viscous
+    return excess(mark, fluid, friction_share(contact, viscous))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,9 +178,9 @@ class FrictionPath:
             return float(2 * friction.error / length + abs(after - before) / (2 * LOG_STEP))
         of_contact = abs(self.source.sliding * self.boundary_friction) * at.errors["contact_load_share"]
         errors = np.array([at.errors["fluid_load_share"], of_contact, friction.error - of_contact])
-        parts = np.array([[at.fluid_load_share], [friction.asperities], [friction.fluid]])
-        slopes = vanishing(mark, *(parts + COMPLEX_STEP * 1j * np.eye(3))).imag / COMPLEX_STEP
-        return float(np.abs(slopes) @ errors)
+        values = at.fluid_load_share, friction.asperities, friction.fluid
+        parts = (Dual(value, row) for value, row in zip(values, np.eye(3), strict=True))
+        return float(np.abs(slope_of(vanishing(mark, *parts))) @ errors)
 
     @one_blas_thread
     def continued(

@@ -15,6 +15,7 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.source import Coefficients, Parts, Source
 from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -31,7 +32,6 @@ from stribeck.solver.solve_error import SolveError, describe
 __all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource", "solved_at"]
 
 COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
-COMPLEX_STEP = 1e-20  # Imaginary step of a derivative, which cancels nothing
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
 MESH_LOG_DISTANCE = 0.5  # Distance of ln(value) up to which the mesh of one landmark's state is tried at another
 INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
@@ -240,17 +240,18 @@ class LineSource(PathSource):
                 errors[i, POSITION] = point.estimate.minimum_position
         return LineReadings(self, s, found, errors, self.rtol if rtol is None else rtol)
 
-    def parts(self, s: Array, coefficients: Coefficients) -> Parts:
-        """Return the load share of the fluid and both parts of the friction, at complex places too."""
+    def parts(self, s: Any, coefficients: Coefficients) -> Parts:
+        """Return the load share of the fluid and both parts of the friction, at places that may bring their derivatives."""
         boundary_friction, beta, definition = coefficients
         names = ("fluid_load_share", "contact_load_share", f"viscous_{definition}")
-        fluid, contact, viscous = self.path.smooth(s)[:, [ROW[name] for name in names]].T
+        found = self.path.smooth(s)
+        fluid, contact, viscous = (found[:, ROW[name]] for name in names)
         return fluid, self.sliding * boundary_friction * contact, beta * viscous
 
     def slopes(self, s: Array, coefficients: Coefficients) -> Array:
         """Return the derivatives of the friction by the coordinate."""
-        _, contact, viscous = self.parts(s + COMPLEX_STEP * 1j, coefficients)  # type: ignore[arg-type]
-        return np.asarray((contact + viscous).imag / COMPLEX_STEP)
+        _, contact, viscous = self.parts(Dual(s, np.ones_like(s)), coefficients)
+        return np.asarray(slope_of(contact + viscous))
 
     def accepted(self, rtol: float | None) -> float:
         """Return the error of the observables up to which a landmark is read off."""

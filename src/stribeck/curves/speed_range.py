@@ -16,12 +16,14 @@ from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.events import first_zero
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
 from stribeck.solver.neighbours import Neighbours
+from stribeck.solver.path.follow import follow
 from stribeck.solver.path.line_path import LineProblem
-from stribeck.solver.path.path import Expansion, SolvedPath, follow
+from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.point.solution import solution_of
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solve_error import SolveError, describe
@@ -53,8 +55,8 @@ LONGEST_EXTENSION = 2
 COARSE = 2e-4
 """Tolerance of a curve that is followed for its ends alone."""
 
-LOCATED, STEP = 1e-6, 1e-20
-"""Tolerance of the start of the plateau, in the logarithm of the speed; step into the complex plane for a derivative."""
+LOCATED = 1e-6
+"""Tolerance of the start of the plateau, in the logarithm of the speed."""
 
 REACH, PLACES = 8.0, 161
 """Half-widths within which asperities count, of a contact that the film widens, and number of places there."""
@@ -69,20 +71,19 @@ def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
     law = contact_law(groups)
     x = np.linspace(-REACH, REACH, PLACES)
 
-    def part(log_speed: float) -> float:
+    def above(log_speed: float) -> float:
         film = replace(groups, speed=math.exp(log_speed), roughness=0.0, model=BASE_MODEL, law=None)
         gap = float(hydrodynamic.central_gap.function(film))
         wide = x * math.sqrt(1 + gap)
         pressure = law.pressure(gap + hertz.gap(wide))
         share = 0.5 * (pressure[1:] + pressure[:-1]) @ np.diff(wide) / LOAD
         contact = (boundary_friction or 1.0) * min(1.0, float(share))
-        return contact / (contact + float(hydrodynamic.friction.function(film, beta)) + 1e-300)
+        return contact / (contact + float(hydrodynamic.friction.function(film, beta)) + 1e-300) - BRANCH
 
-    low, high = np.log(SPEEDS).tolist()
-    while high - low > 0.1:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if part(middle) > BRANCH else (low, middle)
-    return BEYOND * math.exp(high)
+    ends = np.log(SPEEDS)
+    values = np.array([above(end) for end in ends.tolist()])
+    event = first_zero(above, ends, values, LOCATED)
+    return BEYOND * math.exp(ends[int(values[-1] > 0)] if event is None else event.place)
 
 
 def grown(
@@ -103,8 +104,8 @@ def grown(
         return height(float(here.series[1, share]) if here.order else math.inf, here.series[0])
 
     def at(s: float) -> float:
-        row = path.smooth(np.array([s + STEP * 1j]))[0]
-        return height(float(row[share].imag / STEP), row.real)
+        found = path.smooth(Dual(np.array([s]), np.ones(1)))
+        return height(float(found.slope[0, share]), found.value[0])
 
     path = follow(problem, start, bottom, problem.tolerance, on_interval, until=lambda path: of_state(path.expansions[0]) < 0)
     if not path.outcome.ok:
@@ -114,12 +115,12 @@ def grown(
     margin = math.log(BELOW)
     low = max(bottom, below - margin)
     if low < path.coordinates[0]:
-        path = path.joined(follow(problem, path.expansions[0], low, problem.tolerance, on_interval))
+        path = follow(problem, path, low, problem.tolerance, on_interval)
     for _ in range(LONGEST_EXTENSION):
         if not path.outcome.ok or contact_part(path.expansions[-1].series[0]) < 0.1 * BRANCH:
             break
         end = float(path.coordinates[-1]) + margin
-        path = path.joined(follow(problem, path.expansions[-1], end, problem.tolerance, on_interval))
+        path = follow(problem, path, end, problem.tolerance, on_interval)
     return path, max(low, float(path.coordinates[0]))
 
 

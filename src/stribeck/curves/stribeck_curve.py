@@ -30,8 +30,9 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.reforming_line import line_problem
+from stribeck.solver.path.follow import follow
 from stribeck.solver.path.line_path import LineProblem
-from stribeck.solver.path.path import Expansion, SolvedPath, follow
+from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, finish, with_law
 from stribeck.solver.solve_error import SolveError, describe

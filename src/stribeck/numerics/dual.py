@@ -86,6 +86,10 @@ class Dual:
         value = other / self.value
         return Dual(value, -value / self.value * self.slope)
 
+    def __matmul__(self, matrix: Array) -> Dual:
+        """Return the product with a matrix of numbers; the derivative has the axes of the value."""
+        return Dual(self.value @ matrix, self.slope @ matrix)
+
     def __pow__(self, exponent: Any) -> Dual:
         """Return the power; an exponent without a derivative."""
         return np.power(self, exponent)  # type: ignore[no-any-return, call-overload]

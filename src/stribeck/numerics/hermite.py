@@ -14,10 +14,12 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.numerics.dual import Dual
 
 __all__ = [
     "chebyshev_basis",
@@ -99,18 +101,20 @@ def chebyshev_form(values: Array) -> Array:
     return np.asarray(_from_nodes(len(values)) @ values)
 
 
-def chebyshev_basis(tau: Array, count: int) -> Array:
-    """Return the first ``count`` Chebyshev polynomials at places from 0 to 1, or complex, shape (len(tau), count)."""
-    x = 2.0 * tau - 1.0
-    if not np.iscomplexobj(x):
-        return np.asarray(np.cos(np.arccos(np.clip(x, -1.0, 1.0))[:, None] * np.arange(count)))
-    found = []  # complex places come one by one: numbers are faster than arrays of one
-    for each in x.tolist():
-        row = [1.0, each]
-        for _ in range(2, count):
-            row.append(2.0 * each * row[-1] - row[-2])
-        found.append(row[:count])
-    return np.array(found)
+@lru_cache(maxsize=64)
+def _chebyshev_slopes(count: int) -> Array:
+    """Return the matrix from the first Chebyshev polynomials to their derivatives by the place from 0 to 1."""
+    slopes = np.zeros((count, count))
+    slopes[: count - 1] = 2.0 * np.polynomial.chebyshev.chebder(np.eye(count))
+    return slopes
+
+
+def chebyshev_basis(tau: Any, count: int) -> Any:
+    """Return the first ``count`` Chebyshev polynomials at places from 0 to 1, shape (len(tau), count)."""
+    if isinstance(tau, Dual):
+        basis = chebyshev_basis(tau.value, count)
+        return Dual(basis, np.reshape(tau.slope, (-1, 1)) * (basis @ _chebyshev_slopes(count)))
+    return np.cos(np.arccos(np.clip(2.0 * tau - 1.0, -1.0, 1.0))[:, None] * np.arange(count))
 
 
 def weights_through(nodes: Array, x: Array) -> tuple[Array, Array]:

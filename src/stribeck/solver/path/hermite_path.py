@@ -8,8 +8,8 @@ the four nearest, which is larger.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,8 +19,6 @@ from stribeck.numerics.hermite import weights_through
 from stribeck.numerics.settings import (
     INNER_PLACES,
     MAX_LOG_STEP,
-    MAX_PATH_STATES,
-    MIN_LOG_STEP,
     SAFETY,
     SHARE,
     STEP_GROWTH,
@@ -28,8 +26,9 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.solver.path.follow import Followed, Path
 
-__all__ = ["HermitePath", "Knot", "KnotProblem", "interpolate_to"]
+__all__ = ["HermitePath", "Knot", "KnotProblem"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +42,7 @@ class Knot:
     state: Any
 
 
-class KnotProblem(Protocol):
+class KnotProblem(Followed, Protocol):
     """The states of a path."""
 
     @property
@@ -62,9 +61,6 @@ class KnotProblem(Protocol):
     def controlled(self) -> Flags:
         """Which observables the tolerance holds for."""
 
-    def solve(self, s: float) -> Knot | Outcome:
-        """Return the state at a coordinate, or why there is none."""
-
     def units(self, s: Array) -> Array:
         """Return what observables are divided by before they are interpolated, shape (len(s), n)."""
 
@@ -73,17 +69,12 @@ class KnotProblem(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class HermitePath:
+class HermitePath(Path):
     """Solved states along a path, ascending, what lies between them, and how the path ended."""
 
     problem: Any  # A :class:`KnotProblem`, and what else it offers to who made it
     knots: tuple[Knot, ...]
     outcome: Outcome
-
-    @cached_property
-    def coordinates(self) -> Array:
-        """Where the solved states are."""
-        return np.array([knot.coordinate for knot in self.knots])
 
     def _propagated(self, first: int, last: int, s: Array) -> Array:
         """Return what errors of states ``first`` to ``last`` leave at places, in units of the scales, shape (len(s), n)."""
@@ -162,30 +153,42 @@ class HermitePath:
             errors[where == k] += self._propagated(*self._window(k, WINDOW), s[where == k])
         return found, errors
 
+    @classmethod
+    def of(cls, problem: KnotProblem, states: Sequence[Knot], outcome: Outcome) -> HermitePath:
+        """Return the path of no state, or of one."""
+        return cls(problem, tuple(states), outcome)
+
     @property
     def expansions(self) -> tuple[Knot, ...]:
         """The solved states."""
         return self.knots
 
-    def continued(
-        self,
-        end: float,
-        rtol: float,
-        on_interval: Callable[[float, float], object] | None = None,
-        until: Callable[[HermitePath], bool] | None = None,
-    ) -> HermitePath:
-        """Return the path from the nearer end of this one to ``end``, or as far as ``until`` holds of it."""
-        here = min(self.knots[0], self.knots[-1], key=lambda one: abs(one.coordinate - end))
-        return interpolate_to(self.problem, here.coordinate, end, rtol, on_interval, (here,), until)
+    def with_state(self, new: Knot) -> HermitePath:
+        """Return the path with one more state, beyond its ends or between others."""
+        return replace(self, knots=tuple(sorted([*self.knots, new], key=lambda knot: knot.coordinate)))
 
-    def places(self, parts: Array) -> Array:
-        """Return coordinates at parts of all intervals, and the last one."""
+    def step_length(self, upwards: bool, rtol: float) -> float:
+        """Return the step after which the last interval with states on both sides would have its share of the error."""
         lengths = np.diff(self.coordinates)
-        return np.append((self.coordinates[:-1, None] + parts * lengths[:, None]).ravel(), self.coordinates[-1])
+        if len(self.knots) < WINDOW:
+            return float(min(MAX_LOG_STEP / WINDOW, lengths.min(initial=math.inf)))
+        k = len(lengths) - 2 if upwards else 1
+        excess = self.excess(k, rtol)
+        # A shorter step costs less than an interval that is halved.
+        growth = (SHARE / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else STEP_GROWTH
+        return float(lengths[k]) * min(max(growth, 1 / STEP_GROWTH), STEP_GROWTH)
 
-    def nearest(self, s: float) -> Knot:
-        """Return the solved state that is nearest to a coordinate."""
-        return self.knots[int(np.argmin(np.abs(self.coordinates - s)))]
+    def poor(self, rtol: float, is_whole: bool) -> list[int]:
+        """Return the numbers of the intervals whose error is larger than allowed, once all states around them are there."""
+        return [k for k in range(len(self.knots) - 1) if self.excess(k, rtol) > 1.0] if is_whole else []
+
+    def on_branch(self, upwards: bool) -> HermitePath:
+        """Return the path: states on two branches lie too far apart to be interpolated, and show so."""
+        return self
+
+    def ended(self, outcome: Outcome) -> HermitePath:
+        """Return the path with how it ended."""
+        return replace(self, outcome=outcome)
 
     def excess(self, k: int, rtol: float) -> float:
         """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""
@@ -196,70 +199,3 @@ class HermitePath:
 def _shape(parts: Array) -> Array:
     """Return how the error of an interpolation with slopes runs between two states, at most one."""
     return np.asarray(16.0 * (parts * (1.0 - parts)) ** 2)
-
-
-def interpolate_to(
-    problem: KnotProblem,
-    start: float,
-    end: float,
-    rtol: float,
-    on_interval: Callable[[float, float], object] | None = None,
-    known: Sequence[Knot] = (),
-    until: Callable[[HermitePath], bool] | None = None,
-) -> HermitePath:
-    """Return the path between two coordinates, or as far as ``until`` holds of it; ``known`` are states on it."""
-    knots = {knot.coordinate: knot for knot in known}
-    outcome = Outcome.CONVERGED
-
-    def path() -> HermitePath:
-        return HermitePath(problem, tuple(knots[s] for s in sorted(knots)), outcome)
-
-    try:
-        sign = math.copysign(1.0, end - start)
-        here, step = start, MAX_LOG_STEP / WINDOW
-        while here not in knots:  # begin at the first state that can be solved
-            first = problem.solve(here)
-            if not isinstance(first, Outcome):
-                knots[here] = first
-            elif abs(end - here) <= step:
-                return HermitePath(problem, (), first)
-            else:
-                outcome, here = first, here + sign * step
-        while (left := abs(end - here)) > 0 and not (until is not None and until(path())):
-            step = min(step, MAX_LOG_STEP, left)
-            there = end if step == left else here + sign * step
-            new = knots.get(there) or problem.solve(there)
-            if isinstance(new, Outcome):
-                step /= STEP_GROWTH
-                if step < MIN_LOG_STEP:
-                    outcome = new
-                    break
-                continue
-            knots[there] = new
-            if on_interval is not None:
-                on_interval(min(here, there), max(here, there))
-            here = there
-            if len(knots) >= WINDOW:
-                now = path()
-                k = len(now.knots) - 3 if sign > 0 else 1  # the last interval with states on both sides
-                excess = now.excess(k, rtol)
-                # A shorter step costs less than an interval that is halved.
-                growth = (SHARE / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else STEP_GROWTH
-                growth = min(max(growth, 1 / STEP_GROWTH), STEP_GROWTH)
-                step = float(abs(now.coordinates[k + 1] - now.coordinates[k])) * growth
-        while len(knots) < MAX_PATH_STATES:
-            now = path()
-            lengths = np.diff(now.coordinates)
-            wrong = [k for k in range(len(lengths)) if lengths[k] > 2 * MIN_LOG_STEP and now.excess(k, rtol) > 1.0]
-            if not wrong:
-                break
-            for k in wrong[:: int(-sign)]:
-                middle = float(0.5 * (now.coordinates[k] + now.coordinates[k + 1]))
-                new = problem.solve(middle)
-                if not isinstance(new, Outcome):
-                    knots[middle] = new
-            if len(knots) == len(now.knots):
-                break
-    except KeyboardInterrupt:
-        outcome = Outcome.INTERRUPTED
-    return path()

@@ -48,7 +48,7 @@ from stribeck.solver.path.expansion import (
     residuals,
 )
 from stribeck.solver.path.interpolation import LinePoint, between, minimum_between, on
-from stribeck.solver.path.path import Expansion
+from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
 
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
@@ -60,6 +60,8 @@ UNCONTROLLED_COLUMNS = [POSITION, ROW["exit_position"], ROW["reformation_positio
 
 class LineProblem:
     """The states of the line at the groups ``groups_at(s)``, whose logarithms change along ``direction``."""
+
+    path = SolvedPath
 
     def __init__(
         self,
@@ -113,7 +115,14 @@ class LineProblem:
         return np.append(values[:, :1].min(axis=0), np.ones(values.shape[1] - 1)) if values.size else np.empty(0)
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.path.Problem`."""
+        """Return the expanded state at ``s``, from no, one or two neighbours ``near``, or the outcome of the failure."""
+        found = self._solve(s, near)
+        if isinstance(found, Outcome) and len(near) > 1 and found is not Outcome.ROUNDING:
+            found = self._solve(s, [max(near, key=lambda end: end.radius)])  # a series may be good on one side alone
+        return found
+
+    def _solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expanded state at ``s`` from all neighbours, or the outcome of the failure."""
         groups = self.groups_at(s)
         refined: RefinedState | None
         if near and same_unknowns(*near):

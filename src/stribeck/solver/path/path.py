@@ -12,18 +12,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.numerics.settings import (
     INNER_PLACES,
-    MAX_LOG_STEP,
-    MAX_PATH_STATES,
-    MIN_LOG_STEP,
     NEGLIGIBLE,
     SAFETY,
     SERIES_ORDER,
@@ -31,6 +29,7 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.solver.path.follow import Followed, Path
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +54,8 @@ def change_ratio(left: Expansion, right: Expansion) -> float:
     return (right.coordinate - left.coordinate) ** 2 / (left.radius * right.radius)
 
 
-class Problem(Protocol):
-    """The states along a path: how each is solved, scaled, checked and read."""
+class Problem(Followed, Protocol):
+    """The states along a path of Taylor series: how each is solved, scaled, checked and read."""
 
     @property
     def controlled(self) -> Flags:
@@ -65,9 +64,6 @@ class Problem(Protocol):
     @property
     def sign_changing(self) -> Flags:
         """Which observables may cross zero, so that their errors between states are absolute."""
-
-    def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, from no, one or two neighbours ``near``, or the outcome of the failure."""
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables at coordinates s, shape (len(s), n)."""
@@ -93,6 +89,7 @@ class Interval:
     problem: Problem
     left: Expansion
     right: Expansion
+    before: float = math.inf  # Largest error of the interval of which this is half
 
     @property
     def length(self) -> float:
@@ -138,6 +135,7 @@ class Interval:
 
         def values() -> Array:
             where = np.zeros(len(places), dtype=int)
+            found: Array
             found, _, basis = self._alone.smooth(where, places)
             self._alone.read(found, where, places, basis)
             return found
@@ -162,6 +160,39 @@ class Interval:
         """Observables and their errors at the checked places."""
         return self.at(chebyshev_nodes(SERIES_ORDER))
 
+    @cached_property
+    def largest_error(self) -> float:
+        """The largest error of the observables that the tolerance limits."""
+        return float(np.nanmax(self.values_at_checks[1][:, self.problem.controlled]))
+
+    @cached_property
+    def _beyond_ends(self) -> Array:
+        """How far errors exceed those of the ends, which do not fall with the length."""
+        values, errors = self.values_at_checks
+        scales = self.problem.scales(values, self.left.coordinate + chebyshev_nodes(SERIES_ORDER) * self.length)
+        with np.errstate(over="ignore"):  # series that lead to no number count as wrong
+            return np.asarray(errors - np.where(self.problem.sign_changing, self.at_ends[1] / scales, self.at_ends[0]))
+
+    def is_poor(self, rtol: float) -> bool:
+        """Return whether it does not interpolate within the tolerance, and a shorter interval might."""
+        exists = [np.isfinite(one.series).all(axis=0) for one in (self.left, self.right)]
+        if (exists[0] != exists[1]).any():  # something exists on one side alone
+            return True
+        wrong = (self.values_at_checks[1] > (1 - NEGLIGIBLE) * rtol) & (self._beyond_ends > NEGLIGIBLE * rtol)
+        if not wrong[:, self.problem.controlled].any():
+            return False
+        # Of rounding, or of a film that ruptures, a shorter interval has no less.
+        return not self.largest_error > self.before / STEP_GROWTH
+
+    @cached_property
+    def joins_two_branches(self) -> bool:
+        """Whether the interpolant leaves the range of both ends, which then lie on two branches."""
+        ends = np.stack([self.left.series[0], self.right.series[0]])
+        scales = self.problem.scales(ends, np.array([self.left.coordinate, self.right.coordinate])).max(axis=0)
+        values, errors = self.values_at_checks
+        far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > scales
+        return bool((far & (errors > 1))[:, self.problem.controlled].any())
+
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
         return self._alone.at(np.zeros(len(parts), dtype=int), parts)
@@ -182,22 +213,28 @@ class _Pieces:
         self.lengths = np.array([one.length for one in intervals])
         self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
 
-    def smooth(self, where: Array, parts: Array) -> tuple[Array, Array, Array]:
-        """Return observables at parts of numbered intervals, their interpolation errors, and the Chebyshev basis."""
-        basis = chebyshev_basis(parts, self.degree)
-        both = np.empty((len(parts), 2 * self.count), dtype=parts.dtype)
+    def _evaluated(self, where: Array, basis: Array) -> Array:
+        """Return the polynomials of numbered intervals, given those of Chebyshev or their derivatives."""
+        found = np.empty((len(basis), 2 * self.count))
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
             mine, form = slice(None) if len(where) == 1 else where == k, self.forms[k]
-            both[mine] = basis[mine, : len(form)] @ form
+            found[mine] = basis[mine, : len(form)] @ form
+        return found
+
+    def smooth(self, where: Array, parts: Any) -> tuple[Any, Array, Any]:
+        """Return observables at parts of numbered intervals, their interpolation errors, and the Chebyshev basis."""
+        basis, at = chebyshev_basis(parts, self.degree), value_of(parts)
+        both: Any = self._evaluated(where, value_of(basis))
+        if isinstance(basis, Dual):
+            both = Dual(both, self._evaluated(where, basis.slope))
         found = both[:, : self.count]
-        missed = self.interpolation_error[where] * ((parts.real * (1 - parts.real)) ** self.orders[where])[:, None]
-        if self.logs:  # a share below its error is interpolated by its logarithm, which keeps sign and digits
-            shares, limit = found[:, self.logs], missed[:, self.logs] / NEGLIGIBLE
-            lost = shares.real < limit
-            if lost.any():
-                with np.errstate(all="ignore"):
-                    tiny = np.exp(both[:, [self.count + column for column in self.logs]])
-                found[:, self.logs] = np.where(lost & (np.abs(tiny) < limit), tiny, shares)
+        missed = self.interpolation_error[where] * ((at * (1 - at)) ** self.orders[where])[:, None]
+        limit = missed / NEGLIGIBLE
+        if (value_of(found) < limit)[:, self.logs].any():
+            # A share below its error is interpolated by its logarithm, which keeps sign and digits.
+            with np.errstate(all="ignore"):
+                tiny = np.exp(both[:, self.count :])
+                found = np.where((found < limit) & (tiny < limit), tiny, found)
         return found, missed, basis
 
     @cached_property
@@ -241,7 +278,7 @@ class _Pieces:
 
 
 @dataclass(frozen=True, eq=False)
-class SolvedPath:
+class SolvedPath(Path):
     """The intervals of a path in ascending order, and its outcome."""
 
     problem: Problem  # What was followed
@@ -254,148 +291,67 @@ class SolvedPath:
         found = [self.intervals[0].left] if self.intervals else []
         return (*found, *(one.right for one in self.intervals if one.right is not one.left))
 
-    @cached_property
-    def coordinates(self) -> Array:
-        """Where the solved states are."""
-        return np.array([one.coordinate for one in self.expansions])
+    @classmethod
+    def of(cls, problem: Problem, states: Sequence[Expansion], outcome: Outcome) -> SolvedPath:
+        """Return the path of no state, or of one."""
+        return cls(problem, tuple(Interval(problem, one, one) for one in states), outcome)
 
-    def joined(self, other: SolvedPath) -> SolvedPath:
-        """Return the path continued by another one from one of its ends."""
-        more = tuple(one for one in other.intervals if one.length > 0)
-        mine = tuple(one for one in self.intervals if one.length > 0 or not more)
-        return SolvedPath(self.problem, _sorted_intervals([*mine, *more]), other.outcome)
+    def with_state(self, new: Expansion) -> SolvedPath:
+        """Return the path with one more state, beyond its ends or between others."""
+        states, problem = self.expansions, self.problem
+        if not states:
+            return self.of(problem, [new], self.outcome)
+        known = [one for one in self.intervals if one.length > 0]
+        k = int(np.searchsorted(self.coordinates, new.coordinate))
+        if k == 0:
+            known.insert(0, Interval(problem, new, states[0]))
+        elif k == len(states):
+            known.append(Interval(problem, states[-1], new))
+        else:
+            before = known[k - 1].largest_error
+            known[k - 1 : k] = [Interval(problem, states[k - 1], new, before), Interval(problem, new, states[k], before)]
+        return replace(self, intervals=tuple(known))
+
+    def step_length(self, upwards: bool, rtol: float) -> float:
+        """Return the longest step on which the coefficients should interpolate within the tolerance."""
+        here = self.expansions[-1 if upwards else 0]
+        return here.radius * 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(here.order, 1)))
+
+    def poor(self, rtol: float, is_whole: bool) -> list[int]:
+        """Return the numbers of the intervals that do not interpolate within the tolerance, and of which half might."""
+        return [k for k, one in enumerate(self.intervals) if one.length > 0 and one.is_poor(rtol)]
+
+    def on_branch(self, upwards: bool) -> SolvedPath:
+        """Return the path as far as no interval joins two branches, from where it began."""
+        lost = [k for k, one in enumerate(self.intervals) if one.length > 0 and one.joins_two_branches]
+        if not lost:
+            return self
+        kept = self.intervals[: lost[0]] if upwards else self.intervals[lost[-1] + 1 :]
+        begin = self.expansions[0 if upwards else -1]
+        return replace(self, intervals=kept or (Interval(self.problem, begin, begin),))
+
+    def ended(self, outcome: Outcome) -> SolvedPath:
+        """Return the path with how it ended."""
+        return replace(self, outcome=outcome)
 
     @cached_property
     def _pieces(self) -> _Pieces:
         return _Pieces(self.intervals)
 
-    def continued(
-        self,
-        end: float,
-        rtol: float,
-        on_interval: Callable[[float, float], object] | None = None,
-        until: Callable[[SolvedPath], bool] | None = None,
-    ) -> SolvedPath:
-        """Return the path from the nearer end of this one to ``end``, or as far as ``until`` holds of it."""
-        here = min(self.expansions[0], self.expansions[-1], key=lambda one: abs(one.coordinate - end))
-        return follow(self.problem, here, end, rtol, on_interval, until)
-
-    def places(self, parts: Array) -> Array:
-        """Return coordinates at parts of all intervals, and the last one."""
-        inside = [interval.left.coordinate + parts * interval.length for interval in self.intervals]
-        return np.append(np.concatenate(inside), self.coordinates[-1])
-
     def interval_of(self, s: Array) -> Array:
         """Return the number of the interval of each coordinate."""
         return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
 
-    def _parts(self, s: Array) -> tuple[Array, Array]:
+    def _parts(self, s: Any) -> tuple[Array, Any]:
         """Return the interval of each coordinate, and its place in it."""
-        where = self.interval_of(s.real)
+        where = self.interval_of(value_of(s))
         return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], np.finfo(float).tiny)
 
-    def smooth(self, s: Array) -> Array:
-        """Return observables with a series, without errors, at real or complex coordinates."""
+    def smooth(self, s: Any) -> Any:
+        """Return observables with a series, without errors, at coordinates that may bring their derivatives."""
         return self._pieces.smooth(*self._parts(s))[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, shape (len(s), n), and their errors in units of the scales."""
         where, parts = self._parts(s)
         return self._pieces.at(where, np.clip(parts, 0.0, 1.0))
-
-
-def follow(
-    problem: Problem,
-    start: float | Expansion,
-    end: float,
-    rtol: float,
-    on_interval: Callable[[float, float], object] | None = None,
-    until: Callable[[SolvedPath], bool] | None = None,
-) -> SolvedPath:
-    """Return the path between ``start`` and ``end``, or as far as ``until`` holds of it."""
-    found: list[Interval] = []  # in the order of the march
-    alone: tuple[Interval, ...] = ()
-    outcome = Outcome.CONVERGED
-    try:
-        here = start if isinstance(start, Expansion) else problem.solve(start, [])
-        if isinstance(here, Outcome):
-            return SolvedPath(problem, (), here)
-        alone = (Interval(problem, here, here),)
-        upwards = end > here.coordinate
-        while (left := abs(here.coordinate - end)) > 0:
-            if until is not None and until(SolvedPath(problem, _sorted_intervals(found) or alone, outcome)):
-                break
-            if len(found) >= MAX_PATH_STATES:
-                return SolvedPath(problem, _sorted_intervals(found), Outcome.STATE_LIMIT)
-            step = min(left, MAX_LOG_STEP, max(MIN_LOG_STEP, _step_length(here, rtol)))
-            if left < 2 * step:  # two equal steps rather than a long and a short one
-                step = left if left <= step else 0.5 * left
-            while isinstance(new := problem.solve(_next_coordinate(here, end, step if upwards else -step), [here]), Outcome):
-                step /= STEP_GROWTH
-                if step < MIN_LOG_STEP:
-                    return SolvedPath(problem, _sorted_intervals(found) or alone, new)
-            low, high = (here, new) if upwards else (new, here)
-            parts = _split_until_accurate(Interval(problem, low, high), rtol)
-            for part in parts if upwards else parts[::-1]:
-                if _joins_two_branches(part):
-                    return SolvedPath(problem, _sorted_intervals(found) or alone, Outcome.PATH_LOST)
-                found.append(part)
-            if on_interval is not None:
-                on_interval(low.coordinate, high.coordinate)
-            here = new
-    except KeyboardInterrupt:
-        outcome = Outcome.INTERRUPTED
-    return SolvedPath(problem, _sorted_intervals(found) or alone, outcome)
-
-
-def _joins_two_branches(interval: Interval) -> bool:
-    """Return whether the interpolant leaves the range of both ends, which then lie on two branches."""
-    ends = np.stack([interval.left.series[0], interval.right.series[0]])
-    scales = interval.problem.scales(ends, np.array([interval.left.coordinate, interval.right.coordinate])).max(axis=0)
-    values, errors = interval.values_at_checks
-    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > scales
-    return bool((far & (errors > 1))[:, interval.problem.controlled].any())
-
-
-def _next_coordinate(here: Expansion, end: float, step: float) -> float:
-    """Return the coordinate one step further, or exactly the end."""
-    return end if abs(step) == abs(here.coordinate - end) else here.coordinate + step
-
-
-def _sorted_intervals(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
-    return tuple(sorted(intervals, key=lambda one: one.left.coordinate))
-
-
-def _step_length(here: Expansion, rtol: float) -> float:
-    """Return the longest step on which the coefficients should interpolate within the tolerance."""
-    order = here.order
-    return here.radius * 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(order, 1)))
-
-
-def _split_until_accurate(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
-    """Return an interval split until it interpolates within the tolerance, ascending."""
-    if interval.length < 2 * MIN_LOG_STEP:
-        return [interval]
-    problem, left, right = interval.problem, interval.left, interval.right
-    exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
-    ends_between = bool((exists[0] != exists[1]).any())  # something exists on one side alone
-    values, errors = interval.values_at_checks
-    # The errors of the ends do not fall with the length.
-    scales = problem.scales(values, left.coordinate + chebyshev_nodes(SERIES_ORDER) * interval.length)
-    with np.errstate(over="ignore"):  # series that lead to no number count as wrong
-        of_ends = np.where(problem.sign_changing, interval.at_ends[1] / scales, interval.at_ends[0])
-    excess = errors - of_ends > NEGLIGIBLE * rtol
-    if not ends_between and not ((errors > (1 - NEGLIGIBLE) * rtol) & excess)[:, problem.controlled].any():
-        return [interval]
-    worst = float(np.nanmax(errors[:, problem.controlled]))
-    if worst > before / STEP_GROWTH and not ends_between:  # rounding, or a film that ruptures: no shorter interval has less
-        return [interval]
-    at = 0.5 * (left.coordinate + right.coordinate)
-    for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good on one side alone
-        middle = problem.solve(at, near)
-        if not isinstance(middle, Outcome) or middle is Outcome.ROUNDING:
-            break
-    if isinstance(middle, Outcome):
-        return [interval]
-    halves = Interval(problem, left, middle), Interval(problem, middle, right)
-    return [part for half in halves for part in _split_until_accurate(half, rtol, worst)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -40,6 +40,7 @@ CutOffs = Callable[[float], tuple[float, float]]
 class BallKnots:
     """The states of a ball along one coordinate: ``groups_at(s)`` gives the groups there."""
 
+    path = HermitePath
     names = COLUMNS
     shares = SHARES
     positive = np.isin(COLUMNS, POSITIVE)
@@ -89,7 +90,7 @@ class BallKnots:
 
         return measured
 
-    def solve(self, s: float) -> Knot | Outcome:
+    def solve(self, s: float, near: Sequence[Knot] = ()) -> Knot | Outcome:
         """Return the state at a coordinate with its slopes."""
         state: PointState = self.neighbours.at(self.groups_at(s))
         if not state.outcome.ok:
