@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.settings import MAX_LOG_STEP, MAX_PATH_STATES, MIN_LOG_STEP, STEP_GROWTH
+from stribeck.numerics.settings import HALF_DIGITS, MAX_LOG_STEP, MAX_PATH_STATES, MIN_LOG_STEP, STEP_GROWTH
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
@@ -126,7 +126,7 @@ def follow(
                 break
             step = min(left, MAX_LOG_STEP, max(MIN_LOG_STEP, path.step_length(upwards, rtol)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
-                step = left if left <= step else 0.5 * left
+                step = left if left <= (1 + HALF_DIGITS) * step else 0.5 * left
             while isinstance(new := problem.solve(_next_coordinate(here, end, step, upwards), [here]), Outcome):
                 step /= STEP_GROWTH
                 if step < MIN_LOG_STEP:
