@@ -61,7 +61,7 @@ print(*fit.notes, sep="\n")
 # Free `alpha` beside the roughness: friction depends on their quotient alone. The fit says so instead of printing a number.
 
 # %%
-loose = sb.fit(data, case, free=["mu0", "h_rms", "alpha"])
+loose = sb.fit(data, case, free=["boundary_friction", "roughness", "alpha"])
 for weak in loose.undetermined:
     print(weak.message)
 assert loose.undetermined and loose["alpha"].interval_95 == (0.0, float("inf"))
