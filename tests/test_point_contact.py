@@ -53,16 +53,6 @@ def test_the_groups_of_a_ball_are_quotients_of_its_scales():
 
 
 @pytest.mark.quick
-def test_the_numbers_of_the_trade_are_those_of_the_groups():
-    c = ball()
-    numbers, slope = c.hamrock_dowson_numbers, c.slope
-    assert numbers.speed == pytest.approx(c.groups.speed * slope**4 / (12 * math.pi), rel=1e-13)
-    assert numbers.load == pytest.approx(2 / 3 * slope**3, rel=1e-13)
-    assert c.moes_number == pytest.approx(numbers.load * (2 * numbers.speed) ** -0.75, rel=1e-12)
-    assert c.replace(speed=0).moes_number == math.inf
-
-
-@pytest.mark.quick
 def test_units_do_not_change_the_groups_of_a_ball():
     bare = ball(radius=9.5e-3, modulus=1.6e6, load=1.3, viscosity=0.01, entrainment_speed=0.05, roughness=4e-7)
     assert bare.groups == ball().groups

@@ -14,12 +14,12 @@ from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, preset_source_text, take_parts
-from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, numbers, one_of, read_tables, tolerance, whole
+from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
-from stribeck.contacts.inputs import InputTable, ReadInputs, apply_forms, check_motion, read_inputs
+from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_inputs
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
@@ -81,10 +81,12 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if "contact" not in table:
         problems.append("the table [contact] is missing.")
     _refuse(path, problems)
-    law = checked["contact"]["law"]
+    given = dict(checked["contact"])
+    law = given.pop("law")
     try:
-        given = contact_inputs(checked, path.parent, inputs) | parts
-        contact = CONTACTS[geometry].of_kept(given, given.pop("law"))
+        surface = {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}
+        shape, coefficients = law_of_file(law, given, surface, path.parent)
+        contact = CONTACTS[geometry].of_kept(given | coefficients | parts, shape)
     except InputError as problem:
         _refuse(path, [in_file(line, "contact") for line in str(problem).splitlines()])
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
@@ -126,7 +128,7 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
         },
         "solver": {"rtol": tolerance(rtol), "definition": Key(one_of(*DEFINITIONS), Case.definition)},
         **KEYS_OF_SURFACES,
-        "check": numbers(FACTS),
+        "check": dict.fromkeys(FACTS, Key(lambda name, value: FACTS[name].checked(value))),
         "": HEAD,
     }
 
@@ -188,13 +190,3 @@ def _given_by_surface(table: dict[str, Any]) -> tuple[str, ...]:
     of_asperities = "asperities" in table and hasattr(NAMED_LAWS.get(str(contact.get("law"))), "coefficients")
     given = not shape_only and ("surface" in table or of_asperities or contact.get("law") == "persson")
     return INPUTS_OF_SURFACES if given else ()
-
-
-def contact_inputs(checked: dict[str, Any], folder: Path, inputs: InputTable) -> dict[str, Any]:
-    """Return the arguments of the contact in a checked file, with the contact law made of its tables."""
-    given = dict(checked["contact"])
-    law, known = given.pop("law"), ReadInputs(dict(given))
-    apply_forms(known, given, inputs)
-    tables = {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}
-    shape, coefficients = law_of_file(law, known.values, tables, folder)
-    return given | coefficients | {"law": shape}

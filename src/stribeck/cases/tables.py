@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from stribeck.cases.hints import advice_on
-from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
 
 Check = Callable[[str, Any], Any]  # `check(name, value)` returns what is kept, or refuses it
@@ -86,11 +85,6 @@ def whole(low: int, high: int, what: str = "") -> Check:
         lambda value: isinstance(value, int) and not isinstance(value, bool) and low <= value <= high,
         what or f"a whole number from {low} to {high}",
     )
-
-
-def numbers(rows: Mapping[str, Input]) -> Keys:
-    """Return the keys of numbers, each of which its own row checks."""
-    return {name: Key(lambda name, value: rows[name].checked(value)) for name in rows}
 
 
 def is_real(value: Any) -> bool:

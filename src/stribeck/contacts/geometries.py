@@ -9,9 +9,8 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the cylinder; H. Hertz (1882
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 from stribeck.contacts.contact import Contact, described
 from stribeck.contacts.groups import Geometry
@@ -75,13 +74,6 @@ class LineContact(Contact):
     )
 
     WIDTH: ClassVar[str] = "Hertz half-width"
-
-
-class HamrockDowsonNumbers(NamedTuple):
-    """The numbers of B. J. Hamrock and D. Dowson, with the mean speed and E' = 2 E*."""
-
-    speed: float  # Viscosity times mean speed over E' R [-]
-    load: float  # Load over E' R**2 [-]
 
 
 @described("point")
@@ -167,28 +159,6 @@ class PointContact(Contact):
     def sliding_speed(self) -> float:
         """Difference of the surface speeds, :math:`u_1 - u_2` [m/s]."""
         return float(0.5 * self.slide_to_roll * self.speed)
-
-    @property
-    def moes_number(self) -> float:
-        r"""The load number of H. Moes [-]; infinite at rest.
-
-        .. math:: M = \frac{F_N}{E' R^2} \left(\frac{\eta U}{E' R}\right)^{-3/4}
-            = \frac23 \left(\frac{6\pi}{\lambda}\right)^{3/4}, \qquad E' = 2 E^*
-
-        His lubricant number L is zero, as viscosity does not depend on the pressure.
-        """
-        speed = float(self.groups.speed)
-        return 2 / 3 * (6 * math.pi / speed) ** 0.75 if speed > 0 else math.inf
-
-    @property
-    def hamrock_dowson_numbers(self) -> HamrockDowsonNumbers:
-        r"""The speed and load numbers of B. J. Hamrock and D. Dowson.
-
-        .. math:: \frac{\eta U/2}{E' R} = \frac{\lambda}{12 \pi} \left(\frac aR\right)^4, \qquad
-            \frac{F_N}{E' R^2} = \frac23 \left(\frac aR\right)^3, \qquad E' = 2 E^*
-        """
-        R, stiffness = self.radius, 2 * self.modulus
-        return HamrockDowsonNumbers(0.5 * self.viscosity * self.speed / stiffness / R, self.load / stiffness / R / R)
 
     def _check_scales(self) -> None:
         """Refuse what leaves double precision, and a wetted radius inside the contact."""
