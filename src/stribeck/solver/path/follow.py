@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -26,8 +27,8 @@ class Followed(Protocol):
     """The states along a coordinate."""
 
     @property
-    def path(self) -> type[Path]:
-        """What holds them, and what lies between them."""
+    def path(self) -> Callable[..., Any]:
+        """What makes the :class:`Path` of a problem, of no state as yet, with an outcome."""
 
     def solve(self, s: float, near: Sequence[Any]) -> Any | Outcome:
         """Return the state at ``s``, from no, one or two neighbours ``near``, or the outcome of the failure."""
@@ -38,11 +39,6 @@ class Path(ABC):
 
     problem: Any
     outcome: Outcome  # CONVERGED if the path reaches the end asked for
-
-    @classmethod
-    @abstractmethod
-    def of(cls, problem: Any, states: Sequence[Any], outcome: Outcome) -> Self:
-        """Return the path of no state, or of one."""
 
     @property
     @abstractmethod
@@ -61,13 +57,9 @@ class Path(ABC):
     def poor(self, rtol: float, is_whole: bool) -> Sequence[int]:
         """Return the numbers of the intervals to be halved, of a path that is whole or still grows."""
 
-    @abstractmethod
     def on_branch(self, upwards: bool) -> Self:
-        """Return the path as far as its states lie on one branch of solutions."""
-
-    @abstractmethod
-    def ended(self, outcome: Outcome) -> Self:
-        """Return the path with how it ended."""
+        """Return the path as far as its states lie on one branch of solutions, by default the whole."""
+        return self
 
     @cached_property
     def coordinates(self) -> Array:
@@ -109,7 +101,8 @@ def follow(
     until: Callable[[Any], bool] | None = None,
 ) -> Any:
     """Return the path from a coordinate, a state or a path to ``end``, or as far as ``until`` holds of it."""
-    outcome, path = Outcome.CONVERGED, problem.path.of(problem, (), Outcome.CONVERGED)
+    outcome = Outcome.CONVERGED
+    path: Any = problem.path(problem, (), outcome)
     refused: set[float] = set()
     try:
         if isinstance(start, Path):
@@ -117,7 +110,7 @@ def follow(
         else:
             here = problem.solve(start, []) if isinstance(start, float) else start
             if isinstance(here, Outcome):
-                return path.ended(here)
+                return replace(path, outcome=here)
             path = path.with_state(here)
         upwards = end > here.coordinate
         while (left := abs(end - here.coordinate)) > 0 and not (until is not None and until(path)):
@@ -145,7 +138,7 @@ def follow(
         path = _halved(path, rtol, True, upwards, refused)
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    return path.ended(outcome)
+    return replace(path, outcome=outcome)
 
 
 def _next_coordinate(here: Any, end: float, step: float, upwards: bool) -> float:

@@ -8,7 +8,6 @@ the four nearest, which is larger.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -153,11 +152,6 @@ class HermitePath(Path):
             errors[where == k] += self._propagated(*self._window(k, WINDOW), s[where == k])
         return found, errors
 
-    @classmethod
-    def of(cls, problem: KnotProblem, states: Sequence[Knot], outcome: Outcome) -> HermitePath:
-        """Return the path of no state, or of one."""
-        return cls(problem, tuple(states), outcome)
-
     @property
     def expansions(self) -> tuple[Knot, ...]:
         """The solved states."""
@@ -181,14 +175,6 @@ class HermitePath(Path):
     def poor(self, rtol: float, is_whole: bool) -> list[int]:
         """Return the numbers of the intervals whose error is larger than allowed, once all states around them are there."""
         return [k for k in range(len(self.knots) - 1) if self.excess(k, rtol) > 1.0] if is_whole else []
-
-    def on_branch(self, upwards: bool) -> HermitePath:
-        """Return the path: states on two branches lie too far apart to be interpolated, and show so."""
-        return self
-
-    def ended(self, outcome: Outcome) -> HermitePath:
-        """Return the path with how it ended."""
-        return replace(self, outcome=outcome)
 
     def excess(self, k: int, rtol: float) -> float:
         """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""

@@ -291,16 +291,11 @@ class SolvedPath(Path):
         found = [self.intervals[0].left] if self.intervals else []
         return (*found, *(one.right for one in self.intervals if one.right is not one.left))
 
-    @classmethod
-    def of(cls, problem: Problem, states: Sequence[Expansion], outcome: Outcome) -> SolvedPath:
-        """Return the path of no state, or of one."""
-        return cls(problem, tuple(Interval(problem, one, one) for one in states), outcome)
-
     def with_state(self, new: Expansion) -> SolvedPath:
         """Return the path with one more state, beyond its ends or between others."""
         states, problem = self.expansions, self.problem
         if not states:
-            return self.of(problem, [new], self.outcome)
+            return replace(self, intervals=(Interval(problem, new, new),))
         known = [one for one in self.intervals if one.length > 0]
         k = int(np.searchsorted(self.coordinates, new.coordinate))
         if k == 0:
@@ -329,10 +324,6 @@ class SolvedPath(Path):
         kept = self.intervals[: lost[0]] if upwards else self.intervals[lost[-1] + 1 :]
         begin = self.expansions[0 if upwards else -1]
         return replace(self, intervals=kept or (Interval(self.problem, begin, begin),))
-
-    def ended(self, outcome: Outcome) -> SolvedPath:
-        """Return the path with how it ended."""
-        return replace(self, outcome=outcome)
 
     @cached_property
     def _pieces(self) -> _Pieces:
