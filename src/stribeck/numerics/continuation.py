@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stribeck._types import Array
+from stribeck.numerics.settings import STEP_GROWTH
 from stribeck.quantities.outcome import Outcome
-
-MAX_STEP_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
 
 
 class State(Protocol):
@@ -102,7 +101,7 @@ def march(
                 return path(Outcome.PATH_LOST)
             continue
         points.append((s, state))
-        factor = min(MAX_STEP_GROWTH, max(1.0 / MAX_STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
+        factor = min(STEP_GROWTH, max(1.0 / STEP_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
         if factor < 1.0:
             length = max(steps.shortest, factor * step)
         elif may_grow:

@@ -30,8 +30,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.cavities.cavity_length import paths_to_cavity
 from stribeck.solver.homotopy import paths_to_model
 
-MIN_RIGID_SPEED = 30.0  # Speed group above which the rigid film starts Newton's iteration safely
-MIN_RIGID_ROUGHNESS = 30.0  # Relative roughness above which the rigid contact starts Newton's iteration safely
+MIN_RIGID = 30.0  # Speed group or relative roughness above which the rigid cylinder starts Newton's iteration safely
 MAX_RIGID_LOG_FACTOR = 0.7  # Logarithm of the factor of the load within which the rigid film or contact is tried too
 # Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading at low
 # speed would cross the sudden hand-over from asperities to film.
@@ -103,13 +102,13 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
 def cold_start(groups: Groups) -> Path[State]:
     """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution."""
     kappa = float(groups.relative_roughness)
-    by_speed = groups.speed > 0 and groups.load > MIN_SATURATED_LOAD and kappa < MIN_RIGID_ROUGHNESS
+    by_speed = groups.speed > 0 and groups.load > MIN_SATURATED_LOAD and kappa < MIN_RIGID
     along = faster if by_speed else unloaded
     factors = []
     if groups.speed > 0:
-        factors.append(0.5 * math.log(MIN_RIGID_SPEED / groups.speed))
+        factors.append(0.5 * math.log(MIN_RIGID / groups.speed))
     if kappa > 0 and not by_speed:
-        factors.append(math.log(MIN_RIGID_ROUGHNESS / kappa))
+        factors.append(math.log(MIN_RIGID / kappa))
     top = max(0.0, min(factors))
     steps = 0
 

@@ -31,12 +31,11 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
-from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP, MAX_STEPS
 from stribeck.quantities.outcome import Outcome
 
 __all__ = ["coarse_state", "with_final_state", "paths_to_model"]
 
-MAX_STEPS_FULL_FILM = 100  # Newton steps after which a full film is given up
 # Newton steps with a free exit after which films with a fixed exit are solved instead: more steps oscillate.
 MAX_STEPS_FREE_BOUNDARY = 15
 MAX_STEPS_FIXED_BOUNDARY = 25  # Newton steps after which a film with a fixed exit is given up
@@ -95,7 +94,7 @@ def coarse_state(groups: Groups, guess: Guess) -> State | None:
     if operators is None:
         return None
     if not ends:
-        return solve_state(groups, operators, guess, COARSE_STEP, MAX_STEPS_FULL_FILM)
+        return solve_state(groups, operators, guess, COARSE_STEP, MAX_STEPS)
     state = solve_state(groups, operators, guess, COARSE_STEP, MAX_STEPS_FREE_BOUNDARY)
     return state if state.outcome.ok else _search_exit(groups, guess, state)
 

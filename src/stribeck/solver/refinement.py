@@ -16,15 +16,9 @@ from stribeck.equations.observables import Observables, observables
 from stribeck.equations.state import END_RESOLUTION_GAIN, State, decay_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
-from stribeck.numerics.settings import MAX_REFINEMENTS, ROUNDING
+from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE, ROUNDING, SAFETY, SHARE
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
-
-MIN_GAP_TAIL_RTOL_FRACTION = 0.02  # Tail of the gap over rtol below which refining where it is read does not help
-ROUNDING_ERROR_RATIO = 0.5  # Error over that on the last mesh above which what is left may be noise of the nodal gaps
-MAX_NOISE_RATIO = 4.0  # Error over that noise up to which it may be
-TAIL_RELAXATION = 10.0  # Growth of mesh tolerances, twice at most, where Newton's iteration fails on a fine first mesh
-FINER_SIZE_RATIO = 1.1  # Ratio of mesh sizes above which the difference of two solutions measures the coarser one's error
 
 
 def order_for(rtol: float) -> int:
@@ -51,11 +45,6 @@ class RefinedState:
     tolerances: tuple[float, float] | None = None
     fine: FineOperators | None = None
     message: str = ""  # Why no path leads to the state
-
-    @property
-    def effort(self) -> float:
-        """Measure by which :func:`continuation.march` chooses its steps."""
-        return 4.0 if self.state is None else self.state.effort
 
 
 def converge(
@@ -89,9 +78,10 @@ def converge(
         state = solve_state(base, Operators(mesh, base.model), guess, newton)
         if not state.outcome.ok:
             outcome = state.outcome
-            if best.state is not None or tail > TAIL_RELAXATION * first:
+            # On a fine first mesh the iteration may fail: a coarser one leads to it.
+            if best.state is not None or NEGLIGIBLE * tail > first:
                 break
-            tail, gap_tail = TAIL_RELAXATION * tail, TAIL_RELAXATION * gap_tail
+            tail, gap_tail = tail / NEGLIGIBLE, gap_tail / NEGLIGIBLE
             continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
@@ -103,7 +93,7 @@ def converge(
         film = state.equations.film
         shared = state.equations.operators.has_exit or decay_of(film, 1.0).fractional
         shared |= is_rough(film)
-        if last is not None and mesh.size >= FINER_SIZE_RATIO * last[0] and not shared:
+        if last is not None and mesh.size >= (1 + NEGLIGIBLE) * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array() - last[1]))
         last = mesh.size, values.array()
         before = math.inf if best.estimate is None else best.estimate.total
@@ -111,16 +101,14 @@ def converge(
             best = RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        if estimate.total <= 3 * estimate.floor or ROUNDING_ERROR_RATIO * before < estimate.total <= MAX_NOISE_RATIO * _noise(
-            best
-        ):
+        if estimate.total <= 3 * estimate.floor or SHARE * before < estimate.total <= SAFETY**2 * _noise(best):
             outcome = Outcome.ROUNDING
             break
         halvings += halvings_for(estimate.of_ends / rtol)
         tail *= tolerance_factor(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = tolerance_factor(rtol / (estimate.between_nodes + 1e-300))
         seen = abs(values.minimum_gap) / float(state.gap.min())  # at rest it may be a small difference of two gaps
-        if gap_tail * between >= MIN_GAP_TAIL_RTOL_FRACTION * rtol * min(1.0, seen):
+        if gap_tail * between >= NEGLIGIBLE**2 * rtol * min(1.0, seen):
             gap_tail *= between
         else:
             tail *= between

@@ -17,14 +17,14 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.settings import SAFETY
+from stribeck.numerics.settings import MAX_RTOL, MIN_RTOL, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
@@ -43,23 +43,15 @@ if TYPE_CHECKING:
     from stribeck.contacts.geometries import LineContact, PointContact
     from stribeck.solver.point.solution import PointSolution
 
-RTOL_RANGE = (1e-11, 1e-2)  # Smallest and largest tolerance; double precision reaches none below
-PROFILE_TAIL_RTOL_RATIO = 10.0  # Legendre tail of the log gap between the nodes of a single solution over rtol
 # A cavity too short for a mesh changes observables in proportion to what it takes from the largest suction: that fraction over
 # those of longer cavities, from which the change is extrapolated.
 CAVITY_SUCTION_RATIOS = (0.25, 0.1, 0.03, 0.01)
 NEWTON_FAILURES = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
-MIN_ESTIMATE_RTOL_FRACTION = 0.03  # Least stated error over rtol for the base model: smaller estimates are unreliable
-# Other models have kinks that finer nodes see only in part: their least stated error over rtol.
-MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS = 0.2
-
 TOO_THIN = (
     "Double precision does not hold this state: on the way to it the film falls below {:.1e} of the Hertz indentation, and "
     "gaps are known to about 4e-15 of that. No value was reached; ask for a larger speed or roughness."
 )
 
-SPIKE_PRESSURE_EXPONENT = 2.5  # Pressure coefficient times Hertz pressure above which films with a pressure spike were seen
-RELIABLE_ESTIMATE = 1e-10  # Error above which estimates are reliable whatever rtol is
 # Ranges in which every state is solved (test_solve_random.py), speed and roughness zero too; many are outside.
 TESTED_RANGES = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 
@@ -221,7 +213,7 @@ def _newton_failed(point: RefinedState) -> bool:
 
 def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from a coarse one."""
-    return converge(start, groups, rtol, profile_tolerance=PROFILE_TAIL_RTOL_RATIO * rtol)
+    return converge(start, groups, rtol, profile_tolerance=rtol / NEGLIGIBLE)
 
 
 def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
@@ -297,10 +289,11 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
 
 def check_rtol(rtol: Any) -> float:
     """Return a tolerance as a float, or refuse one that is no number or out of range."""
-    low, high = RTOL_RANGE
     is_real = isinstance(rtol, Real) and not isinstance(rtol, bool)
-    if not is_real or not low <= rtol <= high:
-        raise InputError(f"rtol = {show(rtol)}; it must be a number from {low:g}, the limit of double precision, to {high:g}.")
+    if not is_real or not MIN_RTOL <= rtol <= MAX_RTOL:
+        raise InputError(
+            f"rtol = {show(rtol)}; it must be a number from {MIN_RTOL:g}, the limit of double precision, to {MAX_RTOL:g}."
+        )
     return float(rtol)
 
 
@@ -317,12 +310,12 @@ def untested_note(groups: Groups) -> str:
 def spike_note(groups: Groups) -> str:
     """Return the end of a failure message for a fluid with a pressure spike, else an empty string."""
     a = groups.model.film.parameters.get("pressure_coefficient", 0.0)
-    if not isinstance(a, float) or a <= SPIKE_PRESSURE_EXPONENT:
+    if not isinstance(a, float) or a == 0.0:
         return ""
     return (
-        f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
-        "hard elastohydrodynamics, and without bound above 4.4 in a full film or above 5.2 in one that ends, earlier in a "
-        "fluid that stiffens faster than exponentially. Thinner films, at lower speed, have none."
+        f" Pressure coefficient times Hertz pressure is {a:.2g}: from about 2.5 on the pressure of a thick film rises to a "
+        "spike, as in hard elastohydrodynamics, and without bound above 4.4 in a full film or above 5.2 in one that ends, "
+        "earlier in a fluid that stiffens faster than exponentially. Thinner films, at lower speed, have none."
     )
 
 
@@ -339,16 +332,15 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     )
 
 
-def minimum_estimate(rtol: float, model: Model) -> float:
-    """Return the smallest stated error for a tolerance and a model."""
-    least = MIN_ESTIMATE_RTOL_FRACTION if model == BASE_MODEL else MIN_ESTIMATE_RTOL_FRACTION_AT_KINKS
-    return max(least * rtol, min(RELIABLE_ESTIMATE, 0.3 * rtol))
+def minimum_estimate(rtol: float) -> float:
+    """Return the smallest stated error for a tolerance: smaller estimates miss what finer nodes see only in part."""
+    return SAFETY * NEGLIGIBLE * rtol
 
 
 def stated_errors(point: RefinedState, rtol: float) -> Array:
     """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
     assert point.values is not None and point.estimate is not None
-    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
+    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol))
     return np.asarray(counted / drag_parts(point.values.array())[: len(counted)])
 
 
@@ -395,7 +387,7 @@ def state_notes(
             notes += fluid_notes(solved.equations.film, solved.gap, fluid, solved.flux_gap)
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
-    if floor > 0.1 * rtol:
+    if floor > NEGLIGIBLE * rtol:
         notes.append(f"Rounding in double precision limits the relative error of this state to {floor:.1e}.")
     return tuple(notes)
 

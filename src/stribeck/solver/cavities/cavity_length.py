@@ -22,7 +22,7 @@ from stribeck.equations.state import State, mesh_for
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path
 from stribeck.numerics.panels import MeshTooLargeError
-from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP, MAX_STEPS
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.homotopy import coarse_state, paths_to_model, with_final_state
 
@@ -38,7 +38,6 @@ FIRST_LOG_SLOPE = -1.0  # First slope of ln suction by ln length behind an exit
 MAX_LOG_SLOPE = -0.01  # Slope of ln suction by ln length that is at least assumed: suction falls with the length
 REMESH_AFTER_STEPS = 8  # Newton steps after which a state is solved once more on a mesh adapted to it
 FREE_LENGTH_LOG_PRESSURE = 0.02  # Log pressure difference below which the length becomes an unknown of Newton's iteration
-MAX_STEPS_FIXED_LENGTH = 100  # Newton steps with a fixed length, which are short
 MAX_LENGTHS = 20  # Lengths tried before a cavity is given up
 
 
@@ -157,5 +156,5 @@ def _solve_at_length(groups: Groups, guess: SeenFrom) -> State | None:
         mesh = mesh_for(guess, here, contact_law(here), COARSE_ORDER, COARSE_RTOL, anew=False)
     except MeshTooLargeError:
         return None
-    state = solve_of_length(here, Operators(mesh, here.model), guess, COARSE_STEP, MAX_STEPS_FIXED_LENGTH)
+    state = solve_of_length(here, Operators(mesh, here.model), guess, COARSE_STEP, MAX_STEPS)
     return state if state.outcome.ok else None
