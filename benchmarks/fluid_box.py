@@ -219,7 +219,7 @@ def measured(groups: sb.Groups, parts: dict[str, Any], rtol: float, is_judged: b
         return {"outcome": point.outcome.name, "seconds": seconds}
     found = {"outcome": point.outcome.name, "seconds": seconds, "nodes": point.state.mesh.size}
     found |= {name: float(getattr(point.values, name)) for name in KEPT_VALUES}
-    stated = np.maximum(point.estimate.relative, minimum_estimate(rtol))
+    stated = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
     found["stated"] = float(np.nanmax(stated))
     if not is_judged:
         return found

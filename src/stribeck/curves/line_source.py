@@ -106,7 +106,8 @@ class CurvePoint(Solution):
             "outcome": Outcome.CONVERGED,
             "rtol": rtol,
             "observables": Observables(**values),
-            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol)) / drag_parts(row[:POSITION]),
+            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model))
+            / drag_parts(row[:POSITION]),
             "minimum_position_error": float(errors[POSITION]),
         }
         vars(self).update(known | {"_place": (path, s), "_coordinate": coordinate})
@@ -217,7 +218,7 @@ class LineSource(PathSource):
     @cached_property
     def least_error(self) -> float:
         """Smallest error that is stated."""
-        return minimum_estimate(self.rtol)
+        return minimum_estimate(self.rtol, self.coordinate.groups_at(0.0).model)
 
     @cached_property
     def _states(self) -> dict[tuple[float, float], RefinedState]:

@@ -17,7 +17,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
@@ -332,15 +332,15 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     )
 
 
-def minimum_estimate(rtol: float) -> float:
-    """Return the smallest stated error for a tolerance: smaller estimates miss what finer nodes see only in part."""
-    return SAFETY * NEGLIGIBLE * rtol
+def minimum_estimate(rtol: float, model: Model) -> float:
+    """Return the smallest stated error for a tolerance and a model, whose kinks finer nodes see only in part."""
+    return (NEGLIGIBLE if model == BASE_MODEL else SAFETY * NEGLIGIBLE) * rtol
 
 
 def stated_errors(point: RefinedState, rtol: float) -> Array:
     """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
     assert point.values is not None and point.estimate is not None
-    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol))
+    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
     return np.asarray(counted / drag_parts(point.values.array())[: len(counted)])
 
 
