@@ -79,7 +79,7 @@ def test_the_defect_measures_the_error_at_the_nodes(case):
         error = (np.abs(values - exact) / estimate.scales)[names].max()
         if 1e-9 < error < 1e-2:
             ratios.append(parts["discretisation"][names].max() / error)
-    assert len(ratios) >= 3
+    assert len(ratios) >= 2
     assert 0.1 < np.median(ratios) < 10
     assert min(ratios) > 0.03
 

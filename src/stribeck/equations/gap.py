@@ -12,9 +12,9 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
+from stribeck.numerics.settings import HALF_DIGITS, MAX_STEPS
 
-NEWTON_STEPS = 3
-MAX_STEP_RATIO = 0.2  # Of the search for the minimum gap, the step in half-widths of a panel
+TINY = np.finfo(float).tiny
 
 
 def far_gap(x: Array) -> Array:
@@ -86,14 +86,16 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
     node = int(np.argmin(h[nodes]))
     polynomial = (_taylor(mesh.order)[node] @ np.log(h[nodes] / mesh.far[nodes])).tolist()[::-1]
     start = s = float(rule.nodes[node])
-    for _ in range(NEWTON_STEPS):
+    low, high = _around(mesh.order)[:, node].tolist()
+    for _ in range(MAX_STEPS):
         _, slope, curvature = _jet(polynomial, s - start)
         x = c + d * s
         far = mesh.scale**2 + x * x
         slope += 2 * d * x / far
         curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / max(curvature, abs(slope) / MAX_STEP_RATIO, 1e-300)
-        s = min(1.0, max(-1.0, s + step))
+        last, s = s, min(high, max(low, s - slope / (abs(curvature) + TINY)))
+        if abs(s - last) <= HALF_DIGITS:
+            break
     x = c + d * s
     return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
 
@@ -114,18 +116,27 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
     slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
     c, d, s, origin = mesh.centres[first + k], mesh.half_widths[first + k], start, rule.nodes[about]
-    for _ in range(NEWTON_STEPS):
+    low, high = _around(order)[:, about]
+    for _ in range(MAX_STEPS):
         basis, x = _powers(s - origin, order), c + d * s
         far = mesh.scale**2 + x * x
         slope = np.einsum("rn,rn->r", basis[:, :-1], slopes) + 2 * d * x / far
         bend = np.einsum("rn,rn->r", basis[:, :-2], bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / MAX_STEP_RATIO), 1e-300)
-        s = np.minimum(np.maximum(s + step, -1.0), 1.0)
+        last, s = s, np.minimum(np.maximum(s - slope / (np.abs(bend) + TINY), low), high)
+        if np.abs(s - last).max() <= HALF_DIGITS:
+            break
     x = c + d * s
     value = np.einsum("rn,rn->r", _powers(s - origin, order), polynomial) + np.log(mesh.scale**2 + x * x)
     rows = np.arange(count)
     rows += np.where(value[-count:] < value[:count], len(k) - count, 0)
     return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), first + k[rows]
+
+
+@lru_cache(maxsize=32)
+def _around(order: int) -> Array:
+    """Return the nodes or ends of a panel before and behind each node: the minimum around the lowest one lies between."""
+    nodes = reference(order).nodes
+    return np.array([np.append(-1.0, nodes[:-1]), np.append(nodes[1:], 1.0)])
 
 
 def _powers(t: Array, count: int) -> Array:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
@@ -20,68 +21,29 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Decay, Film
-from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, ungraded
-from stribeck.numerics.settings import COARSE_RTOL, COARSE_STEP, EPSILON, HALF_DIGITS, NEGLIGIBLE, ROUNDING, SAFETY
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_between, root_find
+from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, reference
+from stribeck.numerics.settings import (
+    COARSE_RTOL,
+    COARSE_STEP,
+    EPSILON,
+    HALF_DIGITS,
+    NEGLIGIBLE,
+    ROUNDING,
+    SAFETY,
+    SAME_PLACE,
+    SHARE,
+)
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
-# Outcomes of Newton's iteration after which monotone steps are tried for a shear-thinning fluid.
-RETRY_MONOTONE_AFTER = (Outcome.STEP_LIMIT, Outcome.STALLED, Outcome.SINGULAR, Outcome.NOT_FINITE)
-
-MONOTONE_AFTER_STEPS = 25  # Newton steps after which steps are monotone: most films take less than 20, others oscillate
-
 CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
-
-# Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order.
-LONG_REACH_ORDER = 14
 
 END_RESOLUTION_GAIN = 5.0  # Factor by which the error of the exit falls, at least, when the panels beside it are halved
 
-END_TAIL_RTOL = 3.5e-4  # Mesh tolerance below which the panels beside the exit are halved: its error falls with their square
-
-LAYER_DOMAIN_RADIUS = 24.0  # Distance in thicknesses beyond which pressures on a layer have no effect
-
-# Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
-# the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses.
-LAYER_DRAG_FRACTION = 0.02
-
-UNESTIMATED_RTOL_FRACTION = 0.2  # Part of the tolerance that errors may take of which the estimate knows nothing
-
-LAYER_DECAY = 6.0  # Distance from the contact at which the gap has the far shape of the layer [thicknesses]
-
-# Extra refinement at infinity for power-law fluids, whose pressure decays with a non-integer exponent.
-FRACTIONAL_DECAY_FACTOR = 30.0
-
-FRACTIONAL_DECAY_RADIUS = 512.0  # Distance up to which panels resolve a non-integer decay [scale of the mesh]
-
-MINIMUM_ZONE = 0.05  # Distance from a moving minimum of the gap within which the gap is resolved better [a]
-
-MOVING_MINIMUM_FACTOR = 30.0  # Extra resolution near a moving minimum, where the gap's change along the path is steep
-
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 MIN_GAP = ROUNDING / COARSE_STEP
-
-MAX_FAR_PANEL = 0.5  # Largest half-width over distance of panels that resolve a non-integer decay
-
-KINK_SEARCHES = 2  # Scans of the bracket of a kink, before linear interpolation
-
-KINK_SCAN_POINTS = 17  # Points of one scan of the bracket
-
-TAIL_RTOL_FRACTION = 0.2  # Tolerance of a mesh for an error of one
-
-# Length of a panel beside the exit up to which its nodes see the pressures of the contact [width of the coarsest panels].
-EXIT_PANEL_MAX = 16.0
-
-MAX_FRAME_RATIO = 1.5  # Ratio of the cavity's length to that of the mesh above which the mesh is made for another length
-
-SCAN_POINTS = 201  # Places between the neighbours of the node with the lowest pressure at which a lower one is sought
-
-SCAN_REFINEMENTS = 3  # Places over nodes at which the lowest pressure is sought
-
-# Suction over pressure up to which a film that ends at ambient pressure counts as one; of a full film both are alike.
-MAX_SUCTION_RATIO = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +121,7 @@ class State:
         operators = self.equations.operators
         if not operators.has_exit or operators.has_reformation:
             return False
-        return bool(-self.fluid_pressure.min() > MAX_SUCTION_RATIO * self.fluid_pressure.max())
+        return bool(-SAFETY * self.fluid_pressure.min() > self.fluid_pressure.max())  # of a full film both are alike
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
@@ -201,11 +163,12 @@ class State:
     @property
     def lowest_pressure(self) -> float:
         """Lowest fluid pressure, also between the nodes [p_Hz]."""
-        nodes, pressure = self.mesh.nodes, self.fluid_pressure
-        lowest = int(np.argmin(pressure))
-        low, high = float(nodes[max(lowest - 1, 0)]), float(nodes[min(lowest + 1, nodes.size - 1)])
-        between = float(self.mesh.interpolate(pressure, np.linspace(low, high, SCAN_POINTS)).min())
-        return min(between, float(self.mesh.to_order(pressure, SCAN_REFINEMENTS * self.mesh.order).min()))
+        pressure, order = self.fluid_pressure, self.mesh.order
+        first = int(np.argmin(pressure)) // order * order
+        series = reference(order).to_legendre @ pressure[first : first + order]
+        turns = legendre.legroots(legendre.legder(series))
+        inside = turns.real[np.isreal(turns) & (np.abs(turns) <= 1)]
+        return float(min(pressure.min(), legendre.legval(inside, series).min(initial=np.inf)))
 
     @cached_property
     def _nodal(self) -> Array:
@@ -275,20 +238,18 @@ def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Arr
         pressure = found[1] if film.uses_pressure else None
         return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
 
-    values = crossing(x)
-    count = len(values)
-    row, at = np.nonzero(np.signbit(values[:, 1:]) != np.signbit(values[:, :-1]))
-    if not len(row):
-        return NO_PLACES
-    each = np.arange(len(row))
-    low, high = x[at], x[at + 1]
-    for _ in range(KINK_SEARCHES):
-        within = np.linspace(low, high, KINK_SCAN_POINTS)
-        values = crossing(within.ravel()).reshape(count, *within.shape)[row, :, each].T
-        at = np.argmax(np.signbit(values[1:]) != np.signbit(values[:-1]), axis=0)
-        low, high = within[at, each], within[at + 1, each]
-    before, after = values[at, each], values[at + 1, each]
-    return np.asarray(low + (high - low) * before / (before - after))
+    def kink(row: int, k: int) -> float | None:
+        ends = float(x[k]), float(x[k + 1])
+        return root_between(lambda place: float(crossing(np.array([place]))[row, 0]), *ends, near)
+
+    near = SAME_PLACE * float(np.abs(x).max())
+    found = [kink(int(row), int(k)) for row, k in np.argwhere(np.diff(np.signbit(crossing(x)), axis=1))]
+    return np.array([place for place in found if place is not None])
+
+
+def error_of(tail: float) -> float:
+    """Return the error that a Legendre tail of the fields on each panel leaves: about its square."""
+    return (tail / (SAFETY * NEGLIGIBLE)) ** 2
 
 
 def mesh_for(
@@ -318,13 +279,14 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
+    # Along a path the gap must be resolved where its minimum moves to, as far as rounding allows.
     strict = gap_tolerance
     if spread > 0:
-        strict = max(gap_tolerance / MOVING_MINIMUM_FACTOR, min(gap_tolerance, ROUNDING / float(central_gap.min())))
+        strict = max(SHARE * NEGLIGIBLE * gap_tolerance, min(gap_tolerance, ROUNDING / float(central_gap.min())))
     pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    highest = highest_degree(order)
+    highest, error = highest_degree(order), error_of(tolerance)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
     if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
@@ -359,24 +321,23 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
         at_centre = np.abs(centres - centre) <= (1 + HALF_DIGITS) * half_widths
-        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
-        read_off &= stretch[:, 0] == 1.0
-        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, MINIMUM_ZONE))
+        from_minimum = np.abs(centres - minimum_position) - half_widths
+        read_off = (at_centre | (from_minimum <= spread)) & (stretch[:, 0] == 1.0)
         weight = max(0.1, tolerance / profile_tolerance)
-        parts = tolerance / np.where(moving, strict, gap_tolerance)
+        parts = tolerance / np.where(from_minimum <= min(spread, NEGLIGIBLE), strict, gap_tolerance)
         shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
-        if fractional and stretch[0, 0] != 1.0:
-            fields[0] *= FRACTIONAL_DECAY_FACTOR
-        # The drag far away counts as that in the contact.
+        if fractional and stretch[0, 0] != 1.0:  # what falls off with a broken power is no polynomial in 1/x
+            fields[0] /= NEGLIGIBLE
+        # The drag far away counts as that in the contact, where a power of x has its pole.
         if fractional and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:
-            fields.append(asked(np.minimum(half_widths / (MAX_FAR_PANEL * np.abs(centres)), half_widths / (2 * scale))))
+            fields.append(asked(np.minimum(SAFETY * half_widths / np.abs(centres), half_widths / (SAFETY * scale))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
-            fields.append(asked(wrong / (tolerance / TAIL_RTOL_FRACTION) ** 2))
+            fields.append(asked(wrong / error))
         # Beside the place where the last path closes no load feels the gradient, but drag does.
         if sheared and stretch[0, 0] == 1.0:
             full = (flat < 0) | (flat > reformation) if ends else np.ones_like(flat, dtype=bool)
@@ -388,7 +349,7 @@ def mesh_for(
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
             kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_RTOL_FRACTION) ** 2)
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * error)
             fields.append(asked(np.sqrt(wrong)))
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
@@ -396,14 +357,18 @@ def mesh_for(
             fields.append(np.where(np.all(behind > 0, axis=1)[:, None], np.stack(fading), 0.0))
         return np.concatenate(fields)
 
-    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
-    if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
-        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_RTOL_FRACTION / tolerance
-        allowed = UNESTIMATED_RTOL_FRACTION * (tolerance / TAIL_RTOL_FRACTION) ** 2
-        dragged = reach * (LAYER_DRAG_FRACTION * min(1.0, float(central_gap.max())) / allowed) ** 0.25
-        reach = max(reach, min(reach + LAYER_DOMAIN_RADIUS * thickness, carried), min(LAYER_DECAY * thickness, dragged))
+    reach = 8 * scale
+    if thickness < math.inf:
+        # Beyond the panels in x a layer is felt only where it is pressed, and what it feels falls off with the distance in
+        # thicknesses.  The gap turns from that of a half-plane to that of the layer: what a polynomial in the inverse distance
+        # misses of the drag falls with the fourth power of the distance.
+        decay = -math.log(error) * thickness
+        carried = 0.5 * math.sqrt(float(groups.speed) / error)
+        dragged = reach * (NEGLIGIBLE * min(1.0, float(central_gap.max())) / error) ** 0.25
+        reach = max(reach, min(reach + decay, carried), min(decay, dragged))
     if tolerance < COARSE_RTOL:
-        reach = max(reach, plateau, FRACTIONAL_DECAY_RADIUS * scale if fractional else 0.0)
+        # Beyond it pressures that fall with the third power of the distance are known to no digit beside those of the contact.
+        reach = max(reach, plateau, HALF_DIGITS ** (-1 / 3) * scale if fractional else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, -math.log(EPSILON) * max(memories))
     places: list[float] = []
@@ -412,8 +377,8 @@ def mesh_for(
         places = [0.0] if reformation == math.inf else [0.0, reformation]
         reach = 2 * max(reach, places[-1])
     if ends and start is not None:
-        lengths = {x * to_guess: math.inf if x else EXIT_PANEL_MAX * scale * to_guess for x in places}
-        start = replace(start, edges=ungraded(start.edges, lengths) / to_guess)
+        edges = start.edges if start.coarse_edges is None else start.coarse_edges
+        start = replace(start, edges=edges / to_guess)
     kinks = NO_PLACES
     if (fractional or closed_at is not None) and tolerance < COARSE_RTOL:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
@@ -426,15 +391,14 @@ def mesh_for(
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
     if not ends:
         return mesh
-    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL_RTOL / tolerance) / math.log(END_RESOLUTION_GAIN)))
+    # Panels that do not halve leave the ends with the error of a coarse state.
+    levels = halvings + max(0, round(math.log(COARSE_STEP / error) / math.log(END_RESOLUTION_GAIN)))
     return replace(graded(mesh, places, levels), reformation=reformation)
 
 
 def _cavity_on_mesh(guess: Guess) -> float:
-    """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
-    length = guess.cavity_stretch * guess.reformation
-    near = 1 / MAX_FRAME_RATIO < guess.cavity_stretch < MAX_FRAME_RATIO and math.log2(guess.reformation).is_integer()
-    return guess.reformation if near else 2.0 ** round(math.log2(length))
+    """Return the length of the cavity on a mesh for a guess: the nearest power of two."""
+    return 2.0 ** round(math.log2(guess.cavity_stretch * guess.reformation))
 
 
 def unknowns_of(equations: Equations, guess: Guess) -> Array:
@@ -469,13 +433,9 @@ def solve_state(
     thinnest = float(start[equations.layout.gap].min())
     if thinnest < MIN_GAP:  # steps of that size are rounding
         tolerance = max(tolerance, min(ROUNDING / thinnest, NEGLIGIBLE))
-    thins, control = is_thinning(equations.film), StepControl(tolerance, max_steps, CHORD_CONTRACTION)
-    full = replace(control, max_steps=min(max_steps, MONOTONE_AFTER_STEPS)) if thins else control
-    root = root_find(equations, start, full, kept)
-    if thins and root.outcome in RETRY_MONOTONE_AFTER:
-        spent = root.steps
-        root = root_find(equations, start, replace(control, monotone=True))
-        root = replace(root, steps=spent + root.steps)
+    # Where a wall is not sheared the viscosity of a thinning fluid turns sharply: full steps may go to and fro.
+    control = StepControl(tolerance, max_steps, CHORD_CONTRACTION, monotone=is_thinning(equations.film))
+    root = root_find(equations, start, control, kept)
     gap = equations.layout.gap
     with np.errstate(all="ignore"):  # a root that was not found need not be finite
         error = float(np.abs(start[gap] / root.x[gap] - 1).max())

@@ -27,17 +27,8 @@ from scipy.linalg import lapack
 
 from stribeck._types import Array
 from stribeck.numerics.ending import go_on
-from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS
+from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS, NEGLIGIBLE, STEP_GROWTH
 from stribeck.quantities.outcome import Outcome
-
-MAX_CHORD_CONTRACTION = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
-CHORD_BELOW_STEP = 0.02  # the caller's inverse is taken to be good for a first step of this size
-STEP_REDUCTION = 0.25  # a part t of a monotone step must leave a step shorter by this part of t
-STEP_RECOVERY = 4.0  # growth of the part of a monotone step, from one to the next
-MAX_STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
-
-
-INVERSE_POINTS = 4  # Last places through which the next one is interpolated
 
 
 class Inverse(Protocol):
@@ -185,7 +176,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
     tolerance, chord = control.tolerance, control.chord
 
     inverse = kept
-    steps = factorisations = stale = 0
+    steps = factorisations = 0
     s = before = math.nan  # sizes of this step and of the step before it
     smallest = math.inf
     longest = 1.0
@@ -209,8 +200,10 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             if reusable and inverse is not None:
                 dx, t = step(inverse, r), 1.0
                 s_new = problem.size(x, dx)
-                rate = s_new / s if steps else s_new / CHORD_BELOW_STEP * (chord or 0.0)
-                contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= MAX_CHORD_CONTRACTION)
+                # The first step with the caller's inverse is measured as if one had led here that counts.
+                rate = s_new / (s if steps else NEGLIGIBLE)
+                # Of a series of steps that fall at this rate the rest is within the tolerance.
+                contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate * s_new <= (1 - rate) * tolerance)
                 chord_step = contracts and (steps > 0 or problem.admissible(x, dx) >= 1.0)
             if not chord_step:
                 inverse = None  # frees its memory for the next one
@@ -230,11 +223,11 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             if control.monotone and inverse is not None and not chord_step and s_new > COARSE_STEP:
                 units = problem.units(x)
                 wanted = _mean(dx / units)
-                while trial is not None and not _mean(inverse(trial[1])) <= (1 - STEP_REDUCTION * trial[2]) * wanted:
+                while trial is not None and not _mean(inverse(trial[1])) <= (1 - NEGLIGIBLE * trial[2]) * wanted:
                     if not trial[2] >= 2 * HALF_DIGITS:
                         return root(Outcome.STALLED)
                     trial = _finite_trial(problem.residual, x, dx, 0.5 * trial[2])
-                longest = 1.0 if trial is None else STEP_RECOVERY * trial[2]
+                longest = 1.0 if trial is None else STEP_GROWTH * trial[2]
             if trial is None:
                 return root(Outcome.NOT_FINITE)
             x, r, t = trial
@@ -247,10 +240,9 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
                 if s == 0.0 or (s <= tolerance and not unmeasured):
                     return root(Outcome.CONVERGED)
                 if not chord_step:
-                    stale = 0 if s <= 0.5 * smallest else stale + 1
-                    smallest = min(smallest, s)
-                    if stale >= MAX_STALE_STEPS and smallest <= COARSE_STEP:
+                    if s > 0.5 * smallest and smallest <= COARSE_STEP:
                         return root(Outcome.ROUNDING)
+                    smallest = min(smallest, s)
         return root(Outcome.STEP_LIMIT)
 
 
@@ -279,7 +271,7 @@ def root_between(function: Callable[[float], float], low: float, high: float, to
         return None
     falls = True
     while high - low > tolerance and len(places) < MAX_STEPS:
-        c = _where_zero(places[-INVERSE_POINTS:], values[-INVERSE_POINTS:]) if falls else math.nan
+        c = _where_zero(places, values) if falls else math.nan
         if abs(c - places[-1]) <= tolerance:
             return min(max(c, low), high)
         c = c if low < c < high else 0.5 * (low + high)

@@ -11,7 +11,7 @@ Here are nodes, weights, interpolation, the running integral and the choice of p
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -20,13 +20,11 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
-from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE
+from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE, STEP_GROWTH
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
 
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields
-
-MIN_SPLIT_FRACTION = 0.25  # Least length of a panel that is longer than the fields need, over that length
 
 NO_PLACES = np.empty(0)
 
@@ -116,6 +114,7 @@ class Mesh:
     order: int  # Nodes on each panel, even (so that no node lies at infinity)
     scale: float = 1.0  # Length on which the fields vary in the middle; gaps are interpolated over `scale**2 + x**2`
     reformation: float = math.inf  # Edge beyond zero where a field that ends at zero re-forms; infinite where it does not
+    coarse_edges: Array | None = None  # Edges before panels were halved towards places; None where they were not
 
     @property
     def panels(self) -> int:
@@ -362,7 +361,7 @@ def adapt(
 def _evened(edges: Array, tails: Array, order: int, places: Array) -> Array:
     """Return edges of as few panels as have tails of about one, with zero and ``places`` among them."""
     # A tail goes with the power ``order - 1`` of the length.
-    counts = np.fmin(1.0, np.fmax(MIN_SPLIT_FRACTION, SPLIT_MARGIN * tails ** (1 / (order - 1))))
+    counts = np.fmin(1.0, np.fmax(1 / STEP_GROWTH**2, SPLIT_MARGIN * tails ** (1 / (order - 1))))
     fixed = [0, *(np.flatnonzero(np.isin(edges[1:-1], np.append(places, 0.0))) + 1), len(edges) - 1]
     found = []
     for first, last in pairwise(fixed):
@@ -383,21 +382,4 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         for side in (-1, 1):
             steps = (edges[at + side] - place) * halvings
             added.append(place + steps[np.abs(steps) > SAME_PLACE * abs(place)])
-    return replace(mesh, edges=np.unique(np.concatenate(added)))
-
-
-def ungraded(edges: Array, places: Mapping[float, float]) -> Array:
-    """Return edges without those by which panels halve towards each of ``places``, up to the length given with the place."""
-    # The coarsest panels of base_edges halve towards zero too: without them one panel would reach from there to the end of a
-    # long cavity, with no node where the bodies touch.
-    for place, longest in places.items():
-        for side in (-1.0, 1.0):
-            distance = side * (edges - place)
-            beyond = np.sort(distance[distance > 0])
-            ratios = beyond[1:] / beyond[:-1]
-            halving = np.abs(ratios - 2) < 1e-9
-            count = len(halving) if halving.all() else int(np.argmin(halving))
-            count = min(count, int((beyond[1:] <= longest).sum()))
-            if count:
-                edges = edges[(distance <= 0) | (distance >= beyond[count])]
-    return edges
+    return replace(mesh, edges=np.unique(np.concatenate(added)), coarse_edges=edges)
