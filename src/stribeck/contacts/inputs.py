@@ -224,8 +224,11 @@ def _check(form: Form, values: Mapping[str, float], given: Mapping[str, Any]) ->
 
 
 def _shown(name: str, values: Mapping[str, float], given: Mapping[str, Any]) -> str:
-    """Return a value as it was given."""
-    return show(values[name] if given.get(name) is None else given[name])
+    """Return a value as it was given, ``{ value, error }`` as people write it."""
+    value = values[name] if given.get(name) is None else given[name]
+    if isinstance(value, Mapping) and value.keys() == {"value", "error"}:
+        return show(f"{value['value']} +- {value['error']}")
+    return show(value)
 
 
 def _slope(form: Form, numbers: list[float], i: int) -> float:
