@@ -42,7 +42,7 @@ def pdms():
 @pytest.fixture
 def no_scans(monkeypatch):
     """Leave out the search for the next regimes, which is no matter here and slow."""
-    monkeypatch.setattr("stribeck.regimes.margins.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    monkeypatch.setattr("stribeck.regimes.overview.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
 
 
 # --- the contact law ---
