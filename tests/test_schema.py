@@ -142,7 +142,7 @@ def wrong(row):
             yield low, bound
     yield math.nan, "finite|begin with a number"
     yield True, "single real number"
-    yield {"a": 1}, "single real number"
+    yield {"a": 1}, "single real number|table of value and error"
     if DIMENSIONS[row.dimension].unit:
         yield "lots", "does not begin with a number"
         yield "7 K", "expected .* such as|mean turns or radians"
