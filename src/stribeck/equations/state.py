@@ -286,7 +286,7 @@ def mesh_for(
     pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    highest, error = highest_degree(order), error_of(tolerance)
+    error, highest = error_of(tolerance), highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
     if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
