@@ -265,6 +265,7 @@ def mesh_for(
     anew: bool = True,
 ) -> Mesh:
     """Return the coarsest mesh that resolves a guess; where a film re-forms its panels halve towards that place."""
+    error = error_of(tolerance)
     cavitation = groups.model.cavitation
     film = groups.model.film
     plateau, fractional = decay_of(film, float(groups.speed))
@@ -286,7 +287,7 @@ def mesh_for(
     pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    error, highest = error_of(tolerance), highest_degree(order)
+    highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
     if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
