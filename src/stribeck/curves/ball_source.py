@@ -134,7 +134,7 @@ def _has_closed_friction(coordinate: Coordinate, ends: Array) -> bool:
     return rule.is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
 
 
-def _fastest(problem: BallKnots, start: float, end: float) -> tuple[Knot | None, Outcome]:
+def _first_state(problem: BallKnots, start: float, end: float) -> tuple[Knot | None, Outcome]:
     """Return the first state from fast to slow that can be solved, and why none is faster."""
     outcome, step = Outcome.CONVERGED, MAX_LOG_STEP / WINDOW
     try:
@@ -162,7 +162,7 @@ def ball_source(
     ends = values[[0, -1]] if ends is None else ends
     is_closed = _has_closed_friction(coordinate, ends)
     problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta))
-    fastest, failure = _fastest(problem, float(places[-1]), float(places[0]))
+    fastest, failure = _first_state(problem, float(places[-1]), float(places[0]))
     path = HermitePath(problem, (), failure)
     if fastest is not None:
         path = follow(problem, fastest, float(places[0]), rtol_of_states, Progress(places, on_point))

@@ -86,7 +86,7 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
     node = int(np.argmin(h[nodes]))
     polynomial = (_taylor(mesh.order)[node] @ np.log(h[nodes] / mesh.far[nodes])).tolist()[::-1]
     start = s = float(rule.nodes[node])
-    low, high = _around(mesh.order)[:, node].tolist()
+    low, high = _brackets(mesh.order)[:, node].tolist()
     for _ in range(MAX_STEPS):
         _, slope, curvature = _jet(polynomial, s - start)
         x = c + d * s
@@ -116,7 +116,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
     slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
     c, d, s, origin = mesh.centres[first + k], mesh.half_widths[first + k], start, rule.nodes[about]
-    low, high = _around(order)[:, about]
+    low, high = _brackets(order)[:, about]
     for _ in range(MAX_STEPS):
         basis, x = _powers(s - origin, order), c + d * s
         far = mesh.scale**2 + x * x
@@ -133,7 +133,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
 
 
 @lru_cache(maxsize=32)
-def _around(order: int) -> Array:
+def _brackets(order: int) -> Array:
     """Return the nodes or ends of a panel before and behind each node: the minimum around the lowest one lies between."""
     nodes = reference(order).nodes
     return np.array([np.append(-1.0, nodes[:-1]), np.append(nodes[1:], 1.0)])

@@ -164,10 +164,10 @@ def with_slope(function: Callable[[Any], Any], at: Array) -> tuple[Array, Array]
     at = np.asarray(at, dtype=float)
     found = function(Dual(at, 1.0))
     value, slope = value_of(found), slope_of(found)
-    return _filled(value, at), _filled(slope, at)
+    return _at_all_places(value, at), _at_all_places(slope, at)
 
 
-def _filled(values: Any, at: Array) -> Array:
+def _at_all_places(values: Any, at: Array) -> Array:
     """Return values at all places."""
     if np.shape(values) == at.shape:
         return values  # type: ignore[no-any-return]

@@ -17,13 +17,13 @@ from stribeck.numerics.settings import HALF_DIGITS, MAX_LOG_STEP, MAX_PATH_STATE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
-__all__ = ["Followed", "Path", "follow"]
+__all__ = ["PathProblem", "Path", "follow"]
 
 OnInterval = Callable[[float, float], object]
 """What is called with the ends of each step."""
 
 
-class Followed(Protocol):
+class PathProblem(Protocol):
     """The states along a coordinate."""
 
     @property
@@ -54,7 +54,7 @@ class Path(ABC):
         """Return how long the next step should be."""
 
     @abstractmethod
-    def poor(self, rtol: float, is_whole: bool) -> Sequence[int]:
+    def intervals_to_halve(self, rtol: float, is_whole: bool) -> Sequence[int]:
         """Return the numbers of the intervals to be halved, of a path that is whole or still grows."""
 
     def on_branch(self, upwards: bool) -> Self:
@@ -93,7 +93,7 @@ class Path(ABC):
 
 
 def follow(
-    problem: Followed,
+    problem: PathProblem,
     start: Any,
     end: float,
     rtol: float,
@@ -127,7 +127,7 @@ def follow(
             if isinstance(new, Outcome):
                 outcome = new
                 break
-            longer = _halved(path.with_state(new), rtol, False, upwards, refused)
+            longer = _halve_intervals(path.with_state(new), rtol, False, upwards, refused)
             path = longer.on_branch(upwards)
             if path is not longer:
                 outcome = Outcome.PATH_LOST
@@ -135,7 +135,7 @@ def follow(
             if on_interval is not None:
                 on_interval(*sorted((here.coordinate, new.coordinate)))
             here = new
-        path = _halved(path, rtol, True, upwards, refused)
+        path = _halve_intervals(path, rtol, True, upwards, refused)
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
     return replace(path, outcome=outcome)
@@ -147,11 +147,11 @@ def _next_coordinate(here: Any, end: float, step: float, upwards: bool) -> float
     return end if step == abs(end - here.coordinate) else there
 
 
-def _halved(path: Path, rtol: float, is_whole: bool, upwards: bool, refused: set[float]) -> Path:
+def _halve_intervals(path: Path, rtol: float, is_whole: bool, upwards: bool, refused: set[float]) -> Path:
     """Return a path whose poor intervals are halved, but those whose middle was ``refused`` by the solver."""
     while len(path.expansions) < MAX_PATH_STATES:
         states = path.expansions
-        ends = [(states[k], states[k + 1]) for k in path.poor(rtol, is_whole)]
+        ends = [(states[k], states[k + 1]) for k in path.intervals_to_halve(rtol, is_whole)]
         middles = {0.5 * (left.coordinate + right.coordinate): (left, right) for left, right in ends}
         wanted = [s for s, (left, right) in middles.items() if s not in refused and right.coordinate - s > MIN_LOG_STEP]
         if not wanted:

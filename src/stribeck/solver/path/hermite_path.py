@@ -25,7 +25,7 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.follow import Followed, Path
+from stribeck.solver.path.follow import Path, PathProblem
 
 __all__ = ["HermitePath", "Knot", "KnotProblem"]
 
@@ -41,7 +41,7 @@ class Knot:
     state: Any
 
 
-class KnotProblem(Followed, Protocol):
+class KnotProblem(PathProblem, Protocol):
     """The states of a path."""
 
     @property
@@ -172,7 +172,7 @@ class HermitePath(Path):
         growth = (SHARE / excess) ** (0.5 / (WINDOW - 2)) if excess > 0 else STEP_GROWTH
         return float(lengths[k]) * min(max(growth, 1 / STEP_GROWTH), STEP_GROWTH)
 
-    def poor(self, rtol: float, is_whole: bool) -> list[int]:
+    def intervals_to_halve(self, rtol: float, is_whole: bool) -> list[int]:
         """Return the numbers of the intervals whose error is larger than allowed, once all states around them are there."""
         return [k for k in range(len(self.knots) - 1) if self.excess(k, rtol) > 1.0] if is_whole else []
 

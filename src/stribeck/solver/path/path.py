@@ -29,7 +29,7 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.follow import Followed, Path
+from stribeck.solver.path.follow import Path, PathProblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def change_ratio(left: Expansion, right: Expansion) -> float:
     return (right.coordinate - left.coordinate) ** 2 / (left.radius * right.radius)
 
 
-class Problem(Followed, Protocol):
+class Problem(PathProblem, Protocol):
     """The states along a path of Taylor series: how each is solved, scaled, checked and read."""
 
     @property
@@ -213,7 +213,7 @@ class _Pieces:
         self.lengths = np.array([one.length for one in intervals])
         self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
 
-    def _evaluated(self, where: Array, basis: Array) -> Array:
+    def _polynomials(self, where: Array, basis: Array) -> Array:
         """Return the polynomials of numbered intervals, given those of Chebyshev or their derivatives."""
         found = np.empty((len(basis), 2 * self.count))
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
@@ -224,9 +224,9 @@ class _Pieces:
     def smooth(self, where: Array, parts: Any) -> tuple[Any, Array, Any]:
         """Return observables at parts of numbered intervals, their interpolation errors, and the Chebyshev basis."""
         basis, at = chebyshev_basis(parts, self.degree), value_of(parts)
-        both: Any = self._evaluated(where, value_of(basis))
+        both: Any = self._polynomials(where, value_of(basis))
         if isinstance(basis, Dual):
-            both = Dual(both, self._evaluated(where, basis.slope))
+            both = Dual(both, self._polynomials(where, basis.slope))
         found = both[:, : self.count]
         missed = self.interpolation_error[where] * ((at * (1 - at)) ** self.orders[where])[:, None]
         limit = missed / NEGLIGIBLE
@@ -312,7 +312,7 @@ class SolvedPath(Path):
         here = self.expansions[-1 if upwards else 0]
         return here.radius * 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(here.order, 1)))
 
-    def poor(self, rtol: float, is_whole: bool) -> list[int]:
+    def intervals_to_halve(self, rtol: float, is_whole: bool) -> list[int]:
         """Return the numbers of the intervals that do not interpolate within the tolerance, and of which half might."""
         return [k for k, one in enumerate(self.intervals) if one.length > 0 and one.is_poor(rtol)]
 
