@@ -64,6 +64,13 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     here = _Walls.at(law, x, wanted)
     part = np.ones(len(r_0))
     for _ in range(MAX_STEPS):
+        # A defect that is no number is never less: such a column has no flow.
+        lost = np.isnan(here.defect)
+        if lost.any():
+            found[:, left[lost]] = np.nan
+            if lost.all():
+                return Profile(*found)
+            left, wanted, part, here = left[~lost], wanted[:, ~lost], part[~lost], here.of(~lost)
         ahead = _step_rates(law, here.x, here.g, part * here.step, here.slope)
         done = (part == 1.0) & (here.step_over_stress() < STEP_RTOL)
         done &= larger(ahead - here.x) < STEP_RTOL * larger(here.x)
