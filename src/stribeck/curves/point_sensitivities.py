@@ -18,9 +18,8 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
 from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
-from stribeck.equations.point.sensitivity import LOG_STEP
 from stribeck.equations.point.system import Equations, Unknowns
-from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
+from stribeck.solver.point.sensitivity import GROUPS, LOG_STEP, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
 from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointObservables

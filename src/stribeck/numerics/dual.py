@@ -1,8 +1,8 @@
 r"""First derivatives of functions that are written with those of numpy, exact, as the function is evaluated.
 
-A :class:`Dual` is a value with its derivative by one number, or by several in the first axis.  It goes through sums, products,
-powers, exponentials, choices and the like as an array does, so that a law that is written once brings its slope.  The module
-knows no physics.
+What has a value and first derivatives goes through sums, products, powers, exponentials and the like as an array does, so that
+a law that is written once brings its slope.  A :class:`Dual` has that by one number, or by several in the first axis,
+:class:`stribeck.numerics.trace.Trace` those by fields.  The module knows no physics.
 
 Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 3 (forward mode).
 """
@@ -10,20 +10,113 @@ Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 3 (forward mod
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Self
 
 import numpy as np
 
 from stribeck._types import Array
 
-__all__ = ["PARTIALS", "Dual", "slope_of", "value_of", "with_slope"]
+__all__ = ["PARTIALS", "Dual", "FirstOrder", "chained", "slope_of", "value_of", "with_slope"]
 
 
-class Dual:
+class FirstOrder:
+    """A value with first derivatives, in whatever form: what arithmetic and the functions of numpy make of it."""
+
+    __slots__ = ("value",)
+
+    value: Any
+
+    def scaled(self, factor: Any, value: Any) -> Self:
+        """Return another value, whose derivatives are these times a factor."""
+        raise NotImplementedError
+
+    def joined(self, other: Self | None, value: Any) -> Self:
+        """Return another value, whose derivatives are these, plus those of another one."""
+        raise NotImplementedError
+
+    def __add__(self, other: Any) -> Self:
+        """Return the sum."""
+        if isinstance(other, FirstOrder):
+            return self.joined(other, self.value + other.value)  # type: ignore[arg-type]
+        return self.joined(None, self.value + other)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Self:
+        """Return the negative."""
+        return self.scaled(-1.0, -self.value)
+
+    def __sub__(self, other: Any) -> Self:
+        """Return the difference."""
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Self:
+        """Return the difference."""
+        return self.__neg__().__add__(other)
+
+    def __mul__(self, other: Any) -> Self:
+        """Return the product."""
+        if isinstance(other, FirstOrder):
+            value = self.value * other.value
+            return self.scaled(other.value, value).joined(other.scaled(self.value, value), value)  # type: ignore[arg-type]
+        return self.scaled(other, self.value * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Self:
+        """Return the quotient."""
+        if isinstance(other, FirstOrder):
+            value, factor = self.value / other.value, 1.0 / other.value
+            return self.scaled(factor, value).joined(other.scaled(-value * factor, value), value)  # type: ignore[arg-type]
+        return self.scaled(1.0 / np.asarray(other), self.value / other)
+
+    def __rtruediv__(self, other: Any) -> Self:
+        """Return the quotient."""
+        value = other / self.value
+        return self.scaled(-value / self.value, value)
+
+    def __pow__(self, exponent: Any) -> Self:
+        """Return the power; an exponent without a derivative."""
+        return np.power(self, exponent)  # type: ignore[no-any-return, call-overload]
+
+    def __abs__(self) -> Self:
+        """Return the absolute value."""
+        return self.scaled(np.sign(self.value), np.abs(self.value))
+
+    def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
+        """Return what a function of numpy makes of it: a plain value where its derivative is zero."""
+        if method != "__call__" or options:
+            return NotImplemented
+        operator = OPERATORS.get(function)
+        if operator is not None:
+            first, second = given
+            return operator[0](first, second) if isinstance(first, FirstOrder) else operator[1](second, first)
+        values = [value_of(each) for each in given]
+        if function in FLAT:
+            return function(*values)
+        partials = PARTIALS.get(function) or SPECIAL.get(function.__name__)
+        if partials is None:
+            return NotImplemented
+        value = function(*values)
+        known = zip(given, partials, strict=True)
+        return chained(value, given, [one(value, *values) if isinstance(each, FirstOrder) else None for each, one in known])
+
+
+def chained(value: Any, given: Sequence[Any], slopes: Sequence[Any]) -> Any:
+    """Return a value with the derivatives of what it follows from, each times a slope; a slope None stands for one."""
+    found: Any = None
+    for each, slope in zip(given, slopes, strict=True):
+        if isinstance(each, FirstOrder):
+            part = each.joined(None, value) if slope is None else each.scaled(slope, value)
+            found = part if found is None else found.joined(part, value)
+    return value if found is None else found
+
+
+class Dual(FirstOrder):
     """A value and its derivative."""
 
-    __slots__ = ("slope", "value")
+    __slots__ = ("slope",)
 
     def __init__(self, value: Any, slope: Any) -> None:
         self.value, self.slope = value, slope
@@ -37,62 +130,18 @@ class Dual:
         """Return another value, whose derivative is this one times a factor."""
         return Dual(value, factor * self.slope)
 
+    def joined(self, other: Dual | None, value: Any) -> Dual:
+        """Return another value, whose derivative is this one, plus that of another dual."""
+        return Dual(value, self.slope if other is None else self.slope + other.slope)
+
     def __getitem__(self, places: Any) -> Dual:
         """Return some places; the derivative has the axes of the value."""
         slope = np.broadcast_to(self.slope, np.shape(self.value)) if np.ndim(self.slope) == 0 else self.slope
         return Dual(self.value[places], slope[places])
 
-    # What laws are mostly made of, without the way through numpy.
-
-    def __add__(self, other: Any) -> Dual:
-        """Return the sum."""
-        if isinstance(other, Dual):
-            return Dual(self.value + other.value, self.slope + other.slope)
-        return Dual(self.value + other, self.slope)
-
-    __radd__ = __add__
-
-    def __neg__(self) -> Dual:
-        """Return the negative."""
-        return Dual(-self.value, -self.slope)
-
-    def __sub__(self, other: Any) -> Dual:
-        """Return the difference."""
-        if isinstance(other, Dual):
-            return Dual(self.value - other.value, self.slope - other.slope)
-        return Dual(self.value - other, self.slope)
-
-    def __rsub__(self, other: Any) -> Dual:
-        """Return the difference."""
-        return Dual(other - self.value, -self.slope)
-
-    def __mul__(self, other: Any) -> Dual:
-        """Return the product."""
-        if isinstance(other, Dual):
-            return Dual(self.value * other.value, self.slope * other.value + self.value * other.slope)
-        return Dual(self.value * other, self.slope * other)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> Dual:
-        """Return the quotient."""
-        if isinstance(other, Dual):
-            value = self.value / other.value
-            return Dual(value, (self.slope - value * other.slope) / other.value)
-        return Dual(self.value / other, self.slope / other)
-
-    def __rtruediv__(self, other: Any) -> Dual:
-        """Return the quotient."""
-        value = other / self.value
-        return Dual(value, -value / self.value * self.slope)
-
     def __matmul__(self, matrix: Array) -> Dual:
         """Return the product with a matrix of numbers; the derivative has the axes of the value."""
         return Dual(self.value @ matrix, self.slope @ matrix)
-
-    def __pow__(self, exponent: Any) -> Dual:
-        """Return the power; an exponent without a derivative."""
-        return np.power(self, exponent)  # type: ignore[no-any-return, call-overload]
 
     def __lt__(self, other: Any) -> Any:
         """Return whether the value is less."""
@@ -110,31 +159,6 @@ class Dual:
         """Return whether the value is greater or equal."""
         return self.value >= value_of(other)
 
-    def __abs__(self) -> Dual:
-        """Return the absolute value."""
-        return Dual(np.abs(self.value), np.sign(self.value) * self.slope)
-
-    def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
-        """Return what a function of numpy makes of it: a plain value where its derivative is zero."""
-        if method != "__call__" or options:
-            return NotImplemented
-        operator = OPERATORS.get(function)
-        if operator is not None:
-            first, second = given
-            return operator[0](first, second) if isinstance(first, Dual) else operator[1](second, first)
-        values = [value_of(each) for each in given]
-        if function in FLAT:
-            return function(*values)
-        partials = PARTIALS.get(function) or SPECIAL.get(function.__name__)
-        if partials is None:
-            return NotImplemented
-        value, slope = function(*values), None
-        for each, partial in zip(given, partials, strict=True):
-            if isinstance(each, Dual):
-                by = partial(value, *values) * each.slope
-                slope = by if slope is None else slope + by
-        return Dual(value, slope)
-
     def __array_function__(self, function: Any, types: Any, given: Any, options: Any) -> Any:
         """Return a choice or a clipped value, constants of its shape, or the real part."""
         if function is np.where and len(given) == 3:
@@ -150,8 +174,8 @@ class Dual:
 
 
 def value_of(given: Any) -> Any:
-    """Return the value of a dual; what is none, as it is."""
-    return given.value if isinstance(given, Dual) else given
+    """Return the value of what has derivatives; what has none, as it is."""
+    return given.value if isinstance(given, FirstOrder) else given
 
 
 def slope_of(given: Any) -> Any:
@@ -190,12 +214,12 @@ FLAT = {
     np.logical_not,
 }
 
-# Arithmetic with an array to the left, which asks numpy first: of the dual to the left, and to the right.
+# Arithmetic with an array to the left, which asks numpy first: of what has derivatives to the left, and to the right.
 OPERATORS: dict[Any, tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]]] = {
-    np.add: (Dual.__add__, Dual.__radd__),
-    np.subtract: (Dual.__sub__, Dual.__rsub__),
-    np.multiply: (Dual.__mul__, Dual.__rmul__),
-    np.divide: (Dual.__truediv__, Dual.__rtruediv__),
+    np.add: (FirstOrder.__add__, FirstOrder.__add__),
+    np.subtract: (FirstOrder.__sub__, FirstOrder.__rsub__),
+    np.multiply: (FirstOrder.__mul__, FirstOrder.__mul__),
+    np.divide: (FirstOrder.__truediv__, FirstOrder.__rtruediv__),
 }
 
 Partial = Callable[..., Any]

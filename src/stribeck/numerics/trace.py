@@ -17,12 +17,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import Dual, FirstOrder, chained, value_of
 from stribeck.numerics.jets import Jet
 
 __all__ = ["Matrix", "Operator", "Trace", "Value", "act", "mapped", "matrix_of", "pointwise", "value_of"]
-
-ZERO = np.zeros(())
 
 
 class Operator(Protocol):
@@ -76,18 +74,10 @@ class Term(NamedTuple):
     right: Numbers | None
 
 
-class Trace:
+class Trace(FirstOrder):
     """A value and its derivatives."""
 
-    def __array_ufunc__(self, function: Any, method: str, *given: Any, **options: Any) -> Any:
-        """Return what a function of numpy makes of it, beside plain values."""
-        operator = OPERATORS.get(function)
-        if method != "__call__" or options:
-            return NotImplemented
-        if operator is not None:
-            return operator(*given)
-        [place] = [k for k, each in enumerate(given) if isinstance(each, Trace)]
-        return mapped(lambda value: function(*given[:place], value, *given[place + 1 :]), self)
+    __slots__ = ("columns", "terms")
 
     def __init__(
         self, value: Array, terms: Mapping[str, Sequence[Term]] | None = None, columns: Mapping[str, Array] | None = None
@@ -106,7 +96,7 @@ class Trace:
         """Return a number among the unknowns, or any other, measured in a unit."""
         return cls(value, None, {name: np.full(np.shape(value), unit, dtype=float)})
 
-    def scaled(self, factor: Numbers, value: Array) -> Trace:
+    def scaled(self, factor: Any, value: Any) -> Trace:
         """Return another value, whose derivatives are these times a factor at each node."""
         terms = {
             name: [Term(_product(factor, left), operator, right) for left, operator, right in each]
@@ -114,9 +104,9 @@ class Trace:
         }
         return Trace(value, terms, {name: factor * column for name, column in self.columns.items()})
 
-    def _joined(self, other: Trace, value: Array) -> Trace:
-        """Return another value, whose derivatives are the sums of both."""
-        if not other.terms and not other.columns:
+    def joined(self, other: Trace | None, value: Any) -> Trace:
+        """Return another value, whose derivatives are these, plus those of another trace."""
+        if other is None or not (other.terms or other.columns):
             return Trace(value, self.terms, self.columns)
         terms, columns = dict(self.terms), dict(self.columns)
         for name, each in other.terms.items():
@@ -145,63 +135,8 @@ class Trace:
                 found = found + self.columns[name] * change
         return np.asarray(found)
 
-    def __add__(self, other: Value) -> Trace:
-        """Return the sum."""
-        if not isinstance(other, Trace):
-            return Trace(self.value + other, self.terms, self.columns)
-        return self._joined(other, self.value + other.value)
-
-    __radd__ = __add__
-
-    def __neg__(self) -> Trace:
-        """Return the negative."""
-        return self.scaled(-1.0, -self.value)
-
-    def __sub__(self, other: Value) -> Trace:
-        """Return the difference."""
-        return self + (-other)
-
-    def __rsub__(self, other: Value) -> Trace:
-        """Return the difference."""
-        return -self + other
-
-    def __mul__(self, other: Value) -> Trace:
-        """Return the product."""
-        if isinstance(other, Trace):
-            return self.scaled(other.value, ZERO)._joined(other.scaled(self.value, ZERO), self.value * other.value)
-        return self.scaled(other, self.value * other)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Value) -> Trace:
-        """Return the quotient."""
-        if isinstance(other, Trace):
-            return self * other.__rtruediv__(1.0)
-        return self.scaled(1 / np.asarray(other), self.value / other)
-
-    def __rtruediv__(self, other: Array | float) -> Trace:
-        """Return the quotient."""
-        value = other / self.value
-        return self.scaled(-value / self.value, value)
-
-
-NOTHING = Trace(ZERO)
 
 Value: TypeAlias = Trace | Array | float
-
-# What numpy asks of a trace to the right of an array.
-OPERATORS: dict[Any, Callable[..., Trace]] = {
-    np.add: lambda a, b: b + a if isinstance(b, Trace) else a + b,
-    np.subtract: lambda a, b: a - b if isinstance(a, Trace) else -b + a,
-    np.multiply: lambda a, b: b * a if isinstance(b, Trace) else a * b,
-    np.divide: lambda a, b: a / b if isinstance(a, Trace) else b.__rtruediv__(a),
-    np.negative: lambda a: -a,
-}
-
-
-def value_of(given: Any) -> Any:
-    """Return the value of a trace or of a dual; what is neither, as it is."""
-    return given.value if isinstance(given, Trace | Dual) else given
 
 
 def mapped(function: Callable[[Any], Any], given: Any) -> Any:
@@ -223,15 +158,7 @@ def pointwise(function: Callable[..., tuple[Any, ...]], *given: Any) -> Any:
     A derivative None stands for one.  Of plain values the function gives its plain value.
     """
     value, *slopes = function(*(value_of(each) for each in given))
-    found: Any = None
-    for each, slope in zip(given, slopes, strict=True):
-        if isinstance(each, Trace):
-            part = each if slope is None else each.scaled(slope, ZERO)
-            found = part._joined(found or NOTHING, value)
-        elif isinstance(each, Dual):
-            by = each.slope if slope is None else slope * each.slope
-            found = Dual(value, by if found is None else found.slope + by)
-    return value if found is None else found
+    return chained(value, given, slopes)
 
 
 def act(operator: Operator, given: Any) -> Any:

@@ -262,15 +262,15 @@ _kept: OrderedDict[Resolution, Operators] = OrderedDict()
 _lock = threading.Lock()
 
 
-def operators_of(found: Resolution, mesh: PolarMesh | None = None) -> Operators:
-    """Return the operators of a resolution, on its mesh where that is known; the last ones are kept."""
+def operators_of(found: Resolution) -> Operators:
+    """Return the operators of a resolution; the last ones are kept."""
     found = replace(found, model=replace(BASE_MODEL, solid=found.model.solid))
     with _lock:
         if found in _kept:
             _kept.move_to_end(found)
             return _kept[found]
     # They are made without the lock: a process that is forked meanwhile would find it taken for good.
-    operators = Operators(found.mesh if mesh is None else mesh, found.model.solid)
+    operators = Operators(found.mesh, found.model.solid)
     with _lock:
         operators = _kept.setdefault(found, operators)
         while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > NEGLIGIBLE * MAX_BYTES:

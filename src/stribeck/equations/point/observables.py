@@ -53,8 +53,6 @@ OBSERVABLES = (
 # Those that are no smooth functions of the unknowns: the place of the minimum jumps.
 MINIMA = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
 
-SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)  # Observables that have a series
-
 # Friction integrals of FrictionWithin by name: what a film has up to where the liquid ends.
 WITHIN = ("within_couette", "within_poiseuille", "within_edge")
 
@@ -72,11 +70,6 @@ def _to_centre(degree: int) -> Array:
 
 def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
     """Return the observables by name, see :data:`OBSERVABLES`."""
-    return smooth_observables(equations, y) | minima(equations.operators.mesh, y.gap)
-
-
-def smooth_observables(equations: Equations, y: Unknowns) -> dict[str, float]:
-    """Return the observables that are smooth functions of the unknowns: all but the minima of the gap."""
     mesh, h = equations.operators.mesh, y.gap
     contact = equations.law.pressure(h)
     found = {
@@ -86,18 +79,9 @@ def smooth_observables(equations: Equations, y: Unknowns) -> dict[str, float]:
         "central_pressure": at_centre(mesh, contact + y.fluid),
         "offset": y.offset,
     }
-    return found | friction(equations, y, contact)
-
-
-def minima(mesh: PolarMesh, h: Array) -> dict[str, float]:
-    """Return the minimum of a gap, its place, and the minimum on the middle line."""
     lowest: Minimum = minimum_gap(mesh, h)
-    return {
-        "minimum_gap": lowest.gap,
-        "minimum_radius": lowest.radius,
-        "minimum_angle": lowest.angle,
-        "minimum_gap_on_axis": minimum_on_axis(mesh, h).gap,
-    }
+    found |= {"minimum_gap": lowest.gap, "minimum_radius": lowest.radius, "minimum_angle": lowest.angle}
+    return found | {"minimum_gap_on_axis": minimum_on_axis(mesh, h).gap} | friction(equations, y, contact)
 
 
 def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, float]:

@@ -53,11 +53,6 @@ class Level:
         """Return the level relabelled with a model whose states start from it."""
         return replace(self, resolution=replace(self.resolution, model=model))
 
-    def at(self, speed: float, law: ContactLaw, y: Unknowns) -> Level:
-        """Return a guess of the state of another speed and law on the same mesh."""
-        equations = replace(self.equations, speed=speed, law=law)
-        return replace(self, equations=equations, iterated=replace(self.iterated, unknowns=y))
-
     def on(self, resolution: Resolution) -> Level:
         """Return the state on another mesh, without operators."""
         operators = Operators(resolution.mesh, resolution.model.solid)
@@ -69,10 +64,6 @@ class Level:
         op = self.equations.operators
         equations = replace(self.equations, operators=Operators(op.mesh, op.solid))
         return replace(self, equations=equations, iterated=replace(self.iterated, preconditioner=None))
-
-    def with_operators(self) -> Level:
-        """Return the level with operators that are shared by all states on its mesh."""
-        return replace(self, equations=replace(self.equations, operators=operators_of(self.resolution, self.mesh)))
 
     @property
     def effort(self) -> float:

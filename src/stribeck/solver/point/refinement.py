@@ -236,18 +236,16 @@ def follow(
     neighbour: Pair,
     rtol: float,
     line: Sequence[tuple[float, Pair]] = (),
-    predicted: Unknowns | None = None,
 ) -> Pair | None:
     """Return the state of other groups from a neighbour, on its meshes where they fit; None if the iteration fails.
 
-    ``line`` holds weights and states whose sum predicts this one, ``predicted`` a prediction on the neighbour's finer mesh.
+    ``line`` holds weights and states whose sum predicts this one.
     """
     rtol = max(rtol, neighbour.fine.equations.finest)
     now, weights = neighbour.fine.resolution, [weight for weight, _ in line]
     tolerance, wanted = newton_tolerance(rtol), mesh_for_neighbour(speed, law, neighbour, rtol)
-    start, mesh = predicted, neighbour.fine.mesh
-    if start is None:
-        start = extrapolate_levels(weights, [each.fine for _, each in line], mesh) if line else neighbour.fine.unknowns
+    mesh = neighbour.fine.mesh
+    start = extrapolate_levels(weights, [each.fine for _, each in line], mesh) if line else neighbour.fine.unknowns
     if wanted != now:
         coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance)
         if not coarse.outcome.ok:
@@ -255,18 +253,13 @@ def follow(
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
     old = neighbour.coarse
-    if predicted is not None:
-        guess = transfer(predicted, mesh, old.mesh)
-    else:
-        guess = extrapolate_levels(weights, [each.coarse for _, each in line], old.mesh) if line else old.unknowns
+    guess = extrapolate_levels(weights, [each.coarse for _, each in line], old.mesh) if line else old.unknowns
     coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner)
     if not coarse.outcome.ok:
         return None
     if not (line and not now.is_full):
         start = guess_from_coarse(coarse, neighbour)
-    # A state that is predicted from afar is to be expanded with the factors of its own Jacobian.
-    kept = None if predicted is not None else neighbour.fine.iterated.preconditioner
-    fine = solve_level(now, speed, law, start, mesh, tolerance, kept)
+    fine = solve_level(now, speed, law, start, mesh, tolerance, neighbour.fine.iterated.preconditioner)
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 

@@ -1,9 +1,15 @@
-"""Derivatives of the observables of a solved ball with respect to its groups, and to numbers of its fluid and solid."""
+r"""Derivatives of the observables of a solved ball with respect to its groups, and to numbers of its fluid and solid.
+
+.. math:: \frac{dy}{d\ln G} = -J^{-1} \frac{\partial R}{\partial \ln G}
+
+for each group G, or an input that changes numbers of fluid or solid, with the products of Newton's Jacobian at
+the state and GMRES.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -11,20 +17,28 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import Groups
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.cavities.capacitance import Capacitance
 from stribeck.equations.cavities.system import CavitatedLinear
 from stribeck.equations.point.observables import observables
+from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.sensitivity import Direction, Measure, log_derivatives
-from stribeck.equations.point.system import Linear
-from stribeck.numerics.krylov import Apply
-from stribeck.numerics.settings import EPSILON, MAX_BAND
+from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
+from stribeck.numerics.krylov import Apply, gmres
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_BAND, MAX_KRYLOV, NEGLIGIBLE
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.state import PointState
 
-__all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
+__all__ = ["GROUPS", "LOG_STEP", "derivatives_along", "state_derivatives"]
+
+Direction = Callable[[float], Groups]
+"""Groups, with their model, after a step of the logarithm of a group or an input."""
+
+Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
+"""Observables of a state by name."""
+
+LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences, whose error is its square
 
 
 def state_derivatives(
@@ -41,23 +55,74 @@ def state_derivatives(
     return {name: np.where(zero, 0.0, column[columns]) for name, column in found.items()}
 
 
+def _moved(groups: Groups, name: str, step: float) -> Groups:
+    return replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
+
+
 def derivatives_along(
     state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = EPSILON
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions, to a relative tolerance."""
     pair = state.work
     assert isinstance(pair, Pair)
-    level = pair.fine
+    equations, y, kept = pair.fine.equations, pair.fine.unknowns, pair.fine.iterated.preconditioner
+    linear = equations.linear(y)
+    precondition = _preconditioner(linear, kept)
+    columns: dict[str, list[float]] = {}
+    for name, moved in directions.items():
+        near = [_beside(equations, moved(sign * LOG_STEP)) for sign in (1.0, -1.0)]
+        ahead, behind = (each.residual(y) for each in near)
+        shape, flow = ((a - b) / (2 * LOG_STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
+        change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * LOG_STEP))
+        suction_change = (near[0].least - near[1].least) / (2 * LOG_STEP) if math.isfinite(equations.least) else 0.0
+        right = linear.sources(change, suction_change)
+        x = _solved(linear, precondition, right, tolerance)
+        if x is None and kept is not None:
+            precondition, kept = _preconditioner(linear, None), None
+            x = _solved(linear, precondition, right, tolerance)
+        if x is None:
+            raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
+        dy = linear.changes(x, change[0])
+        size = LOG_STEP / max(1.0, float(np.abs(dy.gap / y.gap).max()))
+        values = []
+        for sign in (1.0, -1.0):
+            each = _beside(equations, moved(sign * size))
+            values.append(measure(each, each.with_same_active_set(y.moved(dy, sign * size), y)))
+        for each_name, value in values[0].items():
+            columns.setdefault(each_name, []).append((value - values[1][each_name]) / (2 * size))
+    return {name: np.array(column) for name, column in columns.items()}
 
-    def preconditioner(linear: Linear, kept: Any) -> Apply:
-        if not isinstance(linear, CavitatedLinear):
-            return BandedModes(linear, MAX_BAND) if kept is None else kept
-        found = Capacitance(BandedModes(linear, MAX_BAND), level.mesh, linear.cavitated.shape) if kept is None else kept
-        return found.of(linear)
 
-    kept = level.iterated.preconditioner
-    return log_derivatives(level.equations, level.unknowns, directions, preconditioner, kept, measure, tolerance)
+def _preconditioner(linear: Linear, kept: Any) -> Apply:
+    """Return the preconditioner that Newton's iteration kept, or that of this Jacobian."""
+    if not isinstance(linear, CavitatedLinear):
+        return BandedModes(linear, MAX_BAND) if kept is None else kept
+    if kept is None:
+        kept = Capacitance(BandedModes(linear, MAX_BAND), linear.equations.operators.mesh, linear.cavitated.shape)
+    return kept.of(linear)  # type: ignore[no-any-return]
 
 
-def _moved(groups: Groups, name: str, step: float) -> Groups:
-    return replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
+def _solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float) -> Array | None:
+    """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
+    x, rest, left = np.zeros_like(right), right, 1.0
+    while True:
+        here = max(LOG_STEP, tolerance / left)  # the preconditioner is in single precision: the next round removes its error
+        found = gmres(linear.product, preconditioner, rest, here, MAX_KRYLOV)
+        if not found.left <= here / NEGLIGIBLE:
+            return None
+        x, left = x + found.x, left * here
+        if left <= tolerance * (1.0 + HALF_DIGITS):
+            return x
+        rest = right - linear.product(x)
+
+
+def _beside(equations: Equations, here: Groups) -> Equations:
+    """Return the equations of other groups on the same mesh."""
+    speed, solid, operators = float(here.speed), here.model.solid, equations.operators
+    if solid != operators.solid:
+        operators = Operators(operators.mesh, solid)
+    least = here.model.cavity_pressure if math.isfinite(equations.least) else equations.least
+    film = plane_of(here.model.film.at(speed))
+    if film == equations.film and speed == equations.speed:
+        film = equations.film  # which keeps its last local solutions
+    return replace(equations, operators=operators, speed=speed, law=contact_law(here), film=film, least=least)

@@ -79,10 +79,9 @@ def solve_from(
     groups: Groups,
     rtol: float = 1e-6,
     line: Sequence[tuple[float, PointState]] = (),
-    predicted: Unknowns | None = None,
 ) -> PointState:
     """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves, or from cold if that fails."""
-    # ``line`` holds weights and states whose sum predicts this one; ``predicted`` lies on the neighbour's finer mesh.
+    # ``line`` holds weights and states whose sum predicts this one.
     check(groups, rtol)
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
@@ -91,7 +90,7 @@ def solve_from(
     if same_kinds(pair.fine.resolution.model, model):
         pair = pair.relabelled(model)
     cold = None
-    if predicted is None and _is_far(pair, speed, law):
+    if _is_far(pair, speed, law):
         cold = solve_cold(groups, rtol)
         if cold.outcome.ok:
             return cold
@@ -99,9 +98,8 @@ def solve_from(
     if pair.fine.resolution.model == model:
         refined, followed = _methods(model)
         pairs = [(weight, state.work.relabelled(model)) for weight, state in line if isinstance(state.work, Pair)]
-        by_series = {} if predicted is None else {"predicted": predicted}
         with suppress(MeshTooLargeError):
-            found = followed(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
+            found = followed(speed, law, pair, rtol, pairs if len(pairs) == len(line) else ())
             if found is not None:
                 held = holds(found, rtol)
                 warm = _state(groups, rtol, found if held else refined(speed, law, found.fine, rtol, model, found))
@@ -259,9 +257,8 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
     return _state(groups, rtol, replace(found, outcome=outcome), shift)
 
 
-def _dry_level(law: ContactLaw, degree: int, tolerance: float, model: Model, halvings: int | None = None) -> Level:
+def _dry_level(law: ContactLaw, degree: int, tolerance: float, model: Model) -> Level:
     found = resolution(0.0, law, degree, 2, model)
-    found = found if halvings is None else replace(found, halvings=halvings)
     operators = operators_of(found)
     dry = dry_contact(operators, law, tolerance)
     y = Unknowns(np.tile(dry.gap, (2, 1)), np.zeros((2, dry.gap.size)), dry.offset)
