@@ -23,8 +23,6 @@ from stribeck.batches.states import Chain
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 
-__all__ = ["Executor", "SweepError", "WorkerDiedError", "solve_here", "solve_on_cluster", "solve_on_processes"]
-
 POLL_INTERVAL = 0.25  # Time between two looks at whether the user wants to stop [s]
 
 CONNECTION_TIMEOUT = 10.0  # Time that a scheduler has to answer [s]

@@ -14,8 +14,6 @@ from stribeck.contacts.groups import Groups
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["broadcast_inputs", "varied"]
-
 
 def varied(
     problem: Groups | Contact, inputs: Mapping[str, Any], dims: Sequence[str] | None

@@ -13,8 +13,6 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 
-__all__ = ["MAX_CHAIN", "chains_of", "coordinates"]
-
 MAX_CHAIN = 40  # States of a chain: a cold start costs as much as ten that follow, and a lost worker loses one chain
 
 LOAD_WEIGHT = 0.3  # Of a step in load at fixed relative roughness, against one in speed: it hardly changes the fields

@@ -24,8 +24,6 @@ from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.numbers import columns_of_states, si_films
 from stribeck.solver.point.solution import PointSolution
 
-__all__ = ["BatchSolution", "without_fields"]
-
 
 def without_fields(solution: Any) -> Any:
     """Return a state with its numbers alone: the fields of thousands would fill the memory."""

@@ -21,8 +21,6 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.solver.solve import check_rtol
 
-__all__ = ["solve_batch"]
-
 Progress = Callable[[int, int], object]
 
 

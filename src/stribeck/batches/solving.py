@@ -10,8 +10,6 @@ from stribeck.batches.executors import Executor, Row, SweepError, WorkerDiedErro
 from stribeck.batches.order import chains_of
 from stribeck.batches.states import Chain, Ended, States
 
-__all__ = ["Kept", "solve_all"]
-
 MAX_REPLACEMENTS = 3  # Times that a killed worker process is replaced in one run
 
 

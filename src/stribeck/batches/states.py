@@ -18,8 +18,6 @@ from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["Chain", "Objects", "Ended", "States"]
-
 Objects = np.ndarray[Any, np.dtype[np.object_]]
 """A contact, an outcome or a solution for each state."""
 

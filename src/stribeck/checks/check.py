@@ -11,8 +11,6 @@ from typing import Annotated, Any, Literal
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.results import Card, Told
 
-__all__ = ["OUTSIDE", "MIN_STATED_CHANGE", "Check", "Checks", "Verdict", "check_against_limits", "number_text", "verdict_of"]
-
 Verdict = Literal["fine", "doubtful", "outside"]
 
 VERDICTS: tuple[Verdict, ...] = ("fine", "doubtful", "outside")  # From the best to the worst

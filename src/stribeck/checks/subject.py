@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
 
-__all__ = ["Subject"]
-
 # Names of the article's own parts, which need no mention
 BASE_MODEL_NAMES = ("", "newtonian", "half-plane", "half-space", "none")
 

@@ -20,8 +20,6 @@ from stribeck.solver.solve_error import SolveError
 if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve
 
-__all__ = ["ROWS", "Effort", "Row", "check", "checks_of"]
-
 Effort = Literal["contact", "state", "curve", "tail"]
 
 EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")  # What a check needs solved, cheapest first

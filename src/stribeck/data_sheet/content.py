@@ -24,8 +24,6 @@ from stribeck.solver.numbers import main_rows
 from stribeck.solver.solution import Solution
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["Content", "InputLine", "Section", "content_of"]
-
 # What a report says of its certainty if no input has an error.
 NO_ERRORS_TEXT = (
     'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.'

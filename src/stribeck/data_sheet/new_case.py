@@ -17,8 +17,6 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.schema import Input, needed_of, numbers_of
 from stribeck.quantities.units import DIMENSIONS
 
-__all__ = ["new_case"]
-
 MODEL_TEXT = """
 # A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
 # [fluid]

@@ -20,8 +20,6 @@ from stribeck.plot.curve import draw_report
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["REPORT_ENDINGS", "write_report"]
-
 REPORT_ENDINGS = (".html", ".pdf")
 
 PAGE_INCH = (8.27, 11.69)  # A4

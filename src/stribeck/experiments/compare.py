@@ -30,8 +30,6 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
-
 # Caveats of a comparison.
 CAVEATS = (
     "The weights say which of these is nearest to the data, not that it is right: look at the residuals of the best.",

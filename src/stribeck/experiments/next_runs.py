@@ -29,8 +29,6 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, checked_callback, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["NextRun", "Plan", "next_runs"]
-
 CANDIDATE_SPEEDS = 17  # Speeds from the slowest measured to the fastest, and a factor of SPEED_MARGIN to both sides
 SPEED_MARGIN = 3.0  # Ratio of speeds
 

@@ -20,8 +20,6 @@ from stribeck.plot.style import GREY, INK, MARK, Axes, Figure, add_legend, new_f
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.point.solution import Field, PointSolution
 
-__all__ = ["interference", "plot_field", "plot_point_solution"]
-
 Colours = Literal["film", "interference"]
 
 BANDS = (610e-9, 540e-9, 465e-9)  # Wavelengths of red, green and blue light in air [m]

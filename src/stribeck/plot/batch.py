@@ -9,8 +9,6 @@ from stribeck.plot import style
 from stribeck.plot.style import Axes, Figure
 from stribeck.quantities.units import InputError
 
-__all__ = ["plot_states"]
-
 
 @style.picture("nothing varies")
 def plot_states(found: Exported, *, ax: Axes | None = None, title: str = "") -> Figure:

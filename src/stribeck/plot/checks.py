@@ -11,8 +11,6 @@ from stribeck.plot import style
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, new_figure
 from stribeck.quantities.units import InputError
 
-__all__ = ["plot_checks"]
-
 VERDICT_MARKS = {"fine": (FLUID, "o"), "doubtful": (MARK, "D"), "outside": (CONTACT, "s")}  # Colour and marker
 
 MAX_DRAWN_RATIO = 1e3  # Largest ratio of a value and its limit that is drawn, and with its inverse the smallest

@@ -20,8 +20,6 @@ from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, a
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["draw_report", "plot_curve"]
-
 Abscissa = Literal["speed", "hersey"]
 Panel = Literal["film", "hydrodynamic", "shares"]
 

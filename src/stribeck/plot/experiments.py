@@ -10,8 +10,6 @@ from stribeck.plot import style
 from stribeck.plot.style import GREY, INK, MARK, SERIES, Axes, Figure, add_legend, make_logarithmic, new_figure
 from stribeck.quantities.formats import format_si
 
-__all__ = ["plot_comparison", "plot_plan"]
-
 
 @style.picture()
 def plot_comparison(comparison: Comparison, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:

@@ -13,8 +13,6 @@ from stribeck.plot import style
 from stribeck.plot.style import GREY, SERIES, Axes, Figure, add_legend, make_logarithmic, new_figure
 from stribeck.quantities.units import InputError
 
-__all__ = ["plot_fit", "plot_measurements"]
-
 POINTS = 121  # Of a fitted curve
 MARKERS = ("o", "s", "^", "D", "v", "P")  # Of the curves, in turn
 

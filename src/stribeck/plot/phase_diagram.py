@@ -34,8 +34,6 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["draw_phase_diagram", "draw_phase_space", "plot_phase_diagram", "plot_phase_space"]
-
 GROUP_SYMBOLS = {"speed": r"$\lambda$", "load": r"$\bar F_N$", "roughness": r"$\bar h_\mathrm{rms}$"}
 
 # Solved lines: label, colour and width.

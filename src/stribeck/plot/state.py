@@ -27,8 +27,6 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.solution import Solution
 
-__all__ = ["Scale", "plot_fields", "plot_profile"]
-
 Scale = tuple[float, str]  # Factor to the drawn unit, and the label with that unit
 
 SIZE = (7.5, 6.0)

@@ -11,8 +11,6 @@ from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, n
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.surfaces.analysis import Surface
 
-__all__ = ["plot_surface"]
-
 MAX_PIXELS = 1024  # Most points along a side of the map that is drawn
 
 

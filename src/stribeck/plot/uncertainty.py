@@ -9,8 +9,6 @@ from stribeck.plot.style import GREY, INK, Axes, Figure, new_figure
 from stribeck.quantities.units import InputError
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["plot_uncertainty"]
-
 MIN_DRAWN_RATIO = 1e-3  # Smallest end of an interval that is drawn, over the value as given, and with its inverse the largest
 
 

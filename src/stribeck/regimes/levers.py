@@ -17,8 +17,6 @@ from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import follows_surface
 
-__all__ = ["Lever", "cheapest_levers", "strongest_lever"]
-
 DESIGN_INPUTS = tuple(name for name, row in LINE.kept.items() if not row.follows_surface)  # What a designer can change
 
 WANTED_RATIO = 0.8  # Friction that a lever should reach, over the present one

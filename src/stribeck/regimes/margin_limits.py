@@ -11,8 +11,6 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry
 from stribeck.curves.coordinate import Over
 
-__all__ = ["BOX", "SEARCHES", "limits", "physical_bounds", "scan_rtol", "scanned_rtol", "with_smallest"]
-
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 """Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
 

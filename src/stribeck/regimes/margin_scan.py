@@ -22,8 +22,6 @@ from stribeck.regimes.margin_limits import limits, scan_rtol, with_smallest
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["SCANNED", "Crossing", "Margin", "Scan"]
-
 REACH = 1e6
 """Largest factor by which an input is changed."""
 

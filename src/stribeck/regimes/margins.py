@@ -26,8 +26,6 @@ from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan
 from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.solve import check_rtol, solve
 
-__all__ = ["RegimeMargins", "regime_margins"]
-
 THRESHOLD = 5e-3
 """Logarithm of the factor below which a contact is said to stand at the threshold."""
 

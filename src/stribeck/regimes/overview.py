@@ -29,8 +29,6 @@ from stribeck.solver.solution import Solution
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["Overview", "overview_of"]
-
 CURVE_POINTS = 41  # Points of the curve on which transitions are looked for, which are then located exactly.
 
 

@@ -10,16 +10,15 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import REGIMES
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.datasets import import_xarray
 from stribeck.quantities.outputs import COLUMNS, GROUPS, LINE
-from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
+from stribeck.regimes.phase_grid import AXES, MARKS, Diagram
 from stribeck.solver.about import input_attributes
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["diagram_dataset"]
 
 FLAGS = {
     "regime": (COLUMNS["regime"][1], {-1: "unknown", **dict(enumerate(REGIMES))}),

@@ -20,7 +20,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import friction_share, regime_numbers
+from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve, path_of
@@ -29,15 +29,13 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
+from stribeck.regimes.phase_grid import FIELDS, MARKS, Diagram, empty_diagram
 from stribeck.regimes.weakening import roughness_without_minimum, weakening, weakening_along
 from stribeck.solver.solve import check_rtol, solve
 from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["phase_diagram"]
 
 
 @answers_typos

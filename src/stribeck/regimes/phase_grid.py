@@ -16,14 +16,11 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.regime import REGIMES
 from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
-
-__all__ = ["AXES", "FIELDS", "LINES", "MARKS", "REGIMES", "Diagram", "empty_diagram"]
 
 AXES = ("load", "roughness", "speed")
 """The dimensions of a diagram, in their order."""

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from stribeck.regimes.margin_scan import Crossing, Margin
     from stribeck.regimes.margins import RegimeMargins
 
-__all__ = ["answer_sentence", "regime_sentence", "step_text", "ways_to"]
-
 
 def regime_sentence(solution: BaseSolution, friction: Friction) -> str:
     """Return the sentence on the regime of a state, its friction and what carries the load."""

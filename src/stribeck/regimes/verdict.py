@@ -16,8 +16,6 @@ from stribeck.uncertainty.band import Band, friction_band
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
 
-__all__ = ["CurveVerdict", "first_verdict", "whole_verdict"]
-
 
 @dataclass(frozen=True)
 class CurveVerdict:

@@ -30,8 +30,6 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import as_groups, check_rtol
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["Weakening", "roughness_without_minimum", "weakening", "weakening_along"]
-
 Criterion = Literal["slope", "plateau"]
 
 CRITERIA: tuple[Criterion, ...] = get_args(Criterion)

@@ -19,8 +19,6 @@ from stribeck.contacts.inputs import InputTable
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_word, show
 
-__all__ = ["COEFFICIENTS", "Axis", "Kind", "checked_group", "points_of", "read_axes"]
-
 Kind = Literal["grid", "list", "random", "latin-hypercube", "sobol"]
 
 KINDS: tuple[Kind, ...] = get_args(Kind)

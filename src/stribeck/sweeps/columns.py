@@ -11,8 +11,6 @@ from stribeck.contacts.groups import Physics
 from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.solver.numbers import numbers_of
 
-__all__ = ["ERROR", "Row", "input_columns", "row_of"]
-
 ERROR = "ERROR"  # Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`
 
 

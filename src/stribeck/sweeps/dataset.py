@@ -23,8 +23,6 @@ from stribeck.sweeps.store import PENDING, read_store
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Sweep", "open_sweep"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Exported, Told, ByValue):

@@ -40,8 +40,6 @@ from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.axes import COEFFICIENTS, Axis, Kind, checked_group, points_of, read_axes
 from stribeck.sweeps.columns import input_columns
 
-__all__ = ["SweepDesign", "load_sweep"]
-
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SweepDesign(Tabled, Shown, States):

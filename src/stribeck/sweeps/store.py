@@ -34,8 +34,6 @@ from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import Row, input_columns
 from stribeck.sweeps.design import SweepDesign
 
-__all__ = ["PENDING", "Store", "claimed_store", "read_store"]
-
 FORMAT = 4  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks, 3 had relative errors
 APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
 

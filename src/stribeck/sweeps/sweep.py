@@ -23,8 +23,6 @@ from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import Store, claimed_store
 
-__all__ = ["SweepProgress", "sweep"]
-
 MAX_WORKERS = 1024
 
 RATE_WINDOW = 60.0  # Time over which the rate is measured [s]

@@ -20,8 +20,6 @@ from stribeck.regimes.overview import Overview, overview_of
 from stribeck.regimes.sentences import answer_sentence, regime_sentence, step_text, ways_to
 from stribeck.solver.numbers import main_rows
 
-__all__ = ["Explanation", "explain", "regimes_answer", "regimes_lines"]
-
 # Numbers that the sentence above the table has.
 OF_THE_SENTENCE = ("friction from", "hysteresis", "load on", "Lambda")
 

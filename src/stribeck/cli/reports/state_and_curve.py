@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve
     from stribeck.regimes.verdict import CurveVerdict
 
-__all__ = ["curve_answer", "curve_lines", "solution_answer", "solution_lines"]
-
 MORE_OF_STATE = "-v shows inputs, all films and positions, both frictions and full notes."
 
 MORE_OF_CURVE = "-v shows inputs, errors and full notes; -o FILE writes points, --plot FILE draws."
