@@ -676,7 +676,7 @@ def background():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-LONG = "curve", PDMS, "--points", "100000", "--rtol", "1e-10", "--cavitation", "exit"
+LONG = "curve", PDMS, "--points", "20000", "--rtol", "1e-10", "--cavitation", "exit"
 
 
 def test_a_limit_of_time_holds_in_a_background_job():

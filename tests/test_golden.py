@@ -1,7 +1,7 @@
 """Golden values: states, curves, fits, diagrams, margins and a sweep are within the stated errors of what they were.
 
 ``tests/golden/make.py`` made the file; it says when to make it anew.  A part takes about three seconds, as it solves
-some twenty states, a curve and more.
+some twenty states, a curve and more.  Cases of more than two seconds are those of ``make slow``.
 """
 
 import json
@@ -11,14 +11,25 @@ import pytest
 from golden.observed import GROWTH, PLACES, faults, observed
 
 ROWS = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
+QUICK, SLOW = ([row for row in ROWS if row.get("slow", False) is slow] for slow in (False, True))
 CHUNKS = 48
 """Parts that run apart from each other; every one holds some of each kind."""
 
 
+def check(rows):
+    found = [fault for row in rows for fault in faults(row["case"], row, observed(row["case"]))]
+    assert not found, "\n".join([f"{len(found)} differences", *found])
+
+
 @pytest.mark.parametrize("chunk", range(CHUNKS))
 def test_everything_observed_is_within_its_stated_errors_of_what_it_was(chunk):
-    found = [fault for row in ROWS[chunk::CHUNKS] for fault in faults(row["case"], row, observed(row["case"]))]
-    assert not found, "\n".join([f"{len(found)} differences", *found])
+    check(QUICK[chunk::CHUNKS])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", range(len(SLOW)))
+def test_what_takes_longer_is_within_its_stated_errors_of_what_it_was(row):
+    check(SLOW[row : row + 1])
 
 
 @pytest.mark.parametrize(

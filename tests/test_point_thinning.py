@@ -96,7 +96,7 @@ def test_the_film_beyond_the_rim_is_known(subtests):
             # A fifth, and a hundredth, of the viscosity are lost at the rim. With 0.316 a power of the distance is nearly one
             # with which pressures fall by themselves.
             groups = Groups(0.2, 1e-3, 6e-4, geometry="point")
-            state, tight = (sb.solve(groups, fluid=fluid, slide_to_roll=0.3, rtol=rtol).state for rtol in (1e-4, 1e-5))
+            state, tight = (sb.solve(groups, fluid=fluid, slide_to_roll=0.3, rtol=rtol).state for rtol in (1e-3, 1e-4))
             assert state.outcome.ok
             for name in ("J_couette", "J_poiseuille", "J_published", "contact_load_share"):
                 missed = abs(tight.values[name] - state.values[name])

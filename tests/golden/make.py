@@ -62,7 +62,7 @@ def main():
     at += range(len(rows), len(rows) + len(new))
     rows += [{"case": case} for case in new]
     for done, i in enumerate(at, 1):
-        rows[i] = {"case": rows[i]["case"], **compact(observed(rows[i]["case"]))}
+        rows[i] |= compact(observed(rows[i]["case"]))
         if done % 20 == 0 or done == len(at):
             print(f"{done} of {len(at)} cases")
             write([row for row in rows if "values" in row])
