@@ -158,7 +158,7 @@ def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
 def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagram):
     for speed in (1e-6, 1.0):
         narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=speed)
-        for name in grid.LINES:
+        for name in (*grid.MARKS, "speed_at_minimum", "friction_at_minimum"):
             assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
 
 

@@ -9,28 +9,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
+from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
+from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import Method, check_method, regime_of
+from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve, path_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.regimes.phase_grid import FIELDS, MARKS, Diagram, empty_diagram
-from stribeck.regimes.weakening import roughness_without_minimum, weakening, weakening_along
+from stribeck.regimes.phase_grid import MARKS, Diagram, empty_diagram
+from stribeck.regimes.weakening import minimum_behind, roughness_without_minimum
 from stribeck.solver.solve import check_rtol, solve
 from stribeck.solver.solve_error import SolveError
 
@@ -119,7 +120,7 @@ def phase_diagram(
     from stribeck.regimes.phase_dataset import diagram_dataset
 
     import_xarray()
-    total = diagram.regime.size
+    total = diagram.table["regime"].size
     columns = len(diagram.axes["speed"])
     rows = list(product(range(len(diagram.axes["load"])), range(len(diagram.axes["roughness"]))))
     try:
@@ -139,8 +140,8 @@ def phase_diagram(
 
 def _fill_row(diagram: Diagram, row: tuple[int, int], method: Method, report: Callable[[float], None]) -> None:
     """Enter the curve over the speed at one load and roughness; raise KeyboardInterrupt where that was interrupted."""
-    problem, groups, _ = diagram.problem(*row)
-    speeds = diagram.axes["speed"]
+    problem, _, _ = diagram.problem(*row)
+    table, speeds = diagram.table, diagram.axes["speed"]
     for k in np.flatnonzero(speeds == 0).tolist():
         _enter_rest(diagram, problem, (*row, k))
     moving = np.flatnonzero(speeds > 0)
@@ -156,20 +157,41 @@ def _fill_row(diagram: Diagram, row: tuple[int, int], method: Method, report: Ca
             problem, speed=_filled(speeds[moving], diagram, row, method), points=2, method=method, **settings
         )
     except SolveError as failure:
-        diagram.outcomes[row][moving] = failure.outcome.name
-        diagram.messages[row] = str(failure)
+        table["outcome"][row][moving] = failure.outcome.name
+        table["message"][row] = str(failure)
         return
     is_there = np.isin(speeds, curve.values)
-    diagram.outcomes[row][moving] = curve.outcome.name
-    diagram.outcomes[row][is_there] = Outcome.CONVERGED.name
-    _enter(diagram, row, is_there, curve, np.searchsorted(curve.values, speeds[is_there]))
-    diagram.messages[row] = "" if curve.outcome.ok else curve.outcome.value
+    table["outcome"][row][moving] = curve.outcome.name
+    table["outcome"][row][is_there] = Outcome.CONVERGED.name
+    kappa = float(np.max(curve.groups.relative_roughness))
+    alpha = 1.0 if curve.contact is None else curve.contact.alpha
+    found = _numbers_of(curve.friction, curve.observable) | {
+        "lambda_ratio": curve.observable("minimum_gap") / (alpha * kappa) if kappa > 0 else np.full(len(curve), math.inf),
+        "error_estimate": np.array([each.error_estimate for each in curve.solutions] or [curve.error_estimate] * len(curve)),
+    }
+    points = np.searchsorted(curve.values, speeds[is_there])
+    for name, values in found.items():
+        table[name][row][is_there] = values[points]
+    table["message"][row] = "" if curve.outcome.ok else curve.outcome.value
     if curve.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     try:
         _enter_lines(diagram, row, curve)
     except SolveError as failure:
-        diagram.messages[row] = str(failure)
+        table["message"][row] = str(failure)
+
+
+def _numbers_of(friction: Any, number_of: Callable[[str], Any]) -> dict[str, Any]:
+    """Return what a diagram has of a state, or of all states of a curve."""
+    fluid, by_asperities = number_of("fluid_load_share"), friction_share(friction.asperities, friction.fluid)
+    return {
+        "regime": regime_numbers(fluid, by_asperities),
+        "friction": friction.total,
+        "friction_error": friction.error,
+        "fluid_load_share": fluid,
+        "contact_friction_share": by_asperities,
+        "central_gap": number_of("central_gap"),
+    }
 
 
 def _enter_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, int, int]) -> None:
@@ -177,49 +199,28 @@ def _enter_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, i
     try:
         solution = solve(resting, rtol=diagram.rtol)
     except SolveError as failure:
-        diagram.outcomes[place] = failure.outcome.name
+        diagram.table["outcome"][place] = failure.outcome.name
         return
     friction = solution.friction(diagram.boundary_friction, diagram.beta, diagram.definition)
-    shares = solution.fluid_load_share, friction.contact_share
-    films = solution.central_gap, solution.lambda_ratio
-    for name, value in zip(FIELDS, (friction.total, friction.error, *shares, *films, solution.error_estimate), strict=True):
-        diagram.fields[name][place] = value
-    diagram.regime[place] = REGIMES.index(regime_of(*shares))
-    diagram.outcomes[place] = solution.outcome.name
-
-
-def _enter(diagram: Diagram, row: tuple[int, int], where: Flags, curve: StribeckCurve, points: Indices) -> None:
-    """Enter points of a curve where a row has them."""
-    friction, kappa = curve.friction, float(np.max(curve.groups.relative_roughness))
-    alpha = 1.0 if curve.contact is None else curve.contact.alpha
-    fluid, by_contact = curve.observable("fluid_load_share"), friction_share(friction.asperities, friction.fluid)
-    films = curve.observable("minimum_gap") / (alpha * kappa) if kappa > 0 else np.full(len(curve), math.inf)
-    errors = np.array([each.error_estimate for each in curve.solutions] or np.full(len(curve), curve.error_estimate))
-    values = friction.total, friction.error, fluid, by_contact, curve.observable("central_gap"), films, errors
-    for name, each in zip(FIELDS, values, strict=True):
-        diagram.fields[name][row][where] = each[points]
-    diagram.regime[row][where] = regime_numbers(fluid, by_contact)[points]
+    found = _numbers_of(friction, partial(getattr, solution)) | {"outcome": solution.outcome.name}
+    found |= {name: getattr(solution, name) for name in ("lambda_ratio", "error_estimate")}
+    for name, value in found.items():
+        diagram.table[name][place] = value
 
 
 def _enter_lines(diagram: Diagram, row: tuple[int, int], curve: StribeckCurve) -> None:
     """Locate the transitions of a row; a minimum above the boundary plateau is not the minimum friction, yet one."""
-    _, groups, unit = diagram.problem(*row)
     marks: dict[str, Landmark] = {mark.name: mark for mark in curve.transitions}
-    for variable, name in MARKS.items():
-        if name in marks:
-            diagram.lines[variable][row] = marks[name].value
-    found = math.nan, math.nan
-    if curve.minimum is not None:
-        found = curve.minimum.value, curve.minimum.friction
-    elif groups.roughness > 0 and diagram.boundary_friction > 0:
-        if curve.method == "atlas":
-            branch = weakening_along(path_of(curve))
-            found = branch.minimum_speed, branch.minimum_friction
-        elif diagram.kind.has_formulas:
-            branch = weakening(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
-            found = branch.minimum_speed / unit, branch.minimum_friction
-    diagram.lines["speed_at_minimum"][row], diagram.lines["friction_at_minimum"][row] = found
-    diagram.velocity_weakening[row] = int(math.isfinite(found[0]))
+    found: dict[str, Any] = {variable: marks[name].value for variable, name in MARKS.items() if name in marks}
+    minimum = None if curve.minimum is None else (curve.minimum.value, curve.minimum.friction)
+    is_followed = curve.method == "atlas" or diagram.kind.has_formulas
+    if minimum is None and is_followed and np.max(curve.groups.roughness) > 0 and diagram.boundary_friction > 0:
+        _, minimum = minimum_behind(path_of(curve))
+    found["velocity_weakening"] = int(minimum is not None)
+    if minimum is not None:
+        found["speed_at_minimum"], found["friction_at_minimum"] = minimum
+    for name, value in found.items():
+        diagram.table[name][row] = value
 
 
 def _filled(speeds: Array, diagram: Diagram, row: tuple[int, int], method: Method) -> Array:
@@ -244,14 +245,9 @@ def _merging_line(diagram: Diagram) -> Array:
     for i in range(len(line)):
         _, groups, _ = diagram.problem(i, 0)
         try:
-            group = roughness_without_minimum(
-                float(groups.load), diagram.boundary_friction, diagram.beta, diagram.definition, physics=groups.physics
-            )
+            group = roughness_without_minimum(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
         except SolveError:
             continue
-        line[i] = group if diagram.contact is None else _in_metres(diagram.contact, group)
+        unit = 1.0 if diagram.contact is None else float(diagram.contact.replace(roughness=1.0).groups.roughness)
+        line[i] = group / unit
     return line
-
-
-def _in_metres(contact: Contact, roughness_group: float) -> float:
-    return roughness_group / float(contact.replace(roughness=1.0).groups.roughness)

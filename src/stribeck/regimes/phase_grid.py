@@ -19,6 +19,7 @@ from stribeck.contacts.inputs import InputTable
 from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import COLUMNS, LINE
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
 
@@ -43,15 +44,17 @@ KINDS: dict[str, Kind] = {
 
 MOST_POINTS = 10_000
 
-FIELDS = (
-    "friction",
-    "friction_error",
-    "fluid_load_share",
-    "contact_friction_share",
-    "central_gap",
-    "lambda_ratio",
-    "error_estimate",
-)
+
+class Variable(NamedTuple):
+    """A variable of a diagram that is filled in as its rows are solved."""
+
+    label: str
+    dims: tuple[str, ...] = AXES
+    unit: str = "1"  # Or the axis whose unit it has
+    empty: Any = np.nan  # What stands where nothing was reached
+
+
+ROW = AXES[:2]  # The dimensions of what a row has one of
 
 MARKS = {
     "speed_at_5_percent_fluid": Transition.BOUNDARY_END,
@@ -60,7 +63,18 @@ MARKS = {
 }
 """Variables of a diagram, by the names that curves give to the same transitions."""
 
-LINES = (*MARKS, "speed_at_minimum", "friction_at_minimum")
+VARIABLES: dict[str, Variable] = {
+    "regime": Variable(COLUMNS["regime"][1], empty=np.int8(-1)),
+    **{name: Variable(COLUMNS[name][1]) for name in ("friction", "friction_error", "contact_friction_share")},
+    **{name: Variable(LINE.listed[name][1]) for name in ("fluid_load_share", "central_gap", "lambda_ratio", "error_estimate")},
+    "outcome": Variable(COLUMNS["outcome"][1], empty=Outcome.INTERRUPTED.name),
+    **{name: Variable(f"speed at which {mark}, on solved states", ROW, "speed") for name, mark in MARKS.items()},
+    "speed_at_minimum": Variable("speed of the minimum of friction, on solved states", ROW, "speed"),
+    "friction_at_minimum": Variable("friction coefficient there", ROW),
+    "velocity_weakening": Variable("whether friction falls with speed somewhere", ROW, empty=np.int8(-1)),
+    "message": Variable("why results of the row are missing, if they are", ROW, empty=Outcome.INTERRUPTED.value),
+}
+"""What is filled in, by name; all that is not reached was interrupted."""
 
 
 @dataclass(eq=False)
@@ -69,29 +83,25 @@ class Diagram:
 
     contact: Contact | None  # The contact, where the axes are in SI units
     axes: dict[str, Array]  # Values of load, roughness and speed, ascending
-    boundary_friction: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
-    beta: float  # Friction coefficient of the dry contact and coefficient of the contact law [-]
+    boundary_friction: float  # Friction coefficient of the dry contact [-]
+    beta: float  # Coefficient of the contact law [-]
     definition: Definition  # Definition of the viscous friction
     rtol: float  # Relative tolerance of the states
     physics: Physics  # Contact law, geometry and model of all states
     outcome: Outcome = Outcome.CONVERGED  # CONVERGED, or INTERRUPTED
-    fields: dict[str, Array] = field(init=False)
-    regime: Any = field(init=False)
-    outcomes: Any = field(init=False)
-    lines: dict[str, Array] = field(init=False)
-    velocity_weakening: Any = field(init=False)
-    messages: Any = field(init=False)
-    merging: Array | None = None
+    table: dict[str, Any] = field(init=False)
+    merging: Array | None = None  # Roughness of each load at which the minimum disappears, where asked for
 
     def __post_init__(self) -> None:
-        """Make the empty tables: all that is not reached was interrupted."""
-        shape = tuple(len(self.axes[name]) for name in AXES)
-        self.fields = {name: np.full(shape, np.nan) for name in FIELDS}
-        self.regime = np.full(shape, -1, dtype=np.int8)
-        self.outcomes = np.full(shape, Outcome.INTERRUPTED.name, dtype=object)
-        self.lines = {name: np.full(shape[:2], np.nan) for name in LINES}
-        self.velocity_weakening = np.full(shape[:2], -1, dtype=np.int8)
-        self.messages = np.full(shape[:2], Outcome.INTERRUPTED.value, dtype=object)
+        """Make the empty table."""
+        self.table = {}
+        for name, variable in VARIABLES.items():
+            kind = object if isinstance(variable.empty, str) else None
+            self.table[name] = np.full([len(self.axes[dim]) for dim in variable.dims], variable.empty, kind)
+
+    def unit(self, name: str) -> str:
+        """Return the unit of an axis."""
+        return "1" if self.contact is None or name == "1" else self.contact.INPUTS.unit(name)
 
     def problem(self, i: int, j: int) -> tuple[Contact | Groups, Groups, float]:
         """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""

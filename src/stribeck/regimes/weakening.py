@@ -3,107 +3,47 @@ r"""Where the velocity-weakening branch disappears: the roughness from which fri
 With roughness the minimum of a Stribeck curve rises and meets the maximum before it; beyond, boundary lubrication passes to
 hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved curves.
 
-Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction and a branch that disappears as one; they are two
-(:data:`CRITERIA`).
+Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction and a branch that disappears as one: they
+are two, this the second.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.friction import Definition, coefficients
-from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.groups import Groups
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.result import path_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.events import first_zero, least_by_slope, zero_of_growing
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, show
-from stribeck.solver.solve import as_groups, check_rtol
 from stribeck.solver.solve_error import SolveError, describe
 
-Criterion = Literal["slope", "plateau"]
-
-CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
-"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
-
+# Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order; also its step there.
 SPEED_TOLERANCE = 1e-3
-"""Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order; also its step there."""
 
-MINIMUM_TOLERANCE = 1e-9
-"""Tolerance of ln(speed) at the minimum."""
+MINIMUM_TOLERANCE = 1e-9  # Tolerance of ln(speed) at the minimum, and of ln(roughness) where it disappears
 
+# Relative roughness between which the merging is looked for, and where that begins, in steps of a factor.
 KAPPA_RANGE = (1e-5, 1e3)
-"""Relative roughness between which the merging is looked for."""
-
 KAPPA_START = 0.3
 KAPPA_STEP = 3.0
 
 
-@dataclass(frozen=True)
-class Weakening:
-    """Whether the friction of a curve over the speed falls somewhere, and how far.
+def minimum_behind(path: FrictionPath) -> tuple[float, tuple[float, float] | None]:
+    r"""Return the least slope along a path over the speed, and where friction falls, speed and friction of its minimum there.
 
-    Attributes
-    ----------
-    speed : float
-        Speed group at which friction falls most steeply, or grows most slowly.
-    slope : float
-        d mu/d ln(speed) over the published viscous friction there [-]: negative where friction weakens with speed,
-        1 far down on the plateau, 0.4 to 0.7 on the hydrodynamic branch.
-    minimum_speed : float
-        Speed group of the minimum behind it; nan where there is no weakening.
-    minimum_friction : float
-        Friction coefficient there [-].
+    The slope is :math:`\mathrm{d}\mu/\mathrm{d}\ln U` over the published viscous friction: 1 far down on the plateau, 0.4 to
+    0.7 on the hydrodynamic branch, negative where friction falls.
     """
-
-    speed: float
-    slope: float
-    minimum_speed: float = math.nan
-    minimum_friction: float = math.nan
-
-    @property
-    def present(self) -> bool:
-        """Whether there is a range of speeds in which friction falls."""
-        return self.slope < 0
-
-
-@answers_typos
-@one_blas_thread
-def weakening(
-    groups: Groups,
-    boundary_friction: float | None = None,
-    beta: float | None = None,
-    definition: Definition = "balanced",
-    *,
-    rtol: float = 1e-6,
-) -> Weakening:
-    r"""Return whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope of the curve.
-
-    .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
-    """
-    as_groups(groups)
-    boundary_friction, beta = coefficients(None, boundary_friction, beta)
-    settings: Any = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
-    curve = stribeck_curve(groups, points=2, rtol=rtol, **settings)
-    if curve.outcome is Outcome.INTERRUPTED:
-        raise KeyboardInterrupt
-    if not curve.outcome.ok:
-        raise SolveError(curve.outcome, None, f"{describe(groups)}: {curve.outcome.value}")
-
-    return weakening_along(path_of(curve))
-
-
-def weakening_along(path: FrictionPath) -> Weakening:
-    """Return whether friction falls anywhere along a path over the speed, whose unit is that of the path."""
     published = replace(path, definition="published")
 
     def slopes(places: Array) -> Array:
@@ -124,39 +64,34 @@ def weakening_along(path: FrictionPath) -> Weakening:
     least, behind = slope(lowest), places > lowest
     minimum = first_zero(slope, np.append(lowest, places[behind]), np.append(least, values[behind]), MINIMUM_TOLERANCE)
     if least >= 0 or minimum is None:
-        return Weakening(math.exp(lowest), least)
+        return least, None
     _, contact, viscous = path.parts(np.array([minimum.place]))
-    return Weakening(math.exp(lowest), least, math.exp(minimum.place), float((contact + viscous)[0]))
+    return least, (math.exp(minimum.place), float((contact + viscous)[0]))
 
 
-@answers_typos
+@one_blas_thread
 def roughness_without_minimum(
-    load: float,
-    boundary_friction: float | None = None,
-    beta: float | None = None,
-    definition: Definition = "balanced",
-    *,
-    criterion: Criterion = "slope",
-    rtol: float = 1e-6,
-    physics: Physics | None = None,
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced", rtol: float = 1e-6
 ) -> float:
-    r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge."""
-    if criterion not in CRITERIA:
-        raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
-    rtol = check_rtol(rtol)
-    boundary_friction, beta = coefficients(None, boundary_friction, beta)
-    unit, _ = as_groups(Groups(1.0, load, 1.0) if physics is None else Groups(1.0, load, 1.0, **physics))
+    r"""Return the roughness group at which the curves over the speed at the load of groups lose their minimum.
+
+    .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} = 0
+    """
     if boundary_friction == 0:
         return 0.0
+    kappa_of_group = float(replace(groups, roughness=1.0).relative_roughness)
 
-    def excess(log_kappa: float) -> float:
-        groups = replace(unit, roughness=math.exp(log_kappa) / float(unit.relative_roughness))
-        found = weakening(groups, boundary_friction, beta, definition, rtol=rtol)
-        if criterion == "slope" or not found.present:
-            return found.slope
-        return abs(found.minimum_friction) / boundary_friction - 1
+    def least_slope(log_kappa: float) -> float:
+        rough = replace(groups, roughness=math.exp(log_kappa) / kappa_of_group)
+        given: Any = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
+        curve = stribeck_curve(rough, points=2, rtol=rtol, **given)
+        if curve.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if not curve.outcome.ok:
+            raise SolveError(curve.outcome, None, f"{describe(rough)}: {curve.outcome.value}")
+        return minimum_behind(path_of(curve))[0]
 
     ends = math.log(KAPPA_RANGE[0]), math.log(KAPPA_RANGE[1])
     tolerance = max(rtol, MINIMUM_TOLERANCE)
-    event = zero_of_growing(cache(excess), math.log(KAPPA_START), math.log(KAPPA_STEP), ends, tolerance)
-    return math.nan if event is None else math.exp(event.place) / float(unit.relative_roughness)
+    event = zero_of_growing(cache(least_slope), math.log(KAPPA_START), math.log(KAPPA_STEP), ends, tolerance)
+    return math.nan if event is None else math.exp(event.place) / kappa_of_group
