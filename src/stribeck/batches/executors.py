@@ -1,4 +1,4 @@
-"""Who solves chains of states: this process, processes of this machine, or the workers of a Dask cluster.
+"""One map over many states, whose chains this process solves, processes of this machine, or the workers of a Dask cluster.
 
 An executor takes chains, ``keep(rows)`` for the states that have ended, in whatever order, and ``pause()``, which is called at
 least twice a second and may raise KeyboardInterrupt to stop.  Both run in this process alone.  No worker outlives the call.
@@ -17,11 +17,15 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from importlib.metadata import version
 from multiprocessing.connection import wait
-from typing import Any
+from typing import Any, Protocol
 
-from stribeck.batches.states import Chain
+from stribeck._types import Flags
+from stribeck.batches.order import chains_of
+from stribeck.batches.states import Chain, Ended, States
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
+
+MAX_REPLACEMENTS = 3  # Times that a killed worker process is replaced in one run
 
 POLL_INTERVAL = 0.25  # Time between two looks at whether the user wants to stop [s]
 
@@ -50,6 +54,43 @@ class SweepError(RuntimeError):
 
 class WorkerDiedError(Exception):
     """A worker process ended before its chain did."""
+
+
+class Kept(Protocol):
+    """Where states are kept as they end."""
+
+    def done(self) -> Flags:
+        """Return whether each state of the design has ended."""
+
+    def keep(self, rows: Sequence[Row]) -> None:
+        """Keep states that have ended."""
+
+
+def solve_all(
+    states: States,
+    kept: Kept,
+    execute: Executor,
+    row_of: Callable[[Ended, States, int], Any],
+    pause: Callable[[], object],
+) -> bool:
+    """Solve those states that are not kept yet; return whether ``pause``, or Ctrl-C, interrupted that."""
+    for _ in range(1 + MAX_REPLACEMENTS):
+        done = kept.done()
+        # A chain that is done in part goes on with the rest.
+        left = filter(len, (numbers[~done[numbers]] for numbers in chains_of(states.groups)))
+        chains = [Chain(numbers, states.part(numbers), row_of) for numbers in left]
+        try:
+            execute(chains, kept.keep, pause)
+        except KeyboardInterrupt:
+            return True
+        except WorkerDiedError:
+            continue
+        return False
+    raise SweepError(
+        f"Worker processes died {1 + MAX_REPLACEMENTS} times; is the memory of this machine large enough, and does a "
+        'script that sweeps with workers do so under `if __name__ == "__main__":`? '
+        "What is finished is kept: run the same sweep again, with fewer workers."
+    )
 
 
 def solve_here(chains: Sequence[Chain], keep: Keep, pause: Pause) -> None:

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Flags
-from stribeck.batches.executors import solve_here
+from stribeck.batches.executors import solve_all, solve_here
 from stribeck.batches.inputs import varied
 from stribeck.batches.result import BatchSolution, without_fields
-from stribeck.batches.solving import solve_all
 from stribeck.batches.states import Ended, States
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups

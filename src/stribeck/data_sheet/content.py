@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import version
@@ -17,11 +17,10 @@ from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.regimes.levers import MAX_FACTOR, Lever, cheapest_levers
+from stribeck.regimes.levers import MAX_FACTOR, cheapest_levers
 from stribeck.regimes.overview import Overview, overview_of
 from stribeck.regimes.sentences import regime_sentence, ways_to
 from stribeck.solver.numbers import main_rows
-from stribeck.solver.solution import Solution
 from stribeck.uncertainty.result import Uncertainty
 
 # What a report says of its certainty if no input has an error.
@@ -30,15 +29,6 @@ NO_ERRORS_TEXT = (
 )
 
 NO_LEVERS_TEXT = f"No single input lowers friction by a fifth within a factor of {MAX_FACTOR:g}."
-
-
-class InputLine(NamedTuple):
-    """One input: label, value, error, and source as stated in the file."""
-
-    label: str
-    value: str
-    error: str
-    source: str
 
 
 class Section(NamedTuple):
@@ -55,44 +45,13 @@ class Content:
 
     title: str
     headline: str  # Whether the model applies
-    inputs: tuple[InputLine, ...]
-    conversions: tuple[str, ...]  # Conversions of data-sheet inputs
     checks: Checks
     sentences: tuple[str, ...]  # Regime, friction and load share
-    films: tuple[tuple[str, str, str], ...]  # Label, value and 95 % interval of friction, films and transitions
-    uncertainty: Uncertainty | None  # The propagated errors of the inputs
-    margins: tuple[str, ...]  # Margins to the next regimes
-    levers: tuple[Lever, ...]  # The two inputs that lower friction by a fifth with the smallest change
-    notes: tuple[str, ...]  # Notes on the validity of the numbers
+    sections: tuple[Section, ...]  # The parts of the page below its picture
     versions: str  # Program and libraries
     curve: StribeckCurve  # Friction over the speed
-    solution: Solution  # The state
+    uncertainty: Uncertainty | None  # The propagated errors of the inputs
     data: Measurements | None = None  # Measured friction
-
-    @property
-    def sections(self) -> list[Section]:
-        """The parts of the page below its picture."""
-        interval = slice(3 if self.uncertainty else 2)
-        films = [("Quantity", "Value", "95 %"), *self.films]
-        levers = [("To lower friction by about a fifth", "Change", "Friction solved there")]
-        levers += [(lever.label, *lever.texts) for lever in self.levers]
-        checks = [("Check", "Value", "Fine", "Verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
-        said = [f"{each.word}: {each.sentence}" for each in self.checks.said]
-        read = f"{len(self.data)} rows of {self.data.path or 'measured friction'}, drawn as read." if self.data else ""
-        found = [
-            Section("Friction, films and transitions", [row[interval] for row in films]),
-            Section("Margins to the next regimes", (), self.margins or ["There is no other regime in reach."]),
-            Section("The two cheapest levers", levers if self.levers else (), () if self.levers else [NO_LEVERS_TEXT]),
-            Section(
-                "Inputs",
-                [("Input", "Value", "Error", "Source, from the case file"), *self.inputs],
-                [f"Converted: {each}" for each in self.conversions],
-            ),
-            Section("Does the model apply?", checks, said + [f"Not checked: {each}" for each in self.checks.unchecked]),
-            Section("Data", (), [read, *self.data.notes] if self.data else ()),
-            Section("Notes", (), self.notes),
-        ]
-        return [each for each in found if each.table or each.paragraphs]
 
 
 def content_of(
@@ -101,43 +60,55 @@ def content_of(
     """Solve the content of a report."""
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
     found = overview_of(case, on_step, is_whole=True)
-    solution, checks, errors, friction = found.solution, found.checks, found.errors, found.friction
+    checks, errors, friction = found.checks, found.errors, found.friction
     assert checks is not None
     certainty = [NO_ERRORS_TEXT] if errors is None else [errors.probability_sentence, *errors.sources]
     return Content(
         title=case.title or case.path.name,
         headline=checks.headline,
-        inputs=_inputs(case),
-        conversions=case.conversions,
         checks=checks,
-        sentences=(regime_sentence(solution, friction), *certainty),
-        films=_films(found),
-        uncertainty=errors,
-        margins=tuple(ways_to(found.margins)),
-        levers=cheapest_levers(case.contact, friction.total, found.sensitivities, case.definition, case.rtol),
-        notes=tuple(note for note in dict.fromkeys(found.notes) if not checks.covers(note, doubts=True)),
+        sentences=(regime_sentence(found.solution, friction), *certainty),
+        sections=tuple(each for each in _sections(case, found, checks, measured) if each.table or each.paragraphs),
         versions=_versions(case),
         curve=found.curve,
-        solution=solution,
+        uncertainty=errors,
         data=measured,
     )
 
 
-def _inputs(case: Case) -> tuple[InputLine, ...]:
-    sources = _sources(case.path)
-    lines = []
+def _sections(case: Case, found: Overview, checks: Checks, data: Measurements | None) -> Iterator[Section]:
+    """Yield the parts of the page, those too that have nothing to say."""
+    yield Section("Friction, films and transitions", list(_films(found)))
+    yield Section("Margins to the next regimes", (), [*ways_to(found.margins)] or ["There is no other regime in reach."])
+    levers = cheapest_levers(case.contact, found.friction.total, found.sensitivities, case.definition, case.rtol)
+    head = "To lower friction by about a fifth", "Change", "Friction solved there"
+    rows = [(lever.label, *lever.texts) for lever in levers]
+    yield Section("The two cheapest levers", [head, *rows] if rows else (), () if rows else [NO_LEVERS_TEXT])
+    yield Section("Inputs", list(_inputs(case)), [f"Converted: {each}" for each in case.conversions])
+    verdicts = [("Check", "Value", "Fine", "Verdict"), *((each.name, *each.texts, each.verdict) for each in checks)]
+    said = [f"{each.word}: {each.sentence}" for each in checks.said]
+    yield Section("Does the model apply?", verdicts, said + [f"Not checked: {each}" for each in checks.unchecked])
+    if data:
+        yield Section("Data", (), [f"{len(data)} rows of {data.path or 'measured friction'}, drawn as read.", *data.notes])
+    yield Section("Notes", (), [note for note in dict.fromkeys(found.notes) if not checks.covers(note, doubts=True)])
+
+
+def _inputs(case: Case) -> Iterator[tuple[str, str, str, str]]:
+    """Yield label, value, error and source of each input, as stated in the file."""
+    yield "Input", "Value", "Error", "Source, from the case file"
+    sources, table = _sources(case.path), case.contact.INPUTS
     for name, value in case.contact.inputs():
-        table = case.contact.INPUTS
         row, error = table.kept[name], case.errors.get(name)
         names = (name, *(each for each, of in (table.stands_for | {"h_rms": "roughness"}).items() if of == name))
         source = next((sources[each] for each in names if each in sources), "")
         shown = "" if error is None else f"± {format_percent(error)}"
-        lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
+        yield row.label, format_si(value, row.dimension, 4), shown, source
     model = model_words(case.contact.groups, case.contact)
-    uncertain = [
+    uncertain = (
         f"{row.label} ± {format_percent(case.errors[name])}" for name, row in PART_INPUTS.items() if name in case.errors
-    ]
-    return (*lines, *([InputLine("model", model, ", ".join(uncertain), "")] if model else []))
+    )
+    if model:
+        yield "model", model, ", ".join(uncertain), ""
 
 
 def _sources(path: Path) -> dict[str, str]:
@@ -159,11 +130,15 @@ def _sources(path: Path) -> dict[str, str]:
     return {name: text for name, text in found.items() if text}
 
 
-def _films(found: Overview) -> tuple[tuple[str, str, str], ...]:
+def _films(found: Overview) -> Iterator[tuple[str, ...]]:
+    """Yield friction, films and transitions, with 95 % intervals where inputs have errors."""
     if found.errors is not None:
-        return tuple((each.label, *each.texts) for each in found.errors.spreads)
-    numbers = ((each.label, each.texts[0], "") for each in main_rows(found.solution, definition=found.curve.definition))
-    return (*numbers, *((str(mark.name), format_si(mark.value, "speed"), "") for mark in found.curve.transitions))
+        yield "Quantity", "Value", "95 %"
+        yield from ((each.label, *each.texts) for each in found.errors.spreads)
+        return
+    yield "Quantity", "Value"
+    yield from ((each.label, each.texts[0]) for each in main_rows(found.solution, definition=found.curve.definition))
+    yield from ((str(mark.name), format_si(mark.value, "speed")) for mark in found.curve.transitions)
 
 
 def _versions(case: Case) -> str:

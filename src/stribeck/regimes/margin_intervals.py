@@ -26,8 +26,7 @@ from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.propagate import STATE_RTOL, errors_of_kept_inputs, inputs_tied_to
 from stribeck.uncertainty.result import exact_inputs
 
-QUANTILE = 1.959964
-"""Standard deviations on each side that hold 95 % of a normal distribution."""
+QUANTILE = 1.959964  # Standard deviations on each side that hold 95 % of a normal distribution
 
 
 def with_intervals(

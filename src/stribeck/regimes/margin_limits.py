@@ -11,12 +11,12 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry
 from stribeck.curves.coordinate import Over
 
+# Groups between which is searched, where the solver is tested; the load also no further than the contact law holds.
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
-"""Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
 
+# What an input can be made at all [SI]: a speed from an atom's width in 100 s to that of sound, a fluid from gas to pitch,
+# a roughness from that of atoms.  Roughness ends with the contact itself: see physical_bounds.
 PHYSICAL = {"speed": (1e-12, 1e3), "viscosity": (1e-5, 1e8), "roughness": (1e-10, math.inf)}
-"""What an input can be made at all [SI]: a speed from an atom's width in 100 s to that of sound, a fluid from gas to pitch,
-a roughness from that of atoms.  Roughness ends with the contact itself: see :func:`physical_bounds`."""
 
 
 class Search(NamedTuple):
@@ -38,7 +38,6 @@ SEARCHES: dict[Geometry, Search] = {
         1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, lambda each: each.hertz.indentation, 1e4, 3e-3, 1e-2
     ),
 }
-"""The searches by geometry."""
 
 
 def scanned_rtol(contact: Contact, rtol: float) -> float:

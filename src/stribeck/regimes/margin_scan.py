@@ -22,63 +22,36 @@ from stribeck.regimes.margin_limits import limits, scan_rtol, with_smallest
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve_error import SolveError
 
-REACH = 1e6
-"""Largest factor by which an input is changed."""
+REACH = 1e6  # Largest factor by which an input is changed
 
-ROUNDING = 1e-9
-"""Difference of logarithms of values that are the same."""
+ROUNDING = 1e-9  # Difference of logarithms of values that are the same
 
-DECADE = math.log(10.0)
-"""Range of ln(speed) over whose slow end the fluid's share is extrapolated to slow speed."""
-
-LITTLE, CLEAR = 0.02, 1.5
-"""Change of the fluid's share over half a decade from which it is extrapolated to slow speed, and the factor by which the
-limit must exceed the bound of boundary lubrication for slower speeds not to be searched: from load group 1 on it may never
-fall below it."""
+# From load group 1 on the fluid's share may never fall below the bound of boundary lubrication, however slow the contact.
+DECADE = math.log(10.0)  # Range of ln(speed) over whose slow end the share is extrapolated to slow speed
+MAX_SHARE_CHANGE = 0.02  # Change of the share over half a decade from which it is extrapolated
+SAFETY_OF_LIMIT = 1.5  # Factor by which its limit must exceed the bound for slower speeds not to be searched
 
 SCANNED: tuple[Over, ...] = ("speed", "load", "roughness")
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where another regime begins along one input.
+    """Where another regime begins along one input."""
 
-    Attributes
-    ----------
-    regime : str
-        The regime that is entered.
-    value : float
-        Value of the input there [SI].
-    factor : float
-        The same over its present value; infinite where that is zero.
-    interval_95 : tuple of float or None
-        Interval that holds the factor with 95 % probability; None if no input has an error.
-    """
-
-    regime: Regime
-    value: float
-    factor: float
-    interval_95: tuple[float, float] | None = None
+    regime: Regime  # The regime that is entered
+    value: float  # Value of the input there [SI]
+    factor: float  # The same over its present value; infinite where that is zero
+    interval_95: tuple[float, float] | None = None  # That of the factor, where inputs have errors
 
 
 @dataclass(frozen=True)
 class Margin:
-    """The nearest changes of regime along one input, all other inputs kept.
+    """The nearest changes of regime along one input, all other inputs kept."""
 
-    Attributes
-    ----------
-    name : {"speed", "load", "roughness", "viscosity"}
-        The input.
-    less, more : Crossing or None
-        The first change with less and with more of it; None where there is none within the range searched.
-    searched : tuple of float
-        Values between which was searched [SI]; the search ends at a change, and where the input can be no more.
-    """
-
-    name: str
-    less: Crossing | None
-    more: Crossing | None
-    searched: tuple[float, float]
+    name: str  # Speed, load, roughness or viscosity
+    less: Crossing | None  # The first change with less of it, within what was searched
+    more: Crossing | None  # The same with more of it
+    searched: tuple[float, float]  # Values between which was searched [SI]: until a change, or where it can be no more
 
     def crossing_into(self, regime: str) -> Crossing | None:
         """Return the nearer crossing into a regime, or None."""
@@ -214,6 +187,6 @@ def _stays_mixed(path: FrictionPath) -> bool:
         return False
     slow, middle, fast = path.parts(first + DECADE * np.array([0.0, 0.5, 1.0]))[0].tolist()
     first, second = fast - middle, middle - slow
-    if not 0 <= second < min(first, LITTLE):
+    if not 0 <= second < min(first, MAX_SHARE_CHANGE):
         return False
-    return bool(slow - second**2 / (first - second) > CLEAR * BOUNDARY_FLUID_SHARE)
+    return bool(slow - second**2 / (first - second) > SAFETY_OF_LIMIT * BOUNDARY_FLUID_SHARE)

@@ -26,8 +26,7 @@ from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan
 from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.solve import check_rtol, solve
 
-THRESHOLD = 5e-3
-"""Logarithm of the factor below which a contact is said to stand at the threshold."""
+THRESHOLD = 5e-3  # Logarithm of the factor below which a contact is said to stand at the threshold
 
 NEIGHBOURS: dict[Regime, tuple[Regime, ...]] = {
     "boundary": ("mixed",),
@@ -38,27 +37,13 @@ NEIGHBOURS: dict[Regime, tuple[Regime, ...]] = {
 
 @dataclass(frozen=True)
 class RegimeMargins(Tabled):
-    """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``.
+    """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``."""
 
-    Attributes
-    ----------
-    regime : str
-        The present regime.
-    margins : tuple of Margin
-        For speed, load, roughness and viscosity; the last not for a fluid that thins.
-    notes : tuple of str
-        What to know: why an input leads nowhere, and whether the contact stands at a threshold.
-    geometry : {"line", "point"}
-        That of the contact.
-    counted : str
-        Which errors the intervals count and which inputs count as exact, a sentence; empty without intervals.
-    """
-
-    regime: Regime
-    margins: tuple[Margin, ...]
-    notes: tuple[str, ...]
+    regime: Regime  # The present one
+    margins: tuple[Margin, ...]  # For speed, load, roughness and viscosity; the last not for a fluid that thins
+    notes: tuple[str, ...]  # Why an input leads nowhere, and whether the contact stands at a threshold
     geometry: Geometry = "line"
-    counted: str = ""
+    counted: str = ""  # Which errors the intervals count and which inputs count as exact; empty without intervals
 
     def to_dict(self) -> dict[str, Any]:
         """Return the margins by input, ready for JSON."""

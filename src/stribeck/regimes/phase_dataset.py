@@ -20,13 +20,14 @@ from stribeck.solver.about import input_attributes
 if TYPE_CHECKING:
     import xarray
 
+# Meanings of the variables that are codes.
 FLAGS = {
     "regime": {-1: "unknown", **dict(enumerate(REGIMES))},
     "velocity_weakening": {-1: "unknown", 0: "absent", 1: "present"},
     "formula_velocity_weakening": {0: "absent", 1: "present"},
 }
-"""Meanings of the variables that are codes."""
 
+# Transitions by formulas, with their long names.
 FORMULA_SPEEDS = {
     "formula_speed_at_5_percent_fluid": f"speed at which {MARKS['speed_at_5_percent_fluid']}, by the law of load sharing",
     "formula_speed_at_half_fluid": f"speed at which {MARKS['speed_at_half_fluid']}, by the law of load sharing",
@@ -35,7 +36,6 @@ FORMULA_SPEEDS = {
     "printed_speed_boundary_to_mixed": "the same as [BP] print it",
     "printed_speed_at_minimum": "the speed of the minimum as [BP] print it",
 }
-"""Transitions by formulas, with their long names."""
 
 
 MERGING = "roughness at which the minimum of friction disappears"

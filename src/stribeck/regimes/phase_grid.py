@@ -23,8 +23,7 @@ from stribeck.quantities.outputs import COLUMNS, LINE
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
 
-AXES = ("load", "roughness", "speed")
-"""The dimensions of a diagram, in their order."""
+AXES = ("load", "roughness", "speed")  # The dimensions of a diagram, in their order
 
 
 class Kind(NamedTuple):
@@ -36,11 +35,11 @@ class Kind(NamedTuple):
     has_formulas: bool  # Whether formulas give transitions, and the branch of falling friction is followed beyond its minimum
 
 
+# By geometry: a state of a ball takes a tenth of a second or more.
 KINDS: dict[str, Kind] = {
     "line": Kind({"load": 2, "roughness": 25, "speed": 61}, 4, 1e-4, True),
     "point": Kind({"load": 2, "roughness": 5, "speed": 13}, 1.5, 1e-3, False),
 }
-"""The kinds by geometry: a state of a ball takes a tenth of a second or more."""
 
 MOST_POINTS = 10_000
 
@@ -56,13 +55,14 @@ class Variable(NamedTuple):
 
 ROW = AXES[:2]  # The dimensions of what a row has one of
 
+# Variables of a diagram, by the names that curves give to the same transitions.
 MARKS = {
     "speed_at_5_percent_fluid": Transition.BOUNDARY_END,
     "speed_at_half_fluid": Transition.EQUAL_SHARES,
     "speed_at_10_percent_contact_friction": Transition.HYDRODYNAMIC_START,
 }
-"""Variables of a diagram, by the names that curves give to the same transitions."""
 
+# What is filled in, by name; all that is not reached was interrupted.
 VARIABLES: dict[str, Variable] = {
     "regime": Variable(COLUMNS["regime"][1], empty=np.int8(-1)),
     **{name: Variable(COLUMNS[name][1]) for name in ("friction", "friction_error", "contact_friction_share")},
@@ -74,7 +74,6 @@ VARIABLES: dict[str, Variable] = {
     "velocity_weakening": Variable("whether friction falls with speed somewhere", ROW, empty=np.int8(-1)),
     "message": Variable("why results of the row are missing, if they are", ROW, empty=Outcome.INTERRUPTED.value),
 }
-"""What is filled in, by name; all that is not reached was interrupted."""
 
 
 @dataclass(eq=False)

@@ -20,39 +20,23 @@ from stribeck.numerics.events import rising_zeros
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 
-DENSITY = 20
-"""Points per decade of speed on which the transitions of a row are seen."""
+POINTS_PER_DECADE = 5  # Of speed, on which passages are seen before each is narrowed
 
-COARSE = 5
-"""The same where many rows are located at once, each passage then narrowed."""
+MAX_NARROWINGS = 6  # Rounds of that
 
-NARROWINGS = 6
-"""Rounds of that at most."""
-
-NARROW_ENOUGH = 0.2
-"""Part of the table's error below which the ends of a passage are no longer moved together."""
+NARROW_ENOUGH = 0.2  # Part of the table's error below which the ends of a passage are no longer moved together
 
 
 @dataclass(frozen=True, eq=False)
 class TransitionSpeeds:
-    """Speed groups at which the regimes of many contacts pass into each other.
+    """Speed groups at which the regimes of many contacts pass into each other."""
 
-    Attributes
-    ----------
-    boundary : ndarray, shape (n,)
-        Where the fluid begins to carry more than 5 % of the load; zero or infinite where it does or does not at all speeds.
-    hydrodynamic : ndarray, shape (n,)
-        Where asperities cause no more than 10 % of the friction; zero or infinite likewise.
-    minimum : ndarray, shape (n,)
-        Where friction is at its minimum, nan where its minimum is not between the speeds asked for.
-    error : ndarray, shape (3, n)
-        Errors of the logarithms of the three, from the stated error of the shares and of the friction's slope [-].
-    """
-
+    # Where the fluid begins to carry more than 5 % of the load, and asperities cause no more than 10 % of the friction: zero
+    # or infinite where they do or do not at all speeds.
     boundary: Array
     hydrodynamic: Array
-    minimum: Array
-    error: Array
+    minimum: Array  # Where friction is at its minimum, nan where that is not between the speeds asked for
+    error: Array  # Errors of the logarithms of the three, from the stated errors of the table, shape (3, n)
 
 
 @answers_typos
@@ -63,7 +47,7 @@ def transition_speeds(
     beta: float = 1.0,
     definition: Definition = "balanced",
     speeds: tuple[float, float] | None = None,
-    narrowings: int = NARROWINGS,
+    narrowings: int = MAX_NARROWINGS,
     slide_to_roll: float = PURE_SLIDING,
     wetted_radius: float = math.inf,
 ) -> TransitionSpeeds:
@@ -71,7 +55,7 @@ def transition_speeds(
     row = table_for(groups)
     roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
     speeds = row.speeds(groups) if speeds is None else speeds
-    count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
+    count = 1 + max(2, math.ceil(POINTS_PER_DECADE * math.log10(speeds[1] / speeds[0])))
     grid = np.log(np.geomspace(*speeds, count))
 
     bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)

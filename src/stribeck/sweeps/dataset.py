@@ -17,8 +17,7 @@ from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS
 from stribeck.quantities.results import ByValue, Card, Told
-from stribeck.sweeps.columns import ERROR
-from stribeck.sweeps.store import PENDING, read_store
+from stribeck.sweeps.store import ERROR, PENDING, read_store
 
 if TYPE_CHECKING:
     import xarray

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -38,7 +38,6 @@ from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.axes import COEFFICIENTS, Axis, Kind, checked_group, points_of, read_axes
-from stribeck.sweeps.columns import input_columns
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -238,3 +237,10 @@ def _groups(physics: Physics, fixed: dict[str, Any], varying: dict[str, Array]) 
     groups, coefficients = (np.stack([every[name] for name in names], axis=1) for names in (GROUPS, COEFFICIENTS))
     own = {name: every[name] for name in COEFFICIENTS}
     return {"inputs": own, "groups": groups, "coefficients": coefficients, "physics": physics}
+
+
+def input_columns(names: Iterable[str], physics: Physics) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of the inputs and groups of a state."""
+    rows = INPUT_TABLES[physics["geometry"]].rows
+    inputs = {name: (rows[name].unit, rows[name].label) for name in names}
+    return inputs | {f"{name}_group": ("1", f"{name} group") for name in GROUPS}

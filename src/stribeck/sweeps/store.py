@@ -22,17 +22,18 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.batches.executors import SweepError
+from stribeck.batches.states import Ended, States
 from stribeck.files.writing import PathLike, path_of, reason_of
-from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.units import InputError
-from stribeck.sweeps.columns import Row, input_columns
-from stribeck.sweeps.design import SweepDesign
+from stribeck.solver.numbers import numbers_of
+from stribeck.sweeps.design import SweepDesign, input_columns
 
 FORMAT = 4  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks, 3 had relative errors
 APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
@@ -42,10 +43,31 @@ CLAIM_PAUSE = 0.1  # Longest time between two of them [s]
 BUSY_TIMEOUT = 60.0  # Time that a commit waits for readers of a file system without a write-ahead log [s]
 ROWS_AT_ONCE = 10_000  # Rows read into memory as objects of Python
 
+ERROR = "ERROR"  # Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`
 PENDING = "NOT_COMPUTED"  # Outcome, in a dataset, of a state that is not finished
 
 NO_STORE_ADVICE = "give the file of a store, or the name of a new one"
 REPAIR_ADVICE = "restore it from a copy, or run the sweep again into a new store"
+
+
+class Row(NamedTuple):
+    """What a sweep keeps of a state."""
+
+    numbers: dict[str, tuple[float, str, str]]  # Value, unit and meaning of each by its name; empty if there is no state
+    outcome: str  # Name of the outcome
+    message: str
+
+
+def row_of(ended: Ended, states: States, i: int) -> Row:
+    """Return what a sweep keeps of the i-th state."""
+    solution = ended.solution
+    if solution is None:
+        return Row({}, ERROR if ended.fault else ended.outcome.name, ended.message)
+    boundary_friction, beta = (None, None) if states.coefficients is None else states.coefficients[i].tolist()
+    stated = (each.stated for each in numbers_of(solution, boundary_friction, beta, with_fields=False))
+    numbers = {name: number for each in stated for name, number in each.items()}
+    numbers |= {name: (float(getattr(solution, name)), *COLUMNS[name]) for name in ("nodes", "newton_steps")}
+    return Row(numbers, ended.outcome.name, ended.message)
 
 
 class Store:

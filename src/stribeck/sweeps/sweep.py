@@ -4,28 +4,23 @@ from __future__ import annotations
 
 import math
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
 
 from stribeck._types import Flags
-from stribeck.batches.executors import Executor, SweepError, solve_here, solve_on_cluster, solve_on_processes
-from stribeck.batches.solving import solve_all
+from stribeck.batches.executors import Executor, SweepError, solve_all, solve_here, solve_on_cluster, solve_on_processes
 from stribeck.files.results import Record
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
-from stribeck.sweeps.columns import Row, row_of
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.store import Store, claimed_store
+from stribeck.sweeps.store import Row, Store, claimed_store, row_of
 
 MAX_WORKERS = 1024
-
-RATE_WINDOW = 60.0  # Time over which the rate is measured [s]
 
 
 @dataclass(frozen=True)
@@ -35,7 +30,7 @@ class SweepProgress(Record):
     done: Annotated[int, "states finished, those of earlier runs included", "1"]
     total: Annotated[int, "states of the design", "1"]
     failed: Annotated[int, "states of this run that did not converge", "1"]
-    rate: Annotated[float, "states per second over the last minute, 0 before the first", "s-1"]
+    rate: Annotated[float, "states per second of this run, 0 before the first", "s-1"]
     seconds_left: Annotated[float, "time left at this rate, infinite before the first", "s"]
 
     @property
@@ -121,7 +116,7 @@ class _Watched:
         self.store, self.on_progress = store, on_progress
         self.total, self.before = len(store.done()), int(store.done().sum())
         self.computed = self.failed = 0
-        self.marks = deque([(time.monotonic(), 0)])
+        self.began = time.monotonic()
 
     def done(self) -> Flags:
         """Return whether each state of the design has ended."""
@@ -132,17 +127,12 @@ class _Watched:
         self.store.keep(rows)
         self.computed += len(rows)
         self.failed += sum(row.outcome != Outcome.CONVERGED.name for _, row in rows)
-        now = time.monotonic()
-        self.marks.append((now, self.computed))
-        while len(self.marks) > 2 and now - self.marks[1][0] > RATE_WINDOW:
-            self.marks.popleft()
 
     def report_progress(self) -> None:
         """Tell who wants to know how many states have ended."""
         if self.on_progress is None:
             return
-        (began, first), now = self.marks[0], time.monotonic()
-        rate = (self.computed - first) / (now - began) if self.computed > first and now > began else 0.0
-        done = self.before + self.computed
+        passed, done = time.monotonic() - self.began, self.before + self.computed
+        rate = self.computed / passed if passed > 0 else 0.0
         left = (self.total - done) / rate if rate > 0 else math.inf
         self.on_progress(SweepProgress(done, self.total, self.failed, rate, left))

@@ -46,21 +46,11 @@ def all_lines(
     notes: Sequence[str],
     over: str | None = None,
 ) -> Iterator[str]:
-    """Yield everything: the inputs and groups without those that vary, the numbers, and all notes."""
-    yield from head_lines(case.title if case else "", contact, groups, over, checks)
-    yield from body
-    yield from note_lines(notes, checks)
-    yield from conversion_lines(case)
-
-
-def head_lines(
-    title: str, contact: Contact | None, groups: Groups, over: str | None = None, checks: Checks | None = None
-) -> Iterator[str]:
-    """Yield whether the model applies if it does not, the headline, the inputs and the groups, without those that vary."""
+    """Yield everything: whether the model applies if it does not, inputs and groups that do not vary, numbers, all notes."""
     if checks is not None and checks.first_line:
         yield checks.first_line
-    if title:
-        yield title
+    if case and case.title:
+        yield case.title
     if contact is not None:
         rows = contact.INPUTS.quantities
         inputs = [(rows[name], value) for name, value in contact.inputs() if name != over]
@@ -73,6 +63,9 @@ def head_lines(
     model = model_words(groups, contact)
     if model:
         yield f"Model: {model}."
+    yield from body
+    yield from (f"Note: {note}" for note in notes if checks is None or not checks.covers(note))
+    yield from conversion_lines(case)
 
 
 def number_lines(numbers: Sequence[Number]) -> list[str]:
@@ -107,11 +100,6 @@ def outcome_line(outcome: str, error: float, others: Mapping[str, float]) -> str
     errors = [f"{value:.1e} of the {name}" for value, name in larger]
     found = ", ".join([*errors, f"{error:.1e} of the rest" if errors else f"{error:.1e}"])
     return f"{outcome} Largest estimated relative error: {found}."
-
-
-def note_lines(notes: Sequence[str], checks: Checks | None) -> list[str]:
-    """Return the notes that the first line leaves."""
-    return [f"Note: {note}" for note in notes if checks is None or not checks.covers(note)]
 
 
 def conversion_lines(case: Case | None) -> list[str]:
