@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -11,6 +12,7 @@ from stribeck._types import Array
 from stribeck.equations.operators import Operators
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.settings import EXTRA_NODES
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import (
     log_moments,
@@ -23,11 +25,7 @@ from stribeck.solids.half_plane import (
     panels_from_infinity,
 )
 
-__all__ = ["FineOperators"]
-
-# Nodes that a panel gains where the defect is evaluated. Of the error on a wide panel over which the asperity pressure of a
-# Gaussian surface dies away two see a fifth, four nine tenths, eight no more; an odd number has a node at infinity.
-EXTRA_NODES = 4
+__all__ = ["EnrichedOperators", "FineOperators"]
 
 
 def _by_highest(s: Array, order: int) -> Array:
@@ -45,7 +43,7 @@ def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array
 
 @dataclass(frozen=True, eq=False)
 class FineOperators:
-    """The panels of a mesh with more nodes, and the deflection by pressures there at the nodes of the mesh."""
+    """The panels of a mesh with more nodes, and what they add to it."""
 
     # The deflection by degrees that the mesh holds is that on the mesh; the deflection by higher degrees falls so fast with
     # the distance from their panel that only its neighbourhood counts.
@@ -72,7 +70,7 @@ class FineOperators:
         return legendre.legvander(reference(m).nodes, m - 1) @ reference(self.mesh.order).to_legendre[:m]
 
     @cached_property
-    def _of_highest(self) -> Array:
+    def of_highest(self) -> Array:
         """Highest Legendre coefficients on all panels -> the deflection by them, shape (size, panels * EXTRA_NODES)."""
         mesh, m = self.coarse, self.coarse.order
         found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
@@ -94,28 +92,55 @@ class FineOperators:
         density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
         return np.asarray((density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch)
 
-    def weights(self, operators: Operators) -> Array:
-        """Return the row that integrates fine pressures to the load, as the ``operators`` do for coarse ones."""
-        mesh, tail = self.mesh, operators.tail
-        if tail is None:
-            return mesh.weights
-        found, own = mesh.weights.copy(), slice(-mesh.order, None)
-        found[own] = (tail.weights @ tail.interpolation(mesh.order)) * mesh.stretch[own]
+
+@dataclass(frozen=True, eq=False)
+class EnrichedOperators(Operators):
+    """The operators of equations whose pressures are known at the finer nodes: their rows are those of the mesh."""
+
+    fine: FineOperators | None = None
+
+    @classmethod
+    def of(cls, operators: Operators, fine: FineOperators) -> EnrichedOperators:
+        """Return those of a mesh and a model, with the deflection that the mesh has already."""
+        found = cls(operators.mesh, operators.model, fine)
+        vars(found).update(deflection=operators.deflection)
         return found
 
-    def deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None = None) -> Array:
-        """Return the deflection at coarse nodes under rows of fine ``pressure``, over the cavity stretch, without its log."""
-        if operators.deflection_by_tail is not None and operators.tail is not None:
-            own = slice(-self.mesh.order, None)
-            density = (pressure[:, own] * self.mesh.stretch[own]) @ operators.tail.interpolation(self.mesh.order).T
+    @cached_property
+    def finer(self) -> FineOperators:
+        """The finer nodes."""
+        return FineOperators(self.mesh) if self.fine is None else self.fine
+
+    @cached_property
+    def integral(self) -> RunningIntegral:
+        """Finer nodal pressure gradients -> pressure there."""
+        return self.finer.integral(self.reformation)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the integral of finer pressures over the whole line."""
+        mesh = self.finer.mesh
+        if self.tail is None:
+            return mesh.weights
+        found, own = mesh.weights.copy(), slice(-mesh.order, None)
+        found[own] = (self.tail.weights @ self.tail.interpolation(mesh.order)) * mesh.stretch[own]
+        return found
+
+    def by_kernel(self, pressure: Any, d: Any) -> Any:
+        """Return the deflection under rows of finer pressure, over the cavity stretch, without its logarithm."""
+        mesh = self.finer.mesh
+        if self.deflection_by_tail is not None and self.tail is not None:
+            own = slice(-mesh.order, None)
+            density = (pressure[:, own] * mesh.stretch[own]) @ self.tail.interpolation(mesh.order).T
             inner = pressure.copy()
             inner[:, own] = 0.0
-            return self._deflection(inner, operators, None) + density @ operators.deflection_by_tail.T
-        return self._deflection(pressure, operators, cavity_stretch)
+            return self._by_degrees(inner, None) + density @ self.deflection_by_tail.T
+        return self._by_degrees(pressure, d)
 
-    def _deflection(self, pressure: Array, operators: Operators, cavity_stretch: Array | None) -> Array:
-        density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
-        lowered = self.lowered(pressure)
-        highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
-        found = lowered @ operators.deflection.T if cavity_stretch is None else operators.by_kernel(lowered, cavity_stretch)
-        return found + highest.reshape(len(pressure), -1) @ self._of_highest.T
+    def _by_degrees(self, pressure: Array, d: Any) -> Array:
+        fine = self.finer
+        density = (pressure * fine.mesh.stretch).reshape(len(pressure), fine.mesh.panels, -1)
+        highest = density @ reference(fine.mesh.order).to_legendre[fine.coarse.order :].T
+        return np.asarray(
+            super().by_kernel(fine.lowered(pressure), d) + highest.reshape(len(pressure), -1) @ fine.of_highest.T
+        )

@@ -22,9 +22,8 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
-from stribeck.equations.enriched import FineOperators
-from stribeck.equations.film import gradient_in_film
-from stribeck.equations.line import LOAD
+from stribeck.equations.enriched import EnrichedOperators, FineOperators
+from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.equations.observables import (
     DRAG_ROWS,
     ROW,
@@ -34,10 +33,9 @@ from stribeck.equations.observables import (
 )
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
-from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
-from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.numerics.settings import EPSILON, FLOOR, SAFETY
-from stribeck.numerics.trace import Matrix, Trace
+from stribeck.numerics.panels import Mesh, between_orders, interpolation_error
+from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, FLOOR, NEGLIGIBLE, SAFETY, SIGN_PATTERNS
+from stribeck.numerics.trace import Trace, act
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
 
@@ -49,14 +47,6 @@ __all__ = [
     "gap_is_resolved",
     "perturbations",
 ]
-
-DEFECT_SAFETY = 3.0  # Safety factor of the defect: finer nodes see only a part of it if the pressures need many more nodes
-
-# If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is interpolated
-# itself: its formula is there the difference of nearly equal numbers.
-CANCELLATION_BELOW = 0.2
-
-SIGN_PATTERNS = 5  # Number of patterns of signs: enough for the mean square of their changes within a factor of two
 
 SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
 GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
@@ -123,32 +113,32 @@ class Perturbations:
 
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
     """Return the changes of states by defect, quadrature and rounding; ``observed`` as in :func:`error_estimates`."""
-    equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
-    coarse, mesh, film, u = fine.coarse, fine.mesh, states.equations.film, equations.fields(y)
-    far_gap = equations.far_gap(u)
-    integral, d = fine.integral(op.reformation), equations.cavity_stretch(y)
-    h, z0, h_star = y[:, at.gap], y[:, at.offset], y[:, at.flux_gap]
-    balance, net = at.offset.start, at.flux_gap.start
-    gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
+    op, at, y = states.equations.operators, states.equations.layout, states.y
+    coarse, mesh, film, u = fine.coarse, fine.mesh, states.equations.film, states.equations.fields(y)
+    equations = replace(states.equations, operators=EnrichedOperators.of(op, fine))
+    far_gap, integral = equations.far_gap(u), equations.operators.integral
+    gap = np.exp(coarse.to_order(np.log(u.gap / coarse.far), mesh.order)) * mesh.far
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
-    smooth = h[:, own] - far_gap(coarse.nodes[own])
+    smooth = u.gap[:, own] - far_gap(coarse.nodes[own])
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
-    known = equations.fluid_pressure(y) if film.uses_pressure else None
-    fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
-    flat = np.asarray((np.abs(h - h_star) < CANCELLATION_BELOW * h).reshape(len(y), coarse.panels, -1).all(axis=2))
+    fluid = None if u.pressure is None else coarse.to_order(u.pressure * coarse.stretch, mesh.order) / mesh.stretch
+    flat = np.asarray((np.abs(u.gap - u.flux_gap) < NEGLIGIBLE * u.gap).reshape(len(y), coarse.panels, -1).all(axis=2))
     clip = _clip_to_coarse_error(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
 
-    slopes = gradient_in_film(film, integral, gap, fluid, h_star)
+    known = u._replace(gap=gap, pressure=fluid)  # at the finer nodes
+    slopes = equations.gradient(film, known)
     if flat.any():
-        smooth = gradient_in_film(film, op.integral, h, known, h_star)
+        smooth = states.equations.gradient(film, u)
         if clip is not None:
             smooth = clip(slopes, smooth)
         elif not is_rough(film):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
-            by_flux = Trace.number("flux_gap", h_star)
-            conducted = gradient_in_film(film, op.integral, h, known, by_flux).columns["flux_gap"]
-            finer_conducted = gradient_in_film(film, integral, gap, fluid, by_flux).columns["flux_gap"]
+            by_flux = Trace.number("flux_gap", u.flux_gap)
+            conducted, finer_conducted = (
+                each.gradient(film, at_nodes._replace(flux_gap=by_flux)).columns["flux_gap"]
+                for each, at_nodes in ((states.equations, u), (equations, known))
+            )
             missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
             smooth = coarse.to_order(missing, mesh.order) * finer_conducted
         slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
@@ -156,48 +146,67 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     jumps = None if jump is None else jump(gap, fluid)
     if jumps is not None:
         slopes = slopes + 0.5 * jumps
-    integrated = equations.speed * integral(slopes)
-    if d is not None:
-        integrated = d * integrated + np.where(integral.outside_gap, 0.0, op.model.cavity_pressure)
+    integrated = equations.fluid_of_gradient(u, slopes)
     lowered = None if fluid is None else fine.lowered(integrated)
     if fluid is None or lowered is None:
         fluid = unresolved = integrated
     else:  # what the nodes hold of it is a row of its own; through infinity it may have a kink
         unresolved = fluid + integrated - coarse.to_order(lowered * coarse.stretch, mesh.order) / mesh.stretch
         fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
-    contact = equations.law.pressure(gap)
-    pressure = contact + unresolved
-    deflection = fine.deflection(pressure, op, d)
-    residual = np.empty((1 + SIGN_PATTERNS, *y.shape))
-    parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
-    weights = fine.weights(op)
-    load = pressure @ weights
-    if d is not None:
-        deflection = d * deflection - d * np.log(d) / math.pi * load[:, None]
-        load = d[:, 0] * load
-    residual[0, :, at.gap] = h - z0 - parabola - deflection
-    residual[0, :, balance] = load - LOAD
-    residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ integral.weights)
-    size = SAFETY * EPSILON
-    residual[1:, :, at.gap] = size * (np.abs(z0) + parabola + np.abs(deflection))
-    residual[1:, :, balance] = size * LOAD
-    residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ integral.weights)
-    if op.has_exit:
-        ending = equations.ending
-        at_end = slopes if ending is film else gradient_in_film(ending, integral, gap, fluid, h_star)
-        _of_ends(states, residual, integral, slopes, at_end, size)
-    residual[:, :, at.pressure] = 0.0
-    if known is not None and lowered is not None:
-        residual[0, :, at.pressure] = known - lowered
-        residual[0, :, at.pressure][:, -coarse.order :] = 0.0
+    contact = equations.contact(gap)
+    at_end = slopes if equations.ending is film else equations.gradient(equations.ending, known)
+    rows = equations.balances(u, contact + unresolved, slopes, at_end)
+    rounding = _rounding(equations, u, rows.gap, slopes)
+    if rows.exit is not None:
+        steep, missed = _at_exit(states.equations, u)
+        rounding = rounding._replace(exit=SAFETY * EPSILON * steep)
+        rows = rows._replace(exit=np.abs(rows.exit) + steep * missed)
+    if lowered is not None:
+        missing = u.pressure - lowered
+        missing[:, own] = 0.0
+        rows = rows._replace(pressure=missing)
+    residual = np.zeros((1 + SIGN_PATTERNS, *y.shape))
+    for place, defect, rounded in zip(Fields._fields, rows, rounding, strict=True):
+        if defect is not None:
+            residual[0, :, getattr(at, place)] = defect
+        if rounded is not None:
+            residual[1:, :, getattr(at, place)] = rounded
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
-    unknowns = states.correction(residual)
     known_friction = observed[:, DRAG_ROWS].T
     friction = known_friction
     if equations.is_sliding:
-        film_on_mesh = FilmOnMesh(integral, gap, fluid, contact, Matrix(weights[None]), clip)
-        friction = np.stack([each[:, 0] for each in viscous_friction(equations, u, states.load, film_on_mesh)])
-    return Perturbations(unknowns, np.abs(friction - known_friction))
+        film_on_mesh = FilmOnMesh(integral, gap, fluid, contact, equations.operators.load, clip)
+        friction = np.stack([each[:, 0] for each in viscous_friction(states.equations, u, states.load, film_on_mesh)])
+    return Perturbations(states.correction(residual), np.abs(friction - known_friction))
+
+
+def _rounding(equations: Equations, u: Fields, shape: Array, slopes: Array) -> Fields:
+    """Return by how much rounding may change the rows: a few units in the last place of the largest terms."""
+    op, scale, d = equations.operators, equations.flux_scale, equations.stretch_of(u)
+    x = op.mesh.nodes if d is None else d * op.mesh.nodes
+    parabola = 0.5 * (x if u.exit is None else x + u.exit) ** 2
+    deflection = u.gap - u.offset - parabola - shape
+    size = SAFETY * EPSILON
+    found = Fields(
+        gap=size * (np.abs(u.offset) + parabola + np.abs(deflection)),
+        offset=np.full_like(u.offset, size * LOAD),
+        flux_gap=size * scale * act(op.net, np.abs(slopes)),
+    )
+    if d is None:
+        return found
+    beyond = d * act(op.net_beyond, np.abs(slopes)) + np.abs(op.model.cavity_pressure / equations.speed)
+    return found._replace(cavity_stretch=size * scale * beyond)
+
+
+def _at_exit(equations: Equations, u: Fields) -> tuple[Array, Array]:
+    """Return the change of the row of the exit with the gap there, relative, and the interpolation error of that gap."""
+    op = equations.operators
+    left = slice((op.integral.middle - 1) * op.mesh.order, op.integral.middle * op.mesh.order)
+    traced = u._replace(gap=Trace.number("gap", u.gap))
+    by_gap = equations.gradient(equations.ending, traced).columns["gap"]
+    steep = np.abs(by_gap[:, left.stop - 1] * u.gap[:, left.stop - 1])[:, None]
+    missed = interpolation_error(np.log(u.gap[:, left] / op.mesh.far[left]))
+    return equations.flux_scale * steep, missed[:, None]
 
 
 def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
@@ -212,34 +221,6 @@ def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Ar
         return np.asarray(held + np.clip(finer - held, -bound, bound))
 
     return clip
-
-
-def _of_ends(
-    states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, at_end: Array, size: float
-) -> None:
-    """Write the rows of the ends of the film: defect on finer nodes, interpolation error at the exit, rounding."""
-    # ``slopes`` is G at the finer nodes, ``at_end`` the gradient that vanishes at the exit.
-    equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
-    coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
-    left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
-    of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
-    h = y[:, at.gap][:, left]
-    pressure = y[:, at.pressure] if equations.film.uses_pressure else None
-    by_gap = Trace.number("gap", y[:, at.gap])
-    of_exit = gradient_in_film(equations.ending, op.integral, by_gap, pressure, y[:, at.flux_gap]).columns["gap"]
-    steep = np.abs(of_exit[:, left.stop - 1] * h[:, -1])
-    missed = interpolation_error(np.log(h / coarse.far[left]))
-    at_edge = at_end[:, of_fine] @ reference(mesh.order).left_end[::-1]
-    residual[0][:, at.exit] = (scale * (np.abs(at_edge) + steep * missed))[:, None]
-    residual[1:, :, at.exit] = (size * scale * steep)[:, None]
-    cavity_stretch = equations.cavity_stretch(y)
-    if cavity_stretch is not None:
-        d, in_cavity = cavity_stretch[:, 0], op.model.cavity_pressure / np.ravel(equations.speed)
-        net = at.flux_gap.start
-        residual[0, :, net] = d * residual[0, :, net] - scale * in_cavity
-        residual[0, :, at.cavity_stretch.start] = scale * (d * (slopes @ integral.weights_beyond) + in_cavity)
-        beyond = np.abs(slopes) @ integral.weights_beyond
-        residual[1:, :, at.cavity_stretch.start] = size * scale * (d * beyond + np.abs(in_cavity))
 
 
 def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array) -> Array:

@@ -178,9 +178,9 @@ class Equations:
         g = self.gradient(self.film, u, by)
         if u.pressure is not None:
             fluid = self.fluid_of_gradient(u, g, by)
-            return self.balances(u, u.pressure, g, by)._replace(pressure=u.pressure - fluid)
+            return self.balances_of(u, u.pressure, g, by)._replace(pressure=u.pressure - fluid)
         at_rest = u.cavity_stretch is None and not self.is_sliding
-        return self.balances(u, None if at_rest else self.fluid_of_gradient(u, g, by), g, by)
+        return self.balances_of(u, None if at_rest else self.fluid_of_gradient(u, g, by), g, by)
 
     def gradient(self, film: Film, u: Fields, by: str | None = None) -> Any:
         """Return G of a film at the nodes, zero in the cavity."""
@@ -205,20 +205,23 @@ class Equations:
         fluid = act(op.integral, self.speed_of(by) * g)
         return fluid if d is None else d * fluid + op.in_cavity * self.cavity_pressure_of(u)
 
-    def balances(self, u: Fields, fluid: Any, g: Any, by: str | None = None) -> Fields:
-        """Return the rows of shape, load and ends; ``g`` is the gradient in the film."""
+    def balances_of(self, u: Fields, fluid: Any, g: Any, by: str | None = None) -> Fields:
+        """Return the rows of shape, load and ends under a pressure of the fluid; ``g`` is the gradient in the film."""
+        contact = self.contact(u.gap, by)
+        smooth = u.exit is None or self.ending is self.film
+        at_end = g if smooth else self.gradient(self.ending, u, by)
+        return self.balances(u, contact if fluid is None else contact + fluid, g, at_end, by)
+
+    def balances(self, u: Fields, pressure: Any, g: Any, at_end: Any, by: str | None = None) -> Fields:
+        """Return the rows of shape, load and ends under a pressure; ``at_end`` is the gradient that vanishes at the exit."""
         op, d, scale = self.operators, self.stretch_of(u), self.flux_scale
-        pressure = self.contact(u.gap, by)
-        if fluid is not None:
-            pressure = pressure + fluid
         x = op.mesh.nodes if d is None else d * op.mesh.nodes
         shape = u.gap - u.offset - (op.parabola if d is None else 0.5 * x * x) - op.deflected(pressure, d)
         load = act(op.load, pressure)
         flux, exit, stretch = act(op.net, g), None, None
         if u.exit is not None:
             shape = shape - u.exit * (x + 0.5 * u.exit)
-            at_exit = g if self.ending is self.film else self.gradient(self.ending, u, by)
-            exit = scale * act(op.exit_value, at_exit)
+            exit = scale * act(op.exit_value, at_end)
         if d is not None:
             in_cavity = self.cavity_pressure_of(u) / self.speed_of(by)
             load, flux = d * load, d * flux - in_cavity
@@ -355,7 +358,7 @@ class Eliminated:
     def matrix(self) -> Array:
         """The Jacobian of the other unknowns."""
         equations, u = self.equations, self.u._replace(pressure=self.pressure)
-        return dense(equations.balances(u, self.pressure, equations.gradient(equations.film, u)))
+        return dense(equations.balances_of(u, self.pressure, equations.gradient(equations.film, u)))
 
     @cached_property
     def reduced(self) -> LU:

@@ -25,19 +25,13 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.numerics.trace import Matrix, Trace, act, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 from stribeck.solids.solid import Solid, deflecting
 
 LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
-
-
-STRETCH_CELL = 0.05  # Range of ln(cavity stretch) on which the deflection of a solid with lengths of its own is interpolated
-
-STRETCHES_PER_CELL = 4  # Dilations of a cell with computed deflections: interpolation is right to 1e-9 of their change
-
-MAX_CELLS = 4  # Cells kept: Newton's iteration goes to and fro between two at most, on one mesh and on the finer one
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +120,9 @@ class Operators:
     @cached_property
     def at_exit(self) -> Array:
         """Row: nodal values -> the value at zero, from the left."""
-        row = np.zeros(self.mesh.size)
-        last = slice((self.integral.middle - 1) * self.mesh.order, self.integral.middle * self.mesh.order)
-        row[last] = reference(self.mesh.order).left_end[::-1]
+        mesh, middle = self.integral.mesh, self.integral.middle
+        row = np.zeros(mesh.size)
+        row[(middle - 1) * mesh.order : middle * mesh.order] = reference(mesh.order).left_end[::-1]
         return row
 
     @cached_property
@@ -164,18 +158,20 @@ class Operators:
     def deflected(self, pressure: Any, d: Any) -> Any:
         """Return the deflection under rows of nodal pressure, or under a traced one, at a cavity stretch."""
         if d is None:
-            return act(self.deflecting, pressure)
+            return self.by_kernel(pressure, None)
         d_log_d = pointwise(lambda d: (d * np.log(d) / math.pi, (np.log(d) + 1) / math.pi), d)
         return d * self.by_kernel(pressure, d) - d_log_d * act(self.load, pressure)
 
     def by_kernel(self, pressure: Any, d: Any) -> Any:
         """Return D p for each row of pressure and its cavity stretch d; nan where d is not positive."""
-        if isinstance(self.model.solid, HalfPlane):
+        if d is None or isinstance(self.model.solid, HalfPlane):
             return act(self.deflecting, pressure)
         if isinstance(pressure, Trace):
             here = float(value_of(d)[0])
-            slope = self.kernel(here, derivative=True) @ pressure.value / here
-            fixed = act(Matrix(self.kernel(here)), pressure)
+            kernel = self.kernel(here)
+            # Newton's iteration and small changes need a slope, no more exact than half of the digits.
+            slope = (self.kernel(here * (1 + HALF_DIGITS)) - kernel) @ pressure.value / (here * HALF_DIGITS)
+            fixed = act(Matrix(kernel), pressure)
             return pointwise(lambda value, _: (value, None, slope), fixed, d)
         stretches = np.broadcast_to(d, (*pressure.shape[:-1], 1))[..., 0]
         found = np.full((*pressure.shape[:-1], self.mesh.size), np.nan)
@@ -183,22 +179,9 @@ class Operators:
             found[*row] = self.kernel(float(stretches[*row])) @ pressure[*row]
         return found
 
-    def kernel(self, d: float, derivative: bool = False) -> Array:
-        """Return D at a cavity stretch d, or its derivative by the logarithm of d."""
-        if isinstance(self.model.solid, HalfPlane):
-            return np.zeros((1, self.mesh.size)) if derivative else self.deflection
-        place = np.log(d) / STRETCH_CELL
-        if not np.isfinite(place):  # of a series beyond its radius, which shows in the gap
-            return np.full((self.mesh.size, self.mesh.size), np.nan)
-        cell = round(place)
-        at = place - cell
-        weights = (
-            _OF_CELL @ (np.arange(STRETCHES_PER_CELL) * at ** np.maximum(np.arange(STRETCHES_PER_CELL) - 1, 0) / STRETCH_CELL)
-            if derivative
-            else None
-        )
-        weights = _OF_CELL @ at ** np.arange(STRETCHES_PER_CELL) if weights is None else weights
-        return np.asarray(np.tensordot(weights, _kernels(self.mesh, self.model.solid, cell), 1))
+    def kernel(self, d: float) -> Array:
+        """Return D at a cavity stretch: the deflection in x over d, without its logarithm."""
+        return self.deflection if isinstance(self.model.solid, HalfPlane) else _kernel(self.mesh, self.model.solid, d)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,17 +200,7 @@ class OperatorsOfRows(Operators):
         return self._deflecting(pressure)
 
 
-@lru_cache(maxsize=MAX_CELLS)
-def _kernels(mesh: Mesh, solid: Solid, cell: int) -> Array:
-    """Return D at the cavity stretches of a cell: each the deflection in x over d, without its logarithm."""
-    # Only the last cells are cached: they fill more memory than the rest of a mesh.
-    found = []
-    for d in np.exp(STRETCH_CELL * (cell + _IN_CELL)).tolist():
-        stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)
-        found.append(solid.deflection(stretched) / d + math.log(d) / math.pi * mesh.weights)
-    return np.stack(found)
-
-
-_IN_CELL = 0.5 * np.cos(np.pi * (np.arange(STRETCHES_PER_CELL) + 0.5) / STRETCHES_PER_CELL)
-# Coefficients of the polynomial that is one at one of these cavity stretches and zero at the others, a row for each.
-_OF_CELL = np.linalg.inv(np.vander(_IN_CELL, increasing=True)).T
+@lru_cache(maxsize=2)  # of a Jacobian and what it is the slope of; they fill more memory than the rest of a mesh
+def _kernel(mesh: Mesh, solid: Solid, d: float) -> Array:
+    stretched = replace(mesh, edges=d * mesh.edges, reformation=d * mesh.reformation)
+    return np.asarray(solid.deflection(stretched) / d + math.log(d) / math.pi * mesh.weights)

@@ -24,6 +24,7 @@ from stribeck.fluids.fluid import Decay, Film
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_between, root_find
 from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree, reference
 from stribeck.numerics.settings import (
+    CHORD_CONTRACTION,
     COARSE_RTOL,
     COARSE_STEP,
     EPSILON,
@@ -37,10 +38,6 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
-
-CHORD_CONTRACTION = 0.25  # Contraction of the steps above which a kept factorisation is given up
-
-END_RESOLUTION_GAIN = 5.0  # Factor by which the error of the exit falls, at least, when the panels beside it are halved
 
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 MIN_GAP = ROUNDING / COARSE_STEP
@@ -252,6 +249,11 @@ def error_of(tail: float) -> float:
     return (tail / (SAFETY * NEGLIGIBLE)) ** 2
 
 
+def halvings_for(gain: float) -> float:
+    """Return how many halvings of the panels beside an exit gain a factor: its error falls with their square at least."""
+    return 0.5 * math.log2(gain)
+
+
 def mesh_for(
     guess: Guess,
     groups: Groups,
@@ -393,7 +395,7 @@ def mesh_for(
     if not ends:
         return mesh
     # Panels that do not halve leave the ends with the error of a coarse state.
-    levels = halvings + max(0, round(math.log(COARSE_STEP / error) / math.log(END_RESOLUTION_GAIN)))
+    levels = halvings + max(0, round(halvings_for(COARSE_STEP / error)))
     return replace(graded(mesh, places, levels), reformation=reformation)
 
 

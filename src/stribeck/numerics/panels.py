@@ -20,11 +20,9 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
-from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE, STEP_GROWTH
+from stribeck.numerics.settings import MAX_PANELS, SAME_PLACE, SPLIT_MARGIN, STEP_GROWTH
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
-
-SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields
 
 NO_PLACES = np.empty(0)
 

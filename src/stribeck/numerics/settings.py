@@ -48,14 +48,24 @@ MAX_BYTES = 670_000_000  # Memory of operators and preconditioner of a mesh
 # Meshes of balls, limits on work too: with others a state takes another refinement or more nodes.
 PANEL_GROWTH = 2.5  # Ratio of the widths of neighbouring panels
 FAR_GROWTH = 2.0 * PANEL_GROWTH  # Ratio of the radii of panels far out, where the film is known but for little
-LEGENDRE_DECAY = 4.4  # Factor by which pressures with the square root of an edge fall per degree, on panels that lead to it
+# Factor by which pressures with the square root of an edge fall per degree, on panels that grow from it: the axes of the
+# ellipse through the edge around one of them.
+LEGENDRE_DECAY = (PANEL_GROWTH**0.5 + 1.0) / (PANEL_GROWTH**0.5 - 1.0)
 MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
+
+CHORD_CONTRACTION = (
+    0.25  # Contraction of steps with kept factors above which new ones are made, and cost as much as some steps
+)
 
 # Of the line: states that only start others, and limits on work.
 COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
 COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration towards such a state; smaller ones may be rounding
 COARSE_ORDER = 10  # Nodes per panel of such a state
 MAX_PANELS = 128  # Panels of a mesh of the line
+EXTRA_NODES = 4  # Nodes that panels gain for the error estimate: with two it sees a fifth of errors on wide panels; even
+DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
+SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
+SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two
 MAX_AMPLIFICATION = 40.0  # Sum of absolute weights of a prediction above which it uses fewer states, whose errors it amplifies
 
 # Tolerances of the promise.

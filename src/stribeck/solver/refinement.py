@@ -13,7 +13,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_RESOLUTION_GAIN, State, decay_of, is_rough, mesh_for, solve_state
+from stribeck.equations.state import State, decay_of, halvings_for, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE, ROUNDING, SAFETY, SHARE
@@ -104,7 +104,8 @@ def converge(
         if estimate.total <= 3 * estimate.floor or SHARE * before < estimate.total <= SAFETY**2 * _noise(best):
             outcome = Outcome.ROUNDING
             break
-        halvings += halvings_for(estimate.of_ends / rtol)
+        if estimate.of_ends > SHARE * rtol:
+            halvings += math.ceil(halvings_for(estimate.of_ends / (SHARE * rtol)))
         tail *= tolerance_factor(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = tolerance_factor(rtol / (estimate.between_nodes + 1e-300))
         seen = abs(values.minimum_gap) / float(state.gap.min())  # at rest it may be a small difference of two gaps
@@ -126,11 +127,6 @@ def _noise(point: RefinedState) -> float:
 def tolerance_factor(excess: float) -> float:
     """Return the factor that reduces a mesh tolerance whose error is 1/``excess`` of the allowed one."""
     return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
-
-
-def halvings_for(excess: float) -> int:
-    """Return how many halvings of the panels at the film's ends reduce their error by a factor."""
-    return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_RESOLUTION_GAIN))
 
 
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:

@@ -26,6 +26,7 @@ from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.settings import MAX_BYTES
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
-MAX_POINTS = 2001  # Points along a side of a dataset: a file of more would take gigabytes
+MAX_POINTS = math.isqrt(MAX_BYTES // (3 * 8))  # Points along a side of a dataset, whose fields take as much memory as a mesh
 WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
     "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "
@@ -349,7 +350,7 @@ class PointSolution(BaseSolution):
         Parameters
         ----------
         points : int
-            Points along each side, 2 to 2001.
+            Points along each side, 2 to some thousands.
         reach : float
             Half the side of the square [a], positive.
 
