@@ -54,7 +54,7 @@ LEGENDRE_DECAY = (PANEL_GROWTH**0.5 + 1.0) / (PANEL_GROWTH**0.5 - 1.0)
 MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 
 CHORD_CONTRACTION = (
-    0.25  # Contraction of steps with kept factors above which new ones are made, and cost as much as some steps
+    0.25  # Contraction of steps with kept factors above which new ones are made
 )
 
 # Of the line: states that only start others, and limits on work.
