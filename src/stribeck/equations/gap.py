@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -72,32 +71,8 @@ def _slope_at_nodes(order: int) -> Array:
 
 def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     """Return position and value of the minimum gap, that of the panels' polynomials around the minimum node."""
-    order = mesh.order
-    panel, node = divmod(int(np.argmin(h)), order)
-    panels = {panel, panel - (node == 0), panel + (node == order - 1)}
-    found = [_minimum_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
-    return min(found, key=lambda pair: pair[1]) if found else (float(mesh.nodes[np.argmin(h)]), float(h.min()))
-
-
-def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
-    """Return position and value of the minimum gap on a panel, by Newton's iteration from its minimum node."""
-    nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
-    rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
-    node = int(np.argmin(h[nodes]))
-    polynomial = (_taylor(mesh.order)[node] @ np.log(h[nodes] / mesh.far[nodes])).tolist()[::-1]
-    start = s = float(rule.nodes[node])
-    low, high = _brackets(mesh.order)[:, node].tolist()
-    for _ in range(MAX_STEPS):
-        _, slope, curvature = _jet(polynomial, s - start)
-        x = c + d * s
-        far = mesh.scale**2 + x * x
-        slope += 2 * d * x / far
-        curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        last, s = s, min(high, max(low, s - slope / (abs(curvature) + TINY)))
-        if abs(s - last) <= HALF_DIGITS:
-            break
-    x = c + d * s
-    return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
+    position, gap, _, _ = minimum_gaps(mesh, np.log(h[None, : -mesh.order]))
+    return float(position[0]), float(gap[0])
 
 
 def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Array, Array, Indices]:
@@ -156,13 +131,3 @@ def _taylor(order: int) -> Array:
         found[:, n] = legendre.legvander(rule.nodes, order - 1) @ coefficients / factor
         coefficients, factor = rule.derivative @ coefficients, factor * (n + 1)
     return found
-
-
-def _jet(polynomial: list[float], t: float) -> tuple[float, float, float]:
-    """Return a polynomial, its highest coefficient first, and its first two derivatives at ``t``."""
-    value = slope = half_curvature = 0.0
-    for coefficient in polynomial:
-        half_curvature = half_curvature * t + slope
-        slope = slope * t + value
-        value = value * t + coefficient
-    return value, slope, 2 * half_curvature

@@ -14,7 +14,7 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.friction import Definition
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
-from stribeck.equations.gap import central_gap, gap_beside, minimum_gap
+from stribeck.equations.gap import central_gap, gap_beside, minimum_gaps
 from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.numerics.trace import Trace, act, value_of
 from stribeck.quantities.outputs import ALL_NAMES
@@ -82,7 +82,7 @@ def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> lis
     op, mesh, at, u = equations.operators, equations.operators.mesh, equations.layout, equations.fields(y)
     found = dict.fromkeys(ALL_NAMES, np.full(len(y), math.nan))
     found |= {name: value[:, 0] for name, value in measured(equations, u, load).items()}
-    positions, found["minimum_gap"] = np.array([minimum_gap(mesh, row) for row in y[:, at.gap]]).T
+    positions, found["minimum_gap"] = minimum_gaps(mesh, np.log(y[:, at.gap][:, : -mesh.order]))[:2]
     if op.has_exit:
         positions = u.exit[:, 0] + (1.0 if u.cavity_stretch is None else u.cavity_stretch[:, 0]) * positions
     found["central_gap"], found["minimum_position"] = central_gaps(equations, u), positions

@@ -53,9 +53,7 @@ FAR_GROWTH = 2.0 * PANEL_GROWTH  # Ratio of the radii of panels far out, where t
 LEGENDRE_DECAY = (PANEL_GROWTH**0.5 + 1.0) / (PANEL_GROWTH**0.5 - 1.0)
 MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 
-CHORD_CONTRACTION = (
-    0.25  # Contraction of steps with kept factors above which new ones are made
-)
+CHORD_CONTRACTION = 0.25  # Contraction of steps with kept factors above which new ones are made
 
 # Of the line: states that only start others, and limits on work.
 COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
