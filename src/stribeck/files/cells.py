@@ -9,19 +9,6 @@ from pathlib import Path
 
 from stribeck.quantities.units import InputError
 
-__all__ = [
-    "MISSING_CELLS",
-    "cells_of",
-    "has_number",
-    "normalised_header",
-    "is_called",
-    "is_named",
-    "looks_like_units",
-    "number_of",
-    "rows_listed",
-    "split_header",
-]
-
 # Cells that hold no value, in lower case.
 MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 

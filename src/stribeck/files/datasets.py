@@ -23,22 +23,6 @@ from stribeck.quantities.units import InputError
 if TYPE_CHECKING:
     import xarray
 
-__all__ = [
-    "CSV_ENDINGS",
-    "DATA_ENDINGS",
-    "NETCDF_ENDINGS",
-    "check_export",
-    "import_xarray",
-    "listed",
-    "new_dataset",
-    "number_columns",
-    "write_csv",
-    "write_data",
-    "write_netcdf",
-    "write_parquet",
-    "write_zarr",
-]
-
 Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit and long name of a variable
 
 NETCDF_ENDINGS = (".nc",)

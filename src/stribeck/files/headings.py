@@ -11,8 +11,6 @@ from typing import Self
 from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, looks_like_units
 from stribeck.quantities.units import InputError
 
-__all__ = ["Heading", "Line", "headings_in"]
-
 # Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
 

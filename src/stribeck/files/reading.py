@@ -14,8 +14,6 @@ from pathlib import Path
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError
 
-__all__ = ["content_of", "read_bounded", "text_of"]
-
 FILE_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
 
 

@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-__all__ = ["Drawn", "Exported", "Record", "Labelled", "Tabled", "columns_of_records"]
-
-
 Labelled = tuple[Mapping[str, Column], Mapping[str, Column], Mapping[str, Any]]
 """Variables, coordinates and attributes of a dataset."""
 

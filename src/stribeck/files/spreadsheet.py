@@ -17,8 +17,6 @@ from stribeck.files.cells import has_number
 from stribeck.files.reading import content_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["SPREADSHEET_ENDINGS", "sheets_of"]
-
 SPREADSHEET_ENDINGS = (".xlsx", ".xlsm")
 
 # Also the letters in a sheet: many cells may refer to one long text

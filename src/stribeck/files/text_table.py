@@ -30,8 +30,6 @@ from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEET_ENDINGS, sheets_of
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["TextTable", "as_comparable", "read_table", "read_two_columns", "values_of"]
-
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
 MAX_TABLE_BYTES = 20_000_000

@@ -9,8 +9,6 @@ from typing import Any
 from stribeck.files.reading import content_of
 from stribeck.quantities.units import InputError
 
-__all__ = ["parse_toml", "read_toml", "toml_text"]
-
 MAX_TOML_BYTES = 1_000_000
 
 _MAX_DEPTH = 16  # Tables and lists in one another

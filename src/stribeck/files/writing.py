@@ -12,17 +12,6 @@ from typing import Any
 
 from stribeck.quantities.units import InputError, show
 
-__all__ = [
-    "MissingExtraError",
-    "PathLike",
-    "check_writable",
-    "need_extra",
-    "path_of",
-    "reason_of",
-    "atomic_write",
-    "sync_folder",
-]
-
 PathLike = str | os.PathLike[str]
 
 FULL_DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # Errors of a disk, a quota or a limit that takes no more

@@ -138,7 +138,7 @@ def empty_diagram(
     contact = problem if isinstance(problem, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     definition = check_definition(definition)
-    groups = _unit_groups(law) if problem is None else as_groups(problem)[0]
+    groups = Groups(1.0, 1.0, 1.0, law=law_of(law)) if problem is None else as_groups(problem)[0]
     if problem is not None:
         given = {name: getattr(problem, name) if value is None and name != "speed" else value for name, value in given.items()}
     missing = [name for name in ("load", "roughness") if given[name] is None]
@@ -150,15 +150,12 @@ def empty_diagram(
     axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
     corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
-        axes["speed"] = _automatic_axis(corners, counts["speed"])
+        # From the lowest plateau to the highest branch of the outermost rows.
+        ends = [end for i, j in product((0, -1), repeat=2) for end in corners.ends(i, j)]
+        axes["speed"] = np.geomspace(min(ends), max(ends), counts["speed"])
     else:
         axes["speed"] = _axis("speed", given["speed"], table, counts["speed"])
     return Diagram(contact, axes, boundary_friction, beta, definition, rtol, physics)
-
-
-def _unit_groups(law: str | AsperityLaw | None) -> Groups:
-    """Return groups that have a contact law, for what they have beside their numbers."""
-    return Groups(1.0, 1.0, 1.0, law=law_of(law))
 
 
 def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int]:
@@ -193,11 +190,3 @@ def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array
             f"{name} = {show(value)}; give one number, a range (low, high), or increasing points, all finite and {lowest}."
         )
     return np.geomspace(found[0], found[1], points) if len(found) == 2 else found
-
-
-def _automatic_axis(diagram: Diagram, points: int) -> Array:
-    """Return speeds that reach from the lowest plateau to the highest branch of the outermost rows."""
-    ends: list[float] = []
-    for i, j in product((0, -1), repeat=2):
-        ends += diagram.ends(i, j)
-    return np.geomspace(min(ends), max(ends), points)

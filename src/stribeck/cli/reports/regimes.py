@@ -42,7 +42,7 @@ def regimes_lines(found: Overview) -> Iterator[str]:
     body.append(outcome_line(found.curve.outcome.value, found.error_estimate, others))
     body += [f"No sensitivities: {found.no_sensitivities}"] if found.no_sensitivities else []
     body += [] if found.errors is None else [str(found.errors)]
-    return all_lines(found.case, found.case.contact, found.solution.groups, found.checks, body, found.notes)
+    return all_lines(found.case, found.solution, found.checks, body, found.notes)
 
 
 def _main_table(found: Overview) -> list[str]:

@@ -55,7 +55,7 @@ def solution_lines(
     friction = max(solution.friction(boundary_friction, beta, each).relative_error for each in DEFINITIONS)
     others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}
     body.append(outcome_line(solution.outcome.value, solution.error_estimate, others))
-    return all_lines(case, solution.contact, solution.groups, checks, body, solution.notes_for(boundary_friction, beta))
+    return all_lines(case, solution, checks, body, solution.notes_for(boundary_friction, beta))
 
 
 def _coefficients(solution: BaseSolution, boundary_friction: float | None, beta: float | None) -> list[str]:
@@ -84,7 +84,7 @@ def curve_lines(curve: StribeckCurve, case: Case | None, verdict: CurveVerdict) 
         body.append(str(errors))
     friction = {"friction": float(curve.friction.relative_error.max(initial=0.0))}
     body.append(outcome_line(curve.outcome.value, curve.error_estimate, friction))
-    yield from all_lines(case, curve.contact, curve.groups, verdict.checks, body, curve.notes, curve.over)
+    yield from all_lines(case, curve, verdict.checks, body, curve.notes, curve.over)
 
 
 def _regime_lines(curve: StribeckCurve) -> Iterator[str]:

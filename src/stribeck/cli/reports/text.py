@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from stribeck.contacts.contact import Contact, in_words, model_words
+from stribeck.contacts.contact import in_words, model_words
 from stribeck.quantities.formats import figures, format_number, format_si
 from stribeck.quantities.results import table_lines
 from stribeck.solver.about import constant_groups
@@ -14,10 +14,10 @@ from stribeck.solver.about import constant_groups
 if TYPE_CHECKING:
     from stribeck.cases.case import Case
     from stribeck.checks.check import Checks
-    from stribeck.contacts.groups import Groups
     from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
     from stribeck.quantities.number import Number
+    from stribeck.solver.base_solution import BaseSolution
 
 SCREEN_WIDTH = 80  # Columns of the terminal for which notes of an answer are shortened.
 
@@ -39,8 +39,7 @@ def answer_lines(
 
 def all_lines(
     case: Case | None,
-    contact: Contact | None,
-    groups: Groups,
+    result: BaseSolution | StribeckCurve,
     checks: Checks | None,
     body: Iterable[str],
     notes: Sequence[str],
@@ -51,6 +50,7 @@ def all_lines(
         yield checks.first_line
     if case and case.title:
         yield case.title
+    contact, groups = result.contact, result.groups
     if contact is not None:
         rows = contact.INPUTS.quantities
         inputs = [(rows[name], value) for name, value in contact.inputs() if name != over]
