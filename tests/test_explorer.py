@@ -801,18 +801,6 @@ def test_the_first_solved_curve_is_coarse_and_says_so_and_at_rest_a_finer_one_re
         assert abs(math.log(first.value / then.value)) < first.error + then.error
 
 
-def test_rows_of_a_solved_map_lie_around_their_transitions_which_the_whole_range_has_too():
-    rolling = choices.choose(START, "motion", "rolling").contact
-    beside = sb.stribeck_curve(rolling, rtol=1e-3)
-    row = rolling.replace(roughness=3 * rolling.roughness)
-    marks, narrow = curves._row(row, "balanced", (1e-8, 10.0), always, beside)
-    alone, wide = curves._row(row, "balanced", (1e-8, 10.0), always, None)
-    assert marks == pytest.approx(alone, rel=1e-2)
-    assert narrow.values[-1] / narrow.values[0] < wide.values[-1] / wide.values[0]
-    far = curves._row(rolling.replace(roughness=1e-3 * rolling.roughness), "balanced", (1e-8, 10.0), always, beside)[0]
-    assert far[0] == 0.0 or far[0] < marks[0]
-
-
 def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
     now = inputs.with_text(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
     model = Answerer()
@@ -1115,11 +1103,10 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     assert boundary == 0  # the fluid carries more than a twentieth at the slowest speed
 
 
-def test_rows_of_a_map_that_are_sought_around_the_curve_of_the_contact_are_those_of_their_own(monkeypatch):
+def test_rows_of_a_map_have_the_transitions_of_their_own(monkeypatch):
     monkeypatch.setitem(curves.SOLVED_ROWS, "line", curves.SOLVED_ROWS["line"]._replace(step=8))
     contact = choices.choose(START, "motion", "rolling").contact
-    own = curves.solved_curve(contact, "balanced", lambda _: None).found
-    *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None, own)
+    *_, found = curves.solved_diagram(contact, "balanced", (1e-7, 1.0), -7, lambda _: None)
     assert len(found.roughness) == 33
     for roughness, boundary, hydrodynamic in zip(found.roughness[::8], *found.lines[:2, ::8], strict=True):
         row = contact.replace(roughness=float(roughness))
@@ -1139,7 +1126,7 @@ def test_between_solved_rows_a_map_bends_with_its_lines(monkeypatch):
         return 1e-3 * np.exp(1.5 * logs + 0.05 * logs**2)
 
     def row(contact, *_):
-        return (float(line(contact.roughness)), math.inf, math.nan if contact.roughness > 1e-5 else 0.2), None
+        return (float(line(contact.roughness)), math.inf, math.nan if contact.roughness > 1e-5 else 0.2)
 
     monkeypatch.setattr(curves, "_row", row)
     *_, found = curves.solved_diagram(START.contact, "balanced", (1e-7, 1.0), -7, lambda _: None)

@@ -50,7 +50,7 @@ def in_file(problem: str, table: str) -> str:
     return f"[{next(own, table)}] {problem}"
 
 
-def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
+def take_parts(tables: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Return the tables without those of the model, what these say, and what is wrong with them."""
     rest = {name: value for name, value in tables.items() if name not in PART_TABLES}
     if isinstance(rest.get("contact"), dict):
@@ -68,8 +68,6 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
                     raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
                 parts |= part.read(read[name], rest.get("contact"))
         problems += wrong
-    if geometry == "line" and isinstance(rest.get("contact"), dict) and "slide_to_roll" in rest["contact"]:
-        parts["slide_to_roll"] = rest["contact"].pop("slide_to_roll")  # of a ball it is an input that groups do not have
     return rest, parts, problems
 
 

@@ -64,7 +64,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         geometry, table = geometry_of(tables)
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
-    table, parts, wrong = take_parts(table, geometry)
+    table, parts, wrong = take_parts(table)
     problems += wrong
     fit = FitSettings(geometry=geometry)
     with noted(problems):

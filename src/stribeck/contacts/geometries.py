@@ -9,15 +9,15 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the cylinder; H. Hertz (1882
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from stribeck.contacts.contact import Contact, described
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.contacts.parts import Parts
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError
 
 
@@ -128,19 +128,7 @@ class PointContact(Contact):
         letters=("F_N",),
         known=6,
     )
-    slide_to_roll: Input = Input(
-        label="slide-to-roll ratio",
-        symbol="$S$",
-        dimension="number",
-        typical="2.0",
-        source="one surface at rest; 2 (u1 - u2)/(u1 + u2) in general",
-        usual=(0.01, 2.0),
-        letters=("srr", "SRR", "slide_roll_ratio"),
-        zero=True,
-        highest=2.0,
-        optional=True,
-        default=PURE_SLIDING,
-    )
+    slide_to_roll: Input = replace(numbers_of(Parts)["slide_to_roll"], typical="2.0", lowest=0.0, highest=2.0)
     wetted_radius: Input = Input(
         label="radius of the wetted disc",
         symbol="$X_c$",

@@ -52,8 +52,12 @@ class Parts:
     solid: Solid | None  # The soft body; a half-space without it
     slide_to_roll: Input = Input(
         label="slide-to-roll ratio",
+        symbol="$S$",
         dimension="number",
         typical="0.5",
+        source="2 (u1 - u2)/(u1 + u2); 2 where one surface is at rest",
+        usual=(0.01, 2.0),
+        letters=("srr", "SRR", "slide_roll_ratio"),
         lowest=-MAX_SLIDE_TO_ROLL,
         zero=True,
         highest=MAX_SLIDE_TO_ROLL,

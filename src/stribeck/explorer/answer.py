@@ -22,7 +22,6 @@ from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.regime import Regime, regime_of
-from stribeck.curves.stribeck_curve import StribeckCurve
 from stribeck.explorer.curves import (
     FIRST_RTOL,
     SOLVED_ROWS,
@@ -55,8 +54,6 @@ from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.band import friction_band
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
-
-__all__ = ["Answer", "Answerer", "Pinned"]
 
 PIN_RTOL = 1e-4  # Relative tolerance of the state of a pinned contact.
 KEPT_STATES = 8  # States from which the next one may start; those of balls hold megabytes
@@ -130,7 +127,7 @@ class Answerer:
         if marks is not None:
             self._keep(key, lambda: diagram_from_atlas(contact, definition, ends, decade_of_roughness(contact)))
         diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
-        margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_margins_key(inputs)))
+        margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_known_key("margins", inputs)))
         old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins}
         checks = self._keep(("checks", contact, inputs.known), lambda: checks_of(_subject(inputs, solution), "state"))
         plane = None
@@ -142,7 +139,7 @@ class Answerer:
             solution=solution,
             regime=regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share),
             checks=checks if curve is None else add_range_along_curve(checks, curve.doubtful),
-            spread=self._kept.get(_spread_key(inputs)),
+            spread=self._kept.get(_known_key("spread", inputs)),
             curve=curve,
             why=str(self._kept.get(("why", _key(contact), definition), "")),
             diagram=diagram,
@@ -196,14 +193,13 @@ class Answerer:
         key = _diagram_key(inputs, speeds)
         if key in self._kept and self._kept[key].part == 1.0:
             return
-        own = known.found if known is not None and isinstance(known.found, StribeckCurve) else None
-        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report, own):
+        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report):
             self._put(key, found)
             yield
 
     def _find_margins(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Find the margins to the next regimes."""
-        key = _margins_key(inputs)
+        key = _known_key("margins", inputs)
         if key in self._kept:
             return
         contact, definition = inputs.contact, inputs.definition
@@ -219,9 +215,9 @@ class Answerer:
     def _find_spread(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Find what the errors of the inputs leave open in the state, and then along the curve."""
         errors, contact, definition = inputs.case.errors, inputs.contact, inputs.definition
-        if not errors or _spread_key(inputs) in self._kept:
+        if not errors or _known_key("spread", inputs) in self._kept:
             return
-        self._put(_spread_key(inputs), propagate(contact, errors, definition=definition))
+        self._put(_known_key("spread", inputs), propagate(contact, errors, definition=definition))
         yield
         speeds = axis_speeds(contact, self._marks(contact, definition)) if in_atlas(contact) else (0.0, 0.0)
         curve = self.curve(contact, definition, speeds)
@@ -292,14 +288,9 @@ def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
     return tuple(getattr(contact, each.name) for each in fields(contact) if each.name not in ("speed", *without))
 
 
-def _spread_key(inputs: Inputs) -> tuple[Any, ...]:
-    """Return what the propagated errors of a state depend on."""
-    return ("spread", inputs.contact, inputs.definition, inputs.known)
-
-
-def _margins_key(inputs: Inputs) -> tuple[Any, ...]:
-    """Return what margins depend on."""
-    return ("margins", inputs.contact, inputs.definition, inputs.known)
+def _known_key(what: str, inputs: Inputs) -> tuple[Any, ...]:
+    """Return what margins, and the propagated errors of a state, depend on."""
+    return (what, inputs.contact, inputs.definition, inputs.known)
 
 
 def _diagram_key(inputs: Inputs, speeds: tuple[float, float]) -> tuple[Any, ...]:

@@ -16,8 +16,6 @@ from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale, r
 from stribeck.plot.style import readable_unit
 from stribeck.solver.point.solution import Field
 
-__all__ = ["DEFINITION_LABELS", "all_charts"]
-
 Options = dict[str, Any]
 
 DEFINITION_LABELS: dict[Definition, str] = {"balanced": "balanced", "published": "as published"}

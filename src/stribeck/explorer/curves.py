@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -25,23 +26,6 @@ from stribeck.quantities.units import InputError
 from stribeck.regimes.transition_speeds import transition_speeds
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.band import Band
-
-__all__ = [
-    "Curve",
-    "Diagram",
-    "axis_speeds",
-    "curve_from_atlas",
-    "decade_of_roughness",
-    "decades_around",
-    "diagram_from_atlas",
-    "hersey_scale",
-    "in_atlas",
-    "round_down",
-    "round_up",
-    "solved_curve",
-    "solved_diagram",
-    "transition_marks",
-]
 
 CURVE_POINTS = 121  # Points at which a curve is shown.
 DIAGRAM_ROWS = 33  # Roughnesses of a diagram.
@@ -67,9 +51,6 @@ class SolvedRows(NamedTuple):
 # Plan of a solved diagram by geometry.  Monotone cubics between rows three quarters of a decade apart miss the speeds by up to
 # 4 %, less than a pixel; straight lines do so between rows half a decade apart.
 SOLVED_ROWS = {"line": SolvedRows(8, 25, 1e-3, room=10.0, is_quick=True), "point": SolvedRows(8, 9, 1e-3)}
-
-SPEED_POWERS = (1.0, 2.6)  # Least and largest power of the roughness as which the speeds of transitions grow.
-SPEED_MARGIN = 2.0  # Factor by which a row goes on beyond the speeds that these powers predict.
 
 # Ends of axes, times powers of ten: few, so that axes stay still while a slider moves.
 AXIS_ENDS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
@@ -242,12 +223,7 @@ def _marks_of(found: StribeckCurve) -> Marks:
 
 
 def solved_diagram(
-    contact: Contact,
-    definition: Definition,
-    speeds: tuple[float, float],
-    decade: int,
-    report: Report,
-    own_curve: StribeckCurve | None = None,
+    contact: Contact, definition: Definition, speeds: tuple[float, float], decade: int, report: Report
 ) -> Iterator[Diagram]:
     """Give the diagram at the load of a contact as its rows are solved, those beside the contact first."""
     step = SOLVED_ROWS[contact.INPUTS.geometry].step
@@ -257,14 +233,9 @@ def solved_diagram(
     lines = np.full((3, len(roughness)), math.nan)
     own = contact.roughness or roughness[0]
     order = sorted(range(len(roughness)), key=lambda i: abs(math.log(roughness[i] / own)))
-    solved = {} if own_curve is None else {own: own_curve}
     for number, i in enumerate(order):
-        here = float(roughness[i])
-        near = solved[min(solved, key=lambda other: abs(math.log(other / here)))] if solved else None  # noqa: B023
-        try:
-            lines[:, i], solved[here] = _row(contact.replace(roughness=here), definition, speeds, report, near)
-        except (SolveError, InputError):
-            pass  # its row stays empty
+        with suppress(SolveError, InputError):  # its row stays empty
+            lines[:, i] = _row(contact.replace(roughness=float(roughness[i])), definition, speeds, report)
         yield Diagram(shown, _between(roughness, lines, shown), part=(number + 1) / len(order))
 
 
@@ -281,36 +252,17 @@ def _between(roughness: Array, lines: Array, shown: Array) -> Array:
     return found
 
 
-def _row(
-    contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report, neighbour: StribeckCurve | None
-) -> tuple[tuple[float, float, float], StribeckCurve]:
-    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum, and the curve."""
-    # Solved where the regimes of the neighbouring row predict the transitions, and else on the whole range.
+def _row(contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report) -> tuple[float, float, float]:
+    """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum."""
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
-    whole = speeds[0] / solved.room, speeds[1] * solved.room
-    for low, high in (_expected(contact.roughness, whole, neighbour), whole):
-        found = solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
-        is_slow = low == whole[0] or found.regimes[0] == "boundary"
-        rises = found.regimes[-1] == "hydrodynamic" and np.argmin(np.abs(found.friction.total)) < len(found) - 1
-        if is_slow and (rises or high == whole[1]):
-            break
+    low, high = speeds[0] / solved.room, speeds[1] * solved.room
+    found = solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
     marks = {name: mark.value for name, mark in _marks_of(found).items()}
     slow = found.regimes[0]
     beyond = math.inf if found.values[-1] >= 0.99 * high else math.nan
     boundary = marks.get("boundary", 0.0 if slow != "boundary" else beyond)
     hydrodynamic = marks.get("hydrodynamic", 0.0 if slow == "hydrodynamic" else beyond)
-    return (boundary, hydrodynamic, marks.get("minimum", math.nan)), found
-
-
-def _expected(roughness: float, whole: tuple[float, float], neighbour: StribeckCurve | None) -> tuple[float, float]:
-    """Return speeds between which the transitions at a roughness should lie, by those of a curve at another one."""
-    marks = {} if neighbour is None else {name: mark.value for name, mark in _marks_of(neighbour).items()}
-    if neighbour is None or neighbour.contact is None or not {"boundary", "hydrodynamic"} <= marks.keys():
-        return whole
-    factors = [(roughness / neighbour.contact.roughness) ** power for power in SPEED_POWERS]
-    low, high = min(factors) * marks["boundary"] / SPEED_MARGIN, max(factors) * max(marks.values()) * SPEED_MARGIN
-    low, high = max(low, whole[0]), min(high, whole[1])
-    return (low, high) if low < high else whole
+    return boundary, hydrodynamic, marks.get("minimum", math.nan)
 
 
 def decade_of_roughness(contact: Contact) -> int:

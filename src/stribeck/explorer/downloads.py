@@ -24,8 +24,6 @@ from stribeck.files.toml import parse_toml, toml_text
 from stribeck.plot.style import INK, SERIES
 from stribeck.quantities.units import InputError
 
-__all__ = ["KINDS", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
-
 MAX_NAME_LENGTH = 80  # Letters of the name of a downloaded file.
 
 KINDS = {

@@ -17,8 +17,6 @@ from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.units import InputError
 
-__all__ = ["Fitted", "Measured", "fit_measured", "read_measured"]
-
 
 @dataclass(frozen=True, eq=False)
 class Measured:

@@ -17,8 +17,6 @@ from stribeck.explorer.inputs.choices import CHOICES, list_of
 from stribeck.explorer.inputs.inputs import GROUP_FIELDS, Inputs, row_of
 from stribeck.explorer.scans import SCAN_ENDINGS
 
-__all__ = ["UPDATING_TEXT", "Page", "form_of", "parts_of", "without_rtol"]
-
 UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 
 FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the next picture nevertheless [s].

@@ -21,8 +21,6 @@ from stribeck.explorer.measured import read_measured
 from stribeck.explorer.scans import read_scan
 from stribeck.quantities.units import InputError
 
-__all__ = ["MAX_READ_SECONDS", "read_file"]
-
 Kind = Literal["case", "measured", "scan"]
 
 MAX_READ_SECONDS = 20.0  # Time after which a file is given up [s].

@@ -18,8 +18,6 @@ from stribeck.surfaces.analysis import analyse
 from stribeck.surfaces.case_table import surface_table
 from stribeck.surfaces.files import read_topography
 
-__all__ = ["SCAN_ENDINGS", "Scan", "read_scan", "with_scan"]
-
 # Endings of files that hold heights and nothing else; text may also hold measured friction.
 SCAN_ENDINGS = (".x3p", ".sur", ".pro", ".al3d", ".sdf", ".opd", ".plux", ".xyz")
 

@@ -26,8 +26,6 @@ from stribeck.quantities.units import InputError, to_si
 if TYPE_CHECKING:
     from nicegui.server import Server
 
-__all__ = ["serve"]
-
 HOST = "127.0.0.1"
 DEFAULT_PORTS = range(8765, 8815)  # Ports that are tried where none is asked for.
 

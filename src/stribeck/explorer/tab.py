@@ -33,8 +33,6 @@ from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["TABS", "Superseded", "Tab"]
-
 MAX_WAITING_PAGES = 50  # Pages that wait for their browser's first answer; of more the oldest is given up.
 WAITING_PAGES: list[Tab] = []  # Pages that were sent and whose browser did not answer yet.
 

@@ -18,8 +18,6 @@ from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution, regime_of_state
 from stribeck.solver.numbers import report_rows
 
-__all__ = ["Row", "comparison_html", "margins_html", "notes_html", "numbers", "numbers_html", "state_rows", "verdict_html"]
-
 # Numbers of a state that the page leaves to files: the parts of friction, and where the film is least.
 LEFT_OUT = (
     *("friction_asperities", "friction_balanced_fluid", "friction_published_fluid"),

@@ -14,8 +14,6 @@ from urllib.parse import parse_qsl, urlencode
 
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["MAX_REQUEST_BYTES", "LOCAL_HOSTS", "Guard", "check_host"]
-
 Scope = MutableMapping[str, Any]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]

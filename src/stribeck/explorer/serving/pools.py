@@ -9,8 +9,6 @@ from typing import Any
 
 from stribeck.numerics.ending import ended_by
 
-__all__ = ["FILES", "Threads", "run"]
-
 FILES = ThreadPoolExecutor(2, "explorer-files")
 """Of all pages: addresses, and files, which are read in processes that end by themselves."""
 

@@ -11,8 +11,6 @@ import gc
 import sys
 import threading
 
-__all__ = ["set_aside", "tidy_soon"]
-
 TIDY_DELAY_SECONDS = 5.0  # Time within which pages that close are tidied together [s].
 
 _waiting = threading.Lock()
