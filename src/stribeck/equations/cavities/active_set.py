@@ -59,7 +59,7 @@ def iterate_cavitated(
     start: Unknowns,
     tolerance: float,
     kept: Capacitance | None = None,
-    max_steps: int = MAX_STEPS,
+    least_part: float = HALF_DIGITS,
 ) -> Iterated:
     """Return the state of the discrete complementarity problem nearest to ``start``."""
     law, least = equations.law, equations.least
@@ -85,7 +85,7 @@ def iterate_cavitated(
         if kept is not None:  # a neighbour's start is good enough to ask which nodes are cavitated
             cavitated = now_cavitated(linear, residual[1])
             linear.set_active(cavitated)
-        while steps < max_steps:
+        while steps < MAX_STEPS:
             right = linear.right(residual)
             if not np.isfinite(right).all():
                 return ended(Outcome.NOT_FINITE)
@@ -103,7 +103,7 @@ def iterate_cavitated(
                 continue
             step = linear.changes(solved.x, residual[0])
             part = longest_step(law, y.gap, step.gap)
-            if not part >= HALF_DIGITS:
+            if not part >= least_part:
                 return ended(Outcome.STALLED)
             size = step_size(law, y.gap, step.gap)
             y = y.moved(step, part)

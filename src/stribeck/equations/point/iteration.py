@@ -63,9 +63,9 @@ def linear_rtol(size: float, tolerance: float) -> float:
 
 
 def iterate(
-    equations: Equations, start: Unknowns, tolerance: float, kept: BandedModes | None = None, max_steps: int = MAX_STEPS
+    equations: Equations, start: Unknowns, tolerance: float, kept: BandedModes | None = None, least_part: float = HALF_DIGITS
 ) -> Iterated:
-    """Return the state of the discrete equations nearest to ``start``."""
+    """Return the state of the discrete equations nearest to ``start``; it stalls where less than a part of a step is safe."""
     y, law, preconditioner, band = start, equations.law, kept, BAND if kept is None else kept.band
     krylov = factorisations = steps = 0
     size = left = math.inf
@@ -74,7 +74,7 @@ def iterate(
         return Iterated(y, outcome, steps, krylov, factorisations, left, preconditioner)
 
     with np.errstate(all="ignore"):
-        while steps < max_steps:
+        while steps < MAX_STEPS:
             residual, linear = equations.residual(y), Linear(equations, y)
             right = linear.right(residual)
             if not np.isfinite(right).all():
@@ -92,7 +92,7 @@ def iterate(
                 continue
             step = solved.step
             part = longest_step(law, y.gap, step.gap)
-            if not part >= HALF_DIGITS:
+            if not part >= least_part:
                 return ended(Outcome.STALLED)
             before, size = size, step_size(law, y.gap, step.gap)
             y = y.moved(step, part)

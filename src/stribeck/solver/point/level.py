@@ -22,7 +22,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Operators, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.numerics.settings import MAX_BYTES, MAX_STEPS
+from stribeck.numerics.settings import HALF_DIGITS, MAX_BYTES
 from stribeck.quantities.outcome import Outcome
 
 
@@ -101,7 +101,7 @@ def solve_level(
     start_mesh: PolarMesh,
     tolerance: float,
     kept: Any = None,
-    max_steps: int = MAX_STEPS,
+    least_part: float = HALF_DIGITS,
 ) -> Level:
     """Return the state on a mesh, from unknowns on any mesh."""
     if bytes_of(resolution) > MAX_BYTES:
@@ -114,7 +114,7 @@ def solve_level(
     guess = transfer(start, start_mesh, operators.mesh, equations.least)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
-    return Level(resolution, equations, iteration(equations, guess, tolerance, kept, max_steps))
+    return Level(resolution, equations, iteration(equations, guess, tolerance, kept, least_part))
 
 
 # The equations and the iteration that solves them, by cavitation.

@@ -34,6 +34,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import (
     COARSE_RTOL,
+    HALF_DIGITS,
     LEAST_DEGREE,
     LEAST_MODES,
     LEGENDRE_DECAY,
@@ -246,15 +247,17 @@ def follow(
     tolerance, wanted = newton_tolerance(rtol), mesh_for_neighbour(speed, law, neighbour, rtol)
     mesh = neighbour.fine.mesh
     start = extrapolate_levels(weights, [each.fine for _, each in line], mesh) if line else neighbour.fine.unknowns
+    # From a guess that needs much shorter steps a film is not found sooner than from cold, if at all.
+    least_part = NEGLIGIBLE if now.is_full else HALF_DIGITS
     if wanted != now:
-        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance)
+        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance, least_part=least_part)
         if not coarse.outcome.ok:
             return None
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
     old = neighbour.coarse
     guess = extrapolate_levels(weights, [each.coarse for _, each in line], old.mesh) if line else old.unknowns
-    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner)
+    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, least_part)
     if not coarse.outcome.ok:
         return None
     if not (line and not now.is_full):
