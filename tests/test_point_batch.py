@@ -37,8 +37,10 @@ def test_the_friction_of_a_batch_of_balls_is_that_of_the_states(subtests, found)
         with subtests.test(arguments=arguments):
             many = found.friction(**arguments)
             one = sb.solve(found.contacts[0, 0], rtol=RTOL).friction(**arguments)
-            for part in ("asperities", "fluid", "error"):
+            for part in ("asperities", "fluid"):
                 assert getattr(many, part)[0, 0] == pytest.approx(getattr(one, part), rel=2 * RTOL), part
+            # Stated errors depend a little on the state that a solve begins at.
+            assert many.error[0, 0] == pytest.approx(one.error, rel=0.1)
             # A smaller disc of liquid drags less; asperities do not know it.
             assert (many.fluid[0] < many.fluid[1]).all()
             np.testing.assert_allclose(many.asperities[0], many.asperities[1], rtol=RTOL)
