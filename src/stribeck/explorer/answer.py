@@ -45,9 +45,10 @@ from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins
-from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.fields import Field, Profile
 from stribeck.solver.neighbours import Neighbours
-from stribeck.solver.point.solution import Field, PointSolution
+from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError

@@ -14,7 +14,7 @@ from stribeck.contacts.friction_rules import RULES, speed_words
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale, round_down, round_up
 from stribeck.plot.style import readable_unit
-from stribeck.solver.point.solution import Field
+from stribeck.solver.fields import Field
 
 Options = dict[str, Any]
 

@@ -18,7 +18,8 @@ from stribeck.plot import state, style
 from stribeck.plot.state import Scale
 from stribeck.plot.style import GREY, INK, MARK, Axes, Figure, add_legend, new_figure
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.point.solution import Field, PointSolution
+from stribeck.solver.fields import Field
+from stribeck.solver.point.solution import PointSolution
 
 Colours = Literal["film", "interference"]
 

@@ -24,7 +24,8 @@ from stribeck.plot.style import (
     with_unit,
 )
 from stribeck.quantities.units import InputError
-from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.fields import Profile
 from stribeck.solver.solution import Solution
 
 Scale = tuple[float, str]  # Factor to the drawn unit, and the label with that unit

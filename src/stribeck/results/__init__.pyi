@@ -11,7 +11,8 @@ from stribeck.experiments.compare import Comparison
 from stribeck.experiments.next_runs import Plan
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
-from stribeck.solver.point.solution import Field, PointSolution
+from stribeck.solver.fields import Field
+from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Profile, Solution
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign

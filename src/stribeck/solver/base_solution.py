@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,72 +24,13 @@ from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
 from stribeck.solver.about import about_problem, constant_groups, problem_attributes
+from stribeck.solver.fields import Profile
 from stribeck.solver.numbers import main_rows, numbers_of
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "regime_of_state"]
-
-UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions, gaps and pressures
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Profile(Exported, Shown, ByValue):
-    """Fields along the contact.
-
-    Attributes
-    ----------
-    x : ndarray, shape (n,)
-        Positions [a or m].
-    gap : ndarray, shape (n,)
-        Gap [u_Hz or m].
-    contact_pressure, fluid_pressure : ndarray, shape (n,)
-        The two parts of the pressure [p_Hz or Pa].
-    unit : {"Hertz", "SI"}
-        Which of the two units hold.
-    """
-
-    _picture = "stribeck.plot.state.plot_fields"
-
-    x: Array
-    gap: Array
-    contact_pressure: Array
-    fluid_pressure: Array
-    unit: Literal["Hertz", "SI"] = "Hertz"
-
-    @property
-    def pressure(self) -> Array:
-        """Total pressure, contact and fluid."""
-        return self.contact_pressure + self.fluid_pressure
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the fields as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Along ``x``: gap, contact pressure and fluid pressure, in the units of the profile; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        x: dict[str, Column] = {
-            "x": ("x", self.x, UNITS[self.unit][0], "position along the contact; fluid enters from the left")
-        }
-        return new_dataset(columns_of(self, "x"), x, {"title": "Fields along a lubricated rough contact"})
-
-
-def columns_of(fields: Any, dims: str | Sequence[str]) -> dict[str, Column]:
-    """Return gap and pressures of a profile, or of a field, as columns of a dataset."""
-    _, gap, pressure = UNITS[fields.unit]
-    return {
-        "gap": (dims, fields.gap, gap, "gap"),
-        "contact_pressure": (dims, fields.contact_pressure, pressure, "pressure of the asperities"),
-        "fluid_pressure": (dims, fields.fluid_pressure, pressure, "pressure of the fluid"),
-    }
+__all__ = ["BaseSolution", "Profile", "regime_of_state"]
 
 
 class BaseSolution(Exported, Shown, ByValue, ABC):

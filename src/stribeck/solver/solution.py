@@ -22,7 +22,8 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, LINE_BY_CAVITATION, NAMES, OutputTable
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.fields import Profile
 
 if TYPE_CHECKING:
     import xarray
@@ -275,13 +276,7 @@ class Solution(BaseSolution):
             p = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
         else:
             p = self.profile(np.asarray(x, dtype=float) / scales.half_width)
-        return Profile(
-            p.x * scales.half_width,
-            p.gap * scales.indentation,
-            p.contact_pressure * scales.pressure,
-            p.fluid_pressure * scales.pressure,
-            "SI",
-        )
+        return p.in_si(scales)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return fields and numbers of the state as an xarray Dataset, in SI units where there is a contact.

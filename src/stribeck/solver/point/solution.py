@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,16 +23,14 @@ from stribeck.contacts.notes import (
     shape_notes,
 )
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.files.datasets import Column, new_dataset
-from stribeck.files.results import Exported
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.settings import MAX_BYTES
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.fields import Field, Profile
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve_error import SolveError, describe
 
@@ -51,69 +49,6 @@ CAVITY_NOTE = (
     "The film ruptures at the pressure of the cavity and re-forms behind it; there friction counts the liquid, as streaks "
     "that touch both walls, and no drag of the gas."
 )
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Field(Exported, Shown, ByValue):
-    """Fields on the plane of the contact.
-
-    Attributes
-    ----------
-    x, y : ndarray
-        Positions along and across the motion, of any shapes that broadcast [a or m].
-    gap : ndarray
-        Gap, of the broadcast shape [u_Hz or m].
-    contact_pressure, fluid_pressure : ndarray
-        The two parts of the pressure [p_Hz or Pa].
-    unit : {"Hertz", "SI"}
-        Which of the two units hold.
-    """
-
-    _picture = "stribeck.plot.ball.plot_field"
-
-    x: Array
-    y: Array
-    gap: Array
-    contact_pressure: Array
-    fluid_pressure: Array
-    unit: Literal["Hertz", "SI"] = "Hertz"
-
-    @property
-    def pressure(self) -> Array:
-        """Total pressure, contact and fluid."""
-        return self.contact_pressure + self.fluid_pressure
-
-    @cached_property
-    def grid(self) -> tuple[Array, Array] | None:
-        """Ascending positions along and across the motion if the points are a grid, gap[i, j] at y[i] and x[j]; else None."""
-        if self.gap.ndim != 2 or not self.gap.size:
-            return None
-        x, y = (np.broadcast_to(each, self.gap.shape) for each in (self.x, self.y))
-        is_grid = (x == x[0]).all() and (y.T == y[:, 0]).all() and (np.diff(x[0]) > 0).all() and (np.diff(y[:, 0]) > 0).all()
-        return (x[0], y[:, 0]) if is_grid else None
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the fields as an xarray Dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Gap, contact pressure and fluid pressure over ``y`` and ``x`` if the points are a grid, else over the dimensions
-            of the arrays, in the units of the field; needs the extra ``data``.
-
-        Raises
-        ------
-        MissingExtraError
-            If xarray is not installed.
-        """
-        dims = ("y", "x") if self.grid is not None else tuple(f"dim_{i}" for i in range(self.gap.ndim))
-        places = self.grid or np.broadcast_arrays(self.x, self.y)
-        words = "position along the motion; fluid enters from the left", "position across the motion"
-        coords: dict[str, Column] = {
-            name: (name if self.grid else dims, place, UNITS[self.unit][0], said)
-            for name, place, said in zip("xy", places, words, strict=True)
-        }
-        return new_dataset(columns_of(self, dims), coords, {"title": "Fields on the plane of a lubricated rough contact"})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -332,12 +267,10 @@ class PointSolution(BaseSolution):
             If the solution comes from groups alone, which do not fix the scales.
         """
         scales = self._scales("to_si")
-        a, u, p = scales.half_width, scales.indentation, scales.pressure
+        a = scales.half_width
         if y is not None:
-            f = self.field(real_array("x", 0.0 if x is None else x) / a, real_array("y", y) / a)
-            return Field(f.x * a, f.y * a, f.gap * u, f.contact_pressure * p, f.fluid_pressure * p, "SI")
-        m = self._middle if x is None else self.profile(real_array("x", x) / a)
-        return Profile(m.x * a, m.gap * u, m.contact_pressure * p, m.fluid_pressure * p, "SI")
+            return self.field(real_array("x", 0.0 if x is None else x) / a, real_array("y", y) / a).in_si(scales)
+        return (self._middle if x is None else self.profile(real_array("x", x) / a)).in_si(scales)
 
     def _scales(self, what: str) -> Any:
         if self.contact is None:
