@@ -124,7 +124,7 @@ def mean_wall_stress(flow: Column, along: Array, slide: float) -> Array:
     """Return the mean stress along the motion over the slide, shape (n,); over the slip where the walls roll."""
     if slide:
         return np.asarray(-(flow.mean * along).sum(axis=0) / slide)
-    return np.asarray((_times(flow.compliance, along) * along).sum(axis=0))
+    return np.asarray((times(flow.compliance, along) * along).sum(axis=0))
 
 
 def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Array | None = None) -> Column:
@@ -196,7 +196,7 @@ class _Integrals(NamedTuple):
             matrix[[0, 2]] += a[k]
             matrices.append(matrix)
         missing = slip - (a[0] * least + a[1] * slope)
-        step = _times(_inverse(matrices[0]), missing)
+        step = times(_inverse(matrices[0]), missing)
         largest = np.sqrt(np.maximum(*(((mean + side * slope) ** 2).sum(axis=0) for side in (-0.5, 0.5))))
         size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
         size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
@@ -215,9 +215,9 @@ class _Integrals(NamedTuple):
     def ending(self) -> Array:
         """Return the fields of the column after a last step."""
         inverse = _inverse(self.zeroth)
-        carried = self.carried + _times(self.first, self.step) + self.place * self.slip
-        by_slip = np.stack([_times(inverse, self.first[[0, 1]]), _times(inverse, self.first[[1, 2]])])
-        through = np.stack([_times(self.first, by_slip[0]), _times(self.first, by_slip[1])])
+        carried = self.carried + times(self.first, self.step) + self.place * self.slip
+        by_slip = np.stack([times(inverse, self.first[[0, 1]]), times(inverse, self.first[[1, 2]])])
+        through = np.stack([times(self.first, by_slip[0]), times(self.first, by_slip[1])])
         by_slope = self.second - np.stack([through[0, 0], through[0, 1], through[1, 1]])
         by_slip[0, 0] += self.place
         by_slip[1, 1] += self.place
@@ -228,7 +228,8 @@ def _product(first: Array, second: Array) -> Array:
     return np.stack([first[0] * second[0], first[0] * second[1], first[1] * second[1]])
 
 
-def _times(matrix: Array, vector: Array) -> Array:
+def times(matrix: Array, vector: Array) -> Array:
+    """Return the products of symmetric matrices with vectors."""
     return np.stack([matrix[0] * vector[0] + matrix[1] * vector[1], matrix[1] * vector[0] + matrix[2] * vector[1]])
 
 

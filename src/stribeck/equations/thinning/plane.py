@@ -21,7 +21,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Fluxes, FluxSlopes, OutsideFilm, weights_of
-from stribeck.equations.thinning.column import Column, column, mean_wall_stress
+from stribeck.equations.thinning.column import Column, column, mean_wall_stress, times
 from stribeck.equations.thinning.far_field import FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.dual import with_slope
@@ -84,7 +84,7 @@ class ThinningPlane:
             return radial * local(values[0]), mesh.gathered(angular * local(values[1]))
 
         # A change of the gap by its relative part: r_0 falls with it and Q grows with it.
-        by_gap = unit / h * (2 * flow.carried - _by(flow.by_slip, at.slip) + _symmetric(flow.by_slope, at.slope))
+        by_gap = unit / h * (2 * flow.carried - _by(flow.by_slip, at.slip) + times(flow.by_slope, at.slope))
         by_gap -= at.rho * speed * at.along
         of_value = None
         if self.film.uses_pressure:
@@ -171,15 +171,10 @@ def _by(matrix: Array, vector: Array) -> Array:
     return np.stack([(row * vector).sum(axis=0) for row in matrix])
 
 
-def _symmetric(matrix: Array, vector: Array) -> Array:
-    xx, xy, yy = matrix
-    return np.stack([xx * vector[0] + xy * vector[1], xy * vector[0] + yy * vector[1]])
-
-
 def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
     """Return mean stresses to start from: those of the last film, to first order; None if one is far from it."""
     change = slope - last.slope
-    step = _symmetric(last.flow.compliance, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
+    step = times(last.flow.compliance, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
     largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
     far = ~(np.hypot(*step) + np.hypot(*change) < largest)
     return None if far.any() else last.flow.mean + step
