@@ -78,7 +78,7 @@ def better_values(state: PointState, finer: Resolution) -> dict[str, float] | No
     fine = state.work.fine
     speed, law = fine.equations.speed, fine.equations.law
     if speed == 0:
-        level = _dry_level(law, 20, TIGHT, state.groups.model, finer.halvings + 1)
+        level = _dry_level(law, fine.resolution.degree + FINER_DEGREE, TIGHT, state.groups.model)
     else:
         level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, TIGHT)
     if not level.outcome.ok:

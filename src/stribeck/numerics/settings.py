@@ -37,6 +37,7 @@ NEAR_MINIMUM = 1.3  # Gap over its minimum up to which the difference of two gap
 MAX_REFINEMENTS = 8  # Pairs of meshes tried for a state of a ball, and times that its panels are split
 MAX_STEPS = 80  # Steps of an iteration, Newton's or a fixed point's
 MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
+GMRES_RTOL = 3e-2  # Relative error of a step of Newton's iteration that GMRES may leave
 REBUILD_AT = 12  # Steps of GMRES above which the next step of Newton's iteration has a new preconditioner
 BAND, MAX_BAND = 5, 16  # Angular modes that the preconditioner couples, and where these do not serve
 LEAST_DEGREE, MAX_DEGREE = 7, 18  # Degree of panels of a ball

@@ -29,6 +29,7 @@ from stribeck.equations.point.system import LOAD, Unknowns
 from stribeck.numerics.krylov import gmres
 from stribeck.numerics.settings import (
     BAND,
+    GMRES_RTOL,
     HALF_DIGITS,
     MAX_BAND,
     MAX_KRYLOV,
@@ -93,7 +94,7 @@ def iterate_cavitated(
             if kept is None:
                 kept = Capacitance(BandedModes(linear, band), equations.operators.mesh, y.gap.shape)
                 factorisations += 1
-            wanted = linear_rtol(size, tolerance) if same else NEGLIGIBLE
+            wanted = linear_rtol(size, tolerance) if same else GMRES_RTOL
             solved = gmres(linear.product, kept.of(linear), right, wanted, MAX_KRYLOV)
             krylov += solved.steps
             if not np.isfinite(solved.x).all():

@@ -23,6 +23,7 @@ from stribeck.equations.point.system import Equations, Linear, Unknowns
 from stribeck.numerics.krylov import gmres
 from stribeck.numerics.settings import (
     BAND,
+    GMRES_RTOL,
     HALF_DIGITS,
     MAX_BAND,
     MAX_KRYLOV,
@@ -59,7 +60,7 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
 def linear_rtol(size: float, tolerance: float) -> float:
     """Return the relative error of a Newton step that GMRES may leave, by the size of the step before."""
     # The step after this one is of second order in it, and no error far below the tolerance counts.
-    return NEGLIGIBLE * min(1.0, max(size, tolerance / size))
+    return min(GMRES_RTOL, NEGLIGIBLE * max(size, tolerance / size))
 
 
 def iterate(
