@@ -80,7 +80,9 @@ def test_a_report_says_everything_and_asks_no_server(content):
     path, said = content
     page = path.read_text()
     assert page.index(said.headline) < page.index("<h1>") < page.index("friction")
-    for part in (*said.sentences, *said.margins, *(each.label for each in said.levers), said.versions):
+    words = [cell for each in said.sections for row in (*each.table, each.paragraphs) for cell in row]
+    assert len(said.sections) >= 6 and len(words) > 50
+    for part in (*said.sentences, *words, said.versions):
         assert part in html.unescape(page), part
     for each in said.checks:
         assert each.name in page
@@ -88,7 +90,8 @@ def test_a_report_says_everything_and_asks_no_server(content):
     assert addresses <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}  # names, not requests
     assert not re.search(r"<script|<link|@import|url\((?!#)|src=", page)
     assert page.count("<svg") == 1 and "measured" in said.data.path
-    assert any(line.source for line in said.inputs)
+    [inputs] = [each.table for each in said.sections if each.heading == "Inputs"]
+    assert inputs[0][-1].startswith("Source") and any(source for *_, source in inputs[1:])
 
 
 def test_the_picture_of_a_report_is_hatched_where_the_contact_law_is_outside_its_range(content):
@@ -99,19 +102,21 @@ def test_the_picture_of_a_report_is_hatched_where_the_contact_law_is_outside_its
 
 def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
     _, said = content
-    before = said.solution.friction().total
-    assert 1 <= len(said.levers) <= 2
-    for lever in said.levers:
-        step, result = lever.texts
+    contact = said.curve.contact
+    before = sb.solve(contact).friction().total
+    named = {row.label: row for row in contact.INPUTS.kept.values()}
+    [table] = [each.table for each in said.sections if each.heading == "The two cheapest levers"]
+    assert 1 <= len(table) - 1 <= 2
+    for label, step, result in table[1:]:
         after, change = re.fullmatch(r"(\S+) \((.*) %\)", result).groups()
         assert float(after) == pytest.approx(0.8 * before, rel=0.15)
         assert float(change) == pytest.approx(100 * (float(after) / before - 1), abs=1)
         sign, factor, value = re.fullmatch(r"([x/]) (\S+) \(to (.*)\)", step).groups()
-        name, dimension = lever.name, lever.dimension
+        name, dimension = named[label].name, named[label].dimension
         assert float(factor) > 1
-        changed = getattr(said.solution.contact, name) * float(factor) ** {"x": 1, "/": -1}[sign]
+        changed = getattr(contact, name) * float(factor) ** {"x": 1, "/": -1}[sign]
         given = float(value) if dimension == "number" else value
-        assert getattr(said.solution.contact.replace(**{name: given}), name) == pytest.approx(changed, rel=0.01)
+        assert getattr(contact.replace(**{name: given}), name) == pytest.approx(changed, rel=0.01)
 
 
 def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
