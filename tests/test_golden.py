@@ -1,7 +1,7 @@
 """Golden values: states, curves, fits, diagrams, margins and a sweep are within the stated errors of what they were.
 
 ``tests/golden/make.py`` made the file; it says when to make it anew.  A part takes about three seconds, as it solves
-some twenty states, a curve and more.  Cases of more than two seconds are those of ``make slow``.
+some twenty states, a curve and more.  Cases of more than a second and a half are those of ``make slow``.
 """
 
 import json

@@ -108,7 +108,7 @@ def implicit_series(
             # Factors that change the first order too much are too old: every order is refined.
             is_old = is_old or bool(np.abs(change).max() > HALF_DIGITS * np.abs(found[1]).max())
             found[k] += change
-        if not np.isfinite(found[k]).all():  # nor are those that follow
+        if not np.isfinite(found[k]).all():  # every later order is made of this one
             found[k:] = np.nan
             return
 

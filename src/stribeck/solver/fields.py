@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -26,6 +26,7 @@ UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions
 class Fields(Exported, Shown, ByValue):
     """Gap and pressures at positions, in Hertz units or in SI."""
 
+    _coordinates: ClassVar[tuple[str, ...]] = ("x",)
     gap: Array
     contact_pressure: Array
     fluid_pressure: Array
@@ -38,7 +39,7 @@ class Fields(Exported, Shown, ByValue):
 
     def in_si(self, scales: HertzScales) -> Self:
         """Return fields in Hertz units in SI units."""
-        places = {name: getattr(self, name) * scales.half_width for name in ("x", "y") if hasattr(self, name)}
+        places = {name: getattr(self, name) * scales.half_width for name in self._coordinates}
         pressures = {name: getattr(self, name) * scales.pressure for name in ("contact_pressure", "fluid_pressure")}
         return replace(self, **places, gap=self.gap * scales.indentation, **pressures, unit="SI")  # type: ignore[type-var]
 
@@ -113,6 +114,7 @@ class Field(Fields):
     """
 
     _picture = "stribeck.plot.ball.plot_field"
+    _coordinates = "x", "y"
 
     x: Array
     y: Array
