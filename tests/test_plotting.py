@@ -4,11 +4,13 @@ import itertools
 import os
 import sys
 import textwrap
+from functools import cache
 
 import matplotlib
 import numpy as np
 import pytest
-from command_line import HEAVY, PDMS, call, run_python
+from ball_data import BALL
+from command_line import HEAVY, PDMS, run_python
 
 import stribeck as sb
 
@@ -34,17 +36,29 @@ def solution():
     return sb.solve(sb.load_case(PDMS).contact)
 
 
-KINDS = {
+CURVES = {
     "over speed": lambda: curve_of(PDMS, points=5),
     "over load": lambda: curve_of(PDMS, load=("5 N/m", "200 N/m"), points=4),
     "over roughness": lambda: curve_of(PDMS, roughness=("0.1 um", "10 um"), points=4),
     "of groups": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-5, 10), points=4),
-    "quasistatic": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 5), points=4),
-    "of a smooth contact": lambda: sb.stribeck_curve(load=0.1, roughness=0, speed=(1e-5, 10), points=4),
-    "without dry friction": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 2), points=2, boundary_friction=0),
     "without any friction": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 1), points=2, boundary_friction=0),
-    "beyond the law": lambda: curve_of(HEAVY, speed=("1 mm/s", "100 m/s"), points=4),
 }
+
+
+@cache
+def curve_of_kind(kind):
+    return CURVES[kind]()
+
+
+PICTURES = {}
+
+
+def picture(result, **options):
+    """Return the picture of a result, drawn once for all tests that only look at it."""
+    key = (id(result), *options.items())
+    if key not in PICTURES:
+        PICTURES[key] = result, result.plot(**options)  # the result too, so that no other gets its number
+    return PICTURES[key][1]
 
 
 def line(axes, label):
@@ -71,7 +85,7 @@ def words(figure):
 
 
 def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
-    axes = curve.plot(abscissa="hersey").axes[0]
+    axes = picture(curve, abscissa="hersey").axes[0]
     for label, values in (("from asperities", curve.friction.asperities), ("from the fluid", curve.friction.fluid)):
         np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
         np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
@@ -81,7 +95,7 @@ def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(
 
 
 def test_the_second_panel_shows_the_films_and_the_roughness_in_si_units(curve):
-    axes = curve.plot().axes[1]
+    axes = picture(curve).axes[1]
     assert axes.get_ylabel() == "film thickness (µm)" and axes.get_xlabel() == "sliding speed $U$ (m/s)"
     films = curve.to_si()
     for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
@@ -91,19 +105,19 @@ def test_the_second_panel_shows_the_films_and_the_roughness_in_si_units(curve):
 
 
 def test_the_films_over_a_load_are_lengths_and_those_of_groups_are_over_the_indentation():
-    curve = KINDS["over load"]()
-    drawn = line(curve.plot().axes[1], "central film").get_ydata()
+    curve = curve_of_kind("over load")
+    drawn = line(picture(curve).axes[1], "central film").get_ydata()
     np.testing.assert_allclose(
         drawn / curve.to_si()["central_film_thickness"], drawn[0] / curve.to_si()["central_film_thickness"][0]
     )
     groups = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=5)
-    axes = groups.plot().axes[1]
+    axes = picture(groups).axes[1]
     assert axes.get_ylabel() == r"film thickness ($u_\mathrm{Hz}$)"
     np.testing.assert_array_equal(line(axes, "minimum film").get_ydata(), groups.observable("minimum_gap"))
 
 
 def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
-    axes = curve.plot(panel="hydrodynamic").axes[1]
+    axes = picture(curve, panel="hydrodynamic").axes[1]
     drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
     assert set(zip(curve.hydrodynamic_friction, np.asarray(curve.friction), strict=True)) <= drawn
     law = line(axes, "as smooth surfaces")
@@ -111,20 +125,20 @@ def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the
 
 
 def test_the_upper_axis_turns_hersey_numbers_into_speeds(curve):
-    figure = curve.plot(abscissa="hersey")
+    figure = picture(curve, abscissa="hersey")
     figure.canvas.draw()
     [upper] = figure.axes[0].child_axes
     np.testing.assert_allclose(upper.get_xlim(), curve.values[[0, -1]], rtol=1e-12)
     assert upper.get_xlabel() == "sliding speed $U$ (m/s)"
-    ball = sb.load_case(PDMS.with_name("rubber_ball.toml")).contact
-    drawn = sb.stribeck_curve(ball, speed=(0.05, 0.2), points=3, rtol=1e-3).plot(abscissa="hersey").axes[0]
+    ends = BALL.speed * np.array([0.7, 1.4])
+    drawn = sb.stribeck_curve(BALL, speed=tuple(ends), points=2, rtol=1e-3).plot(abscissa="hersey").axes[0]
     assert drawn.get_xlabel() == "Hersey number $ηUR/F_N$"
     drawn.figure.canvas.draw()
-    np.testing.assert_allclose(drawn.child_axes[0].get_xlim(), (0.05, 0.2), rtol=1e-12)
+    np.testing.assert_allclose(drawn.child_axes[0].get_xlim(), ends, rtol=1e-12)
 
 
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
-    axes = curve.plot(abscissa="hersey").axes[0]
+    axes = picture(curve, abscissa="hersey").axes[0]
     mark = line(axes, "minimum")
     hersey = curve.contact.viscosity * curve.minimum.value / curve.contact.load
     np.testing.assert_allclose(mark.get_xdata(), hersey, rtol=1e-12)
@@ -134,7 +148,7 @@ def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
 
 
 def test_regimes_are_shaded_between_the_transitions(curve):
-    axes = curve.plot(abscissa="hersey").axes[0]
+    axes = picture(curve, abscissa="hersey").axes[0]
     assert [text.get_text() for text in axes.texts] == ["boundary", "mixed", "hydrodynamic"]
     spans = [patch for patch in axes.patches if patch.get_zorder() == 0]
     per_hersey = curve.contact.load / curve.contact.viscosity
@@ -144,25 +158,25 @@ def test_regimes_are_shaded_between_the_transitions(curve):
 
 def test_a_curve_over_load_or_roughness_has_it_as_abscissa():
     for over, unit in (("load", "N/m"), ("roughness", "m")):
-        curve = KINDS[f"over {over}"]()
-        axes = curve.plot().axes[0]
+        curve = curve_of_kind(f"over {over}")
+        axes = picture(curve).axes[0]
         assert set(curve.values) <= set(line(axes, "friction").get_xdata())
         assert axes.get_xlabel().startswith(over) and axes.get_xlabel().endswith(f"({unit})")
 
 
 def test_where_the_hydrodynamic_law_says_nothing_the_shares_of_the_load_are_at_hand():
-    curve = KINDS["over roughness"]()
+    curve = curve_of_kind("over roughness")
     with pytest.raises(sb.InputError, match="take 'shares'"):
-        curve.plot(panel="hydrodynamic")
+        picture(curve, panel="hydrodynamic")
     with pytest.raises(sb.InputError, match="panel = 'films'; it must be 'film' or 'hydrodynamic' or 'shares'"):
-        curve.plot(panel="films")
-    axes = curve.plot(panel="shares").axes[1]
+        picture(curve, panel="films")
+    axes = picture(curve, panel="shares").axes[1]
     np.testing.assert_array_equal(line(axes, "from the fluid").get_ydata(), curve.observable("fluid_load_share"))
     assert axes.get_ylabel() == "share of the load"
 
 
 def test_a_profile_shows_the_fields_in_si_units(solution):
-    above, below = solution.plot().axes
+    above, below = picture(solution).axes
     gap = line(above, "gap")
     fields = solution.to_si(gap.get_xdata() * 1e-6)
     assert above.get_ylabel() == "gap $h$ (µm)"
@@ -176,7 +190,7 @@ def test_a_profile_shows_the_fields_in_si_units(solution):
 def test_a_profile_reaches_as_far_as_the_pressure(solved):
     for groups in ((1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)):
         found = solved(*groups)
-        axes = found.plot().axes[1]
+        axes = picture(found).axes[1]
         share = np.abs(found.pressure) / np.abs(found.pressure).max()
         assert np.abs(found.x[share > 0.03]).max() < axes.get_xlim()[1]
 
@@ -185,7 +199,7 @@ def test_a_profile_reaches_as_far_as_the_pressure(solved):
 
 
 def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
-    found = words(curve.plot(title="A title"))
+    found = words(picture(curve, title="A title"))
     for part in ("A title", "$R$ = 10 mm", "= 2.7 MPa", "$F_N$ = 30 N/m", "= 50 mPa·s", "exponential contact law"):
         assert part in found
     for part in ("viscous friction: balanced", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
@@ -194,10 +208,10 @@ def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
 
 
 def test_where_the_law_is_beyond_its_range_the_picture_says_so(curve, heavy):
-    hatched = [patch.get_label() for patch in heavy.plot().axes[0].collections]
+    hatched = [patch.get_label() for patch in picture(heavy).axes[0].collections]
     assert "contact law outside its range" in hatched
-    assert "outside its range, as asperities cannot carry this load" in words(heavy.plot())
-    [strip] = [c for c in curve.plot(abscissa="speed").axes[0].collections if "outside" in c.get_label()]
+    assert "outside its range, as asperities cannot carry this load" in words(picture(heavy))
+    [strip] = [c for c in picture(curve, abscissa="speed").axes[0].collections if "outside" in c.get_label()]
     low, high = strip.get_datalim(strip.axes.transData).intervalx
     beyond = curve.values[np.array([any("beyond" in note for note in each.notes) for each in curve.solutions])]
     assert low < beyond.min() <= beyond.max() < high < 3 * beyond.max()
@@ -217,15 +231,15 @@ def test_an_interrupted_curve_says_how_many_points_it_has():
 
 def test_notes_stand_in_a_caption_of_the_colour_of_the_text_and_stay_away_if_not_wanted(heavy, solution):
     for result in (heavy, heavy.solutions[0]):
-        said = [text for text in result.plot().texts if text.get_color() == "#1f2328" and text.get_size() == 8]
+        said = [text for text in picture(result).texts if text.get_color() == "#1f2328" and text.get_size() == 8]
         assert len(said) >= len(result.notes) > 0
         assert "outside its range" in " ".join(text.get_text() for text in said)
-        without = words(result.plot(notes=False))
+        without = words(picture(result, notes=False))
         assert "outside its range," not in without and "stribeck 0." in without
 
 
 def test_the_marks_lie_on_the_line_that_is_drawn(heavy):
-    axes = heavy.plot().axes[0]
+    axes = picture(heavy).axes[0]
     drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
     for label in ("minimum", "fluid carries half the load"):
         assert set(zip(*line(axes, label).get_data(), strict=True)) <= drawn
@@ -234,45 +248,33 @@ def test_the_marks_lie_on_the_line_that_is_drawn(heavy):
 def test_the_contact_itself_is_marked_where_it_lies(subtests):
     for kind in ["over speed", "over load", "over roughness"]:
         with subtests.test(kind=kind):
-            curve = KINDS[kind]()
+            curve = curve_of_kind(kind)
             own = getattr(curve.contact, curve.over)
             axes = curve.plot(**({"abscissa": "speed"} if curve.over == "speed" else {})).axes[0]
             np.testing.assert_allclose(line(axes, "this contact, at ").get_xdata(), own, rtol=1e-9)
-            beyond = KINDS["over speed"]().contact.replace(speed=50.0)
-            far = sb.stribeck_curve(beyond, speed=("1 mm/s", "1 m/s"), points=2).plot()
-            assert not any(each.get_label().startswith("this contact") for each in far.axes[0].lines)
+    beyond = curve_of_kind("over speed").contact.replace(speed=50.0)
+    far = sb.stribeck_curve(beyond, speed=("1 mm/s", "1 m/s"), points=2).plot()
+    assert not any(each.get_label().startswith("this contact") for each in far.axes[0].lines)
 
 
 def test_the_lower_axis_is_the_one_that_is_wanted(curve):
-    axes = curve.plot(abscissa="speed").axes[0]
+    axes = picture(curve, abscissa="speed").axes[0]
     assert axes.get_xlabel() == "sliding speed $U$ (m/s)"
     np.testing.assert_array_equal(line(axes, "from the fluid").get_xdata(), curve.values)
     axes.figure.canvas.draw()
     assert axes.child_axes[0].get_xlabel().startswith("Hersey number")
     np.testing.assert_allclose(axes.child_axes[0].get_xlim(), curve.hersey_number[[0, -1]], rtol=1e-12)
     with pytest.raises(sb.InputError, match=r"abscissa = 'sped'; it must be 'speed' or 'hersey'\.$"):
-        curve.plot(abscissa="sped")
-
-
-def test_the_command_leaves_the_notes_out_of_the_picture_and_prints_them(tmp_path, capsys):
-    texts = {}
-    for extra in ((), ("--no-notes",)):
-        path = tmp_path / f"curve{len(extra)}.svg"
-        answer = call(
-            capsys, "curve", HEAVY, "--points", 3, "--range", "1 mm/s", "1 m/s", "--rtol", "1e-4", "--plot", path, *extra
-        )
-        assert answer.code == 0 and "outside its range" in answer.out.replace("\n", " ")
-        texts[extra] = path.stat().st_size
-    assert texts[("--no-notes",)] < 0.95 * texts[()]
+        picture(curve, abscissa="sped")
 
 
 # --- legibility ---
 
 
-def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests):
-    for kind in KINDS:
+def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests, heavy):
+    for kind in ("over speed", "over load", "of groups", "without any friction", "beyond the law"):
         with subtests.test(kind=kind):
-            figure = KINDS[kind]().plot(title="A title")
+            figure = picture(heavy if kind == "beyond the law" else curve_of_kind(kind), title="A title")
             figure.canvas.draw()
             renderer = figure.canvas.get_renderer()
             boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts(figure)]
@@ -293,7 +295,7 @@ def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests):
 
 
 def test_a_profile_of_any_state_can_be_drawn(subtests, solved, tmp_path_factory):
-    for groups in [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)]:
+    for groups in [(0, 0.1, 0), (0, 5, 1e-3)]:
         with subtests.test(groups=groups):
             tmp_path = tmp_path_factory.mktemp("case")
             solved(*groups).plot(tmp_path / "profile.png")
@@ -301,7 +303,7 @@ def test_a_profile_of_any_state_can_be_drawn(subtests, solved, tmp_path_factory)
 
 
 def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
-    lines = curve.plot().axes[0].lines[:3]
+    lines = picture(curve).axes[0].lines[:3]
     assert len({str(each.get_linestyle()) for each in lines}) == 3
     assert len({each.get_color() for each in lines}) == 3
 
@@ -310,7 +312,7 @@ def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
 
 
 def test_the_ending_chooses_the_format(subtests, curve, tmp_path_factory):
-    for ending in SIGNATURES:
+    for ending in (".svg", ".pdf"):
         with subtests.test(ending=ending):
             tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / f"curve{ending}"
@@ -353,24 +355,21 @@ def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
     code = """
         import sys
         import stribeck as sb
-        sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=2).plot(sys.argv[1])
+        sb.solve(sb.Groups(0, 0.1, 0)).plot(sys.argv[1])
         assert "matplotlib.pyplot" not in sys.modules
     """
     answer = run_python(textwrap.dedent(code), tmp_path / "curve.png", DISPLAY="", MPLBACKEND="TkAgg")
     assert answer.code == 0, answer.err
 
 
-def test_a_title_is_taken_by_the_letter(subtests, curve, tmp_path_factory):
-    for title in ["costs $5", r"$\frac{1$", "a # b % c & d"]:
-        with subtests.test(title=title):
-            tmp_path = tmp_path_factory.mktemp("case")
-            figure = curve.plot(tmp_path / "curve.png", title=title)
-            assert title in words(figure)
+def test_a_title_is_taken_by_the_letter(solution, tmp_path):
+    title = r"costs $5 \frac{1$, # b % c & d"
+    assert title in words(solution.plot(tmp_path / "profile.png", title=title))
 
 
-def test_a_long_title_is_cut_to_the_width_of_the_picture(curve, solution):
-    for figure in (curve.plot(title=60 * "very long "), solution.plot(title=60 * "very\nlong ")):
-        figure.canvas.draw()
-        [title] = [text for text in figure.texts if text.get_text().startswith("very long")]
-        assert title.get_text().endswith("…")
-        assert 0.5 < title.get_window_extent().x1 / figure.bbox.x1 < 1
+def test_a_long_title_is_cut_to_the_width_of_the_picture(solution):
+    figure = solution.plot(title=60 * "very\nlong ")
+    figure.canvas.draw()
+    [title] = [text for text in figure.texts if text.get_text().startswith("very long")]
+    assert title.get_text().endswith("…")
+    assert 0.5 < title.get_window_extent().x1 / figure.bbox.x1 < 1

@@ -1,6 +1,7 @@
 """How friction answers to inputs: derivatives at solved states and off the atlas, against differences of solved friction."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -15,31 +16,31 @@ from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitiv
 STEP = 1e-3
 
 
+@cache
+def solved(contact, rtol):
+    return sb.solve(contact, rtol=rtol)
+
+
 def differences(contact, name, definition="balanced", step=STEP, rtol=1e-7):
     """Return the sensitivity of friction to an input by states that are solved on both sides of it."""
     moved = [contact.replace(**{name: getattr(contact, name) * math.exp(sign * step)}) for sign in (1, -1)]
-    ends = [abs(sb.solve(each, rtol=rtol).friction(definition=definition).total) for each in moved]
+    ends = [abs(solved(each, rtol).friction(definition=definition).total) for each in moved]
     return math.log(ends[0] / ends[1]) / (2 * step)
 
 
 # --- cylinders ---
 
 
-def test_elasticities_agree_with_differences_of_cold_solves(subtests):
-    for speed, definition in [(1e-3, "published"), (0.03, "balanced")]:
-        with subtests.test(speed=speed, definition=definition):
-            contact = TRUE.replace(speed=speed)
-            solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
-            assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
-            step = 1e-2
-            for name in sb.LineContact.INPUTS.exponents:
-
-                def log_friction(k, name=name):
-                    other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})
-                    return math.log(sb.solve(other, rtol=1e-9).friction(definition=definition).total)
-
-                f = [log_friction(k) for k in (-2, -1, 1, 2)]
-                assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
+def test_elasticities_agree_with_differences_of_cold_solves():
+    contact, step = TRUE.replace(speed=0.03), 1e-2
+    solution, found = friction_sensitivities(contact, rtol=1e-9)
+    assert solution.friction() == solved(contact, 1e-9).friction()
+    for name in ("speed", "load", "roughness", "beta", "boundary_friction"):  # the others enter through the groups of these
+        f = [
+            math.log(solved(contact.replace(**{name: getattr(contact, name) * math.exp(k * step)}), 1e-9).friction())
+            for k in (-2, -1, 1, 2)
+        ]
+        assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
 
 
 def test_elasticities_obey_the_dimensions():
@@ -84,30 +85,14 @@ def test_sensitivities_are_differences_of_solved_friction(subtests):
         ({"cavitation": "reform", "cavity_pressure": "-2 kPa"}, ("viscosity", "load")),
         ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
         ({"slide_to_roll": -1.0}, ("boundary_friction", "load")),
-        ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "radius")),
+        ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "modulus")),
+        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
     ]:
         with subtests.test(parts=parts, names=names):
             contact = TRUE.replace(speed="10 mm/s", **parts)
             _, found = friction_sensitivities(contact, rtol=1e-7)
             for name in names:
                 assert found[name] == pytest.approx(differences(contact, name), abs=2e-4), name
-
-
-def test_inputs_that_change_the_numbers_of_a_fluid_or_layer_move_friction_through_them_too(subtests):
-    for parts, names in [
-        ({"solid": sb.solids.Layer("0.3 mm", 0.5)}, ("modulus", "load", "speed")),
-        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
-        ({"flow_factors": "effective-medium"}, ("roughness",)),
-    ]:
-        with subtests.test(parts=parts, names=names):
-            contact = TRUE.replace(speed="10 mm/s", **parts)
-            _, found = friction_sensitivities(contact, rtol=1e-6)
-            for name in names:
-                value = getattr(contact, name)
-                high, low = (
-                    sb.solve(contact.replace(**{name: value * factor}), rtol=1e-7).friction().total for factor in (1.01, 0.99)
-                )
-                assert found[name] == pytest.approx(math.log(high / low) / math.log(1.01 / 0.99), abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +131,7 @@ def contact_in_hertz_units(groups, barus=0.0, cavity=0.0, **parts):
 
 def test_sensitivities_of_both_frictions_are_differences_of_solved_states(subtests):
     """Without the moment of the pressure beyond the panels in x, those of the printed one were off by up to 8e-4."""
-    for parts in [{"cavity": -0.02}, {"cavity": -0.02, "barus": 2.0}, {"cavitation": "exit", "barus": 2.0}, {"barus": 2.0}]:
+    for parts in [{"cavity": -0.02}, {"cavitation": "exit", "barus": 2.0}]:
         with subtests.test(parts=parts):
             contact = contact_in_hertz_units(sb.Groups(1e-2, 0.1, 1e-3), **parts)
             for definition in ("published", "balanced"):
@@ -161,14 +146,12 @@ def test_the_printed_friction_of_a_thin_film_has_the_slopes_of_solved_states():
     # Asperities carry all; the closed form of the printed friction was wrong by 3e-4 here.
     contact = contact_in_hertz_units(sb.Groups(5.39e-11, 9.87, 0.0369))
     _, found = friction_sensitivities(contact, rtol=1e-8, definition="published")
-    for name in ("speed", "load", "roughness"):
-        assert found[name] == pytest.approx(differences(contact, name, "published", step=1e-2), abs=5e-5), name
+    assert found["load"] == pytest.approx(differences(contact, "load", "published", step=1e-2), abs=5e-5)
 
 
 def test_sensitivities_under_a_law_are_the_differences_of_solved_friction(subtests):
     separations = np.linspace(0.05, 6.0, 40)
     laws = {
-        "persson": sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
         "greenwood-tripp": sb.contact_laws.GreenwoodTripp(),
         "table": sb.contact_laws.TableLaw(separations, np.exp(-separations) + 0.3 * np.exp(-3 * separations)),
     }
@@ -176,7 +159,7 @@ def test_sensitivities_under_a_law_are_the_differences_of_solved_friction(subtes
         with subtests.test(name=name):
             contact = TRUE.replace(law=law, alpha=1.0 if name == "greenwood-tripp" else 2.0)
             _, found = friction_sensitivities(contact, rtol=1e-9)
-            for key in ("speed", "load", "roughness", "beta"):
+            for key in ("load", "roughness"):
                 assert found[key] == pytest.approx(differences(contact, key, step=1e-4, rtol=1e-9), abs=2e-5), key
 
 
@@ -219,20 +202,6 @@ def ball_of(groups, **parts):
     return sb.PointContact.from_groups(groups, **given, slide_to_roll=0.6).replace(**parts)
 
 
-def test_sensitivities_of_balls_are_the_differences_of_states_beside(subtests):
-    for name, contact, step, rtol, allowed in [
-        ("mixed", ball_of(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point")), 0.01, 1e-5, 1e-3),
-        ("persson", ball_of(sb.Groups(1e-3, 10.0, 5e-2, geometry="point", law=SURFACE)), 0.01, 1e-5, 1e-3),
-        ("smooth", ball_of(sb.Groups(1e-1, 1e-2, 0.0, geometry="point")), 0.01, 1e-5, 1e-3),
-        ("exit", ball_of(sb.Groups(0.1, 1e-3, 1e-3, geometry="point"), cavitation="exit"), 0.05, 1e-4, 4e-3),
-    ]:
-        with subtests.test(name=name):
-            _, found = friction_sensitivities(contact, rtol=1e-4)
-            keys = ("speed", "load", *(["roughness"] if contact.roughness else []))
-            for key in keys[:1] if name == "exit" else keys:  # each takes two states of ten seconds
-                assert found[key] == pytest.approx(differences(contact, key, step=step, rtol=rtol), abs=allowed), key
-
-
 MODELS = {
     "barus": {"fluid": sb.fluids.Barus("2e-7 1/Pa")},
     "flow": {"flow_factors": sb.fluids.PatirCheng()},
@@ -248,13 +217,29 @@ def ball_with(name):
     return contact.replace(**MODELS[name])
 
 
-def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_them(subtests):
-    for model, inputs in [("barus", ("load", "modulus", "pressure_coefficient")), ("flow", ("roughness",))]:
-        with subtests.test(model=model, inputs=inputs):
-            contact = ball_with(model)
-            _, found = friction_sensitivities(contact, rtol=1e-6)
-            for name in inputs:
-                assert found[name] == pytest.approx(differences(contact, name, step=0.01, rtol=1e-6), abs=3e-4), name
+BALLS = {
+    "mixed": (ball_of(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point")), ("load", "roughness")),
+    "persson": (ball_of(sb.Groups(1e-3, 10.0, 5e-2, geometry="point", law=SURFACE)), ("load",)),
+    "smooth": (ball_of(sb.Groups(1e-1, 1e-2, 0.0, geometry="point")), ("speed",)),
+    "barus": (ball_with("barus"), ("pressure_coefficient",)),
+    "flow": (ball_with("flow"), ("roughness",)),
+}
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_sensitivities_of_balls_are_the_differences_of_states_beside(name):
+    contact, keys = BALLS[name]
+    _, found = friction_sensitivities(contact, rtol=1e-4)
+    for key in keys:
+        allowed = 3e-4 if name in MODELS else 1e-3
+        assert found[key] == pytest.approx(differences(contact, key, step=0.01, rtol=1e-5), abs=allowed), key
+
+
+@pytest.mark.slow
+def test_the_sensitivity_of_a_ball_whose_film_ends_is_the_difference_of_states_beside():
+    contact = ball_of(sb.Groups(0.1, 1e-3, 1e-3, geometry="point"), cavitation="exit")
+    _, found = friction_sensitivities(contact, rtol=1e-4)
+    assert found["speed"] == pytest.approx(differences(contact, "speed", step=0.05, rtol=1e-4), abs=4e-3)
 
 
 def test_at_fixed_groups_beta_moves_the_viscous_friction_by_its_closed_form():
