@@ -86,16 +86,16 @@ def test_at_rest_asperities_carry_all_and_the_film_is_the_solved_one():
 # --- against the solver ---
 
 
-def test_it_is_within_its_stated_error_of_states_it_was_not_made_from(subtests):
-    for row in [BALL, EXIT]:
-        with subtests.test(row=row):
-            speed, load, kappa = random_states(row, 3, 20, mixed=True)
-            observed = np.array([solved(row.name, state) for state in zip(speed, load, kappa, strict=True)])
-            found = compare(speed, load, kappa, observed, row)
-            assert found.errors.shape == (3, len(quantities(row)))
-            assert found.friction.max() < row.error
+@pytest.mark.parametrize("row", [BALL, pytest.param(EXIT, marks=pytest.mark.slow)], ids=lambda row: row.name)
+def test_it_is_within_its_stated_error_of_states_it_was_not_made_from(row):
+    speed, load, kappa = random_states(row, 3, 20, mixed=True)
+    observed = np.array([solved(row.name, state) for state in zip(speed, load, kappa, strict=True)])
+    found = compare(speed, load, kappa, observed, row)
+    assert found.errors.shape == (3, len(quantities(row)))
+    assert found.friction.max() < row.error
 
 
+@pytest.mark.slow
 def test_nearly_smooth_balls_are_as_good():
     speed, load, kappa = np.array([[1e-5, 1e-3, 2e-4], [2e-6, 1e-2, 1e-4], [3e-7, 0.2, 6e-5]]).T
     observed = np.array([solved(BALL.name, state) for state in zip(speed, load, kappa, strict=True)])
@@ -112,7 +112,7 @@ def test_regions_of_balls_meet_within_the_stated_error():
 
 
 def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(subtests):
-    for changes in [{}, {"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}]:
+    for changes in [{"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}]:
         with subtests.test(changes=changes):
             contact = ball(**changes)
             state = sb.solve(contact, rtol=1e-5)
@@ -127,7 +127,7 @@ def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(
 
 
 def test_a_curve_read_off_it_is_the_solved_one():
-    contact, speeds = ball(wetted_radius=3e-3), [ball(s).speed for s in (1e-4, 1e-3, 1e-2, 0.1, 1.0)]
+    contact, speeds = ball(wetted_radius=3e-3), [ball(s).speed for s in (1e-3, 1e-2, 0.1)]
     read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=method) for method in ("atlas", "solver"))
     assert (np.abs(read.friction - exact.friction) < read.friction.error).all()
     assert np.allclose(read.friction.fluid, exact.friction.fluid, rtol=3e-3)
@@ -221,17 +221,16 @@ def test_a_phase_diagram_has_its_lines_where_curves_have_them():
     assert np.isfinite(diagram.friction).all()
 
 
-def test_fits_begin_on_it_where_it_holds(subtests):
-    for cavitation in ["none", "exit"]:
-        with subtests.test(cavitation=cavitation):
-            contact = ball(wetted_radius=3e-3, cavitation=cavitation)
-            speeds = (contact.speed / 3, contact.speed * 3)
-            curve = sb.stribeck_curve(contact, speed=speeds, points=5, method="atlas")
-            ones = np.zeros(5, dtype=int), ("a",), ({},), np.arange(2, 7)
-            data = sb.results.Measurements("speed", curve.values, np.asarray(curve.friction), None, *ones)
-            found = sb.fit(data, contact.replace(boundary_friction=0.6), free=["boundary_friction"], intervals=False)
-            assert found["boundary_friction"].value == pytest.approx(0.7, rel=5e-3)
-            assert found.solver_shift < np.inf  # the solver has replaced the table at the end
+@pytest.mark.parametrize("cavitation", ["none", pytest.param("exit", marks=pytest.mark.slow)])
+def test_fits_begin_on_it_where_it_holds(cavitation):
+    contact = ball(wetted_radius=3e-3, cavitation=cavitation)
+    speeds = (contact.speed / 3, contact.speed * 3)
+    curve = sb.stribeck_curve(contact, speed=speeds, points=5, method="atlas")
+    ones = np.zeros(5, dtype=int), ("a",), ({},), np.arange(2, 7)
+    data = sb.results.Measurements("speed", curve.values, np.asarray(curve.friction), None, *ones)
+    found = sb.fit(data, contact.replace(boundary_friction=0.6), free=["boundary_friction"], intervals=False)
+    assert found["boundary_friction"].value == pytest.approx(0.7, rel=5e-3)
+    assert found.solver_shift < np.inf  # the solver has replaced the table at the end
 
 
 def test_uncertainties_are_sampled_on_it():

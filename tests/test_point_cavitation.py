@@ -11,7 +11,7 @@ from stribeck import Groups
 # Speed, kappa; central and minimum gap, contact share, each with its uncertainty: finite volumes on three grids.
 FINITE_VOLUMES = [
     (0.1, 0.1, (0.256338, 4e-6), (0.255425, 5e-6), (0.83863, 3e-5)),
-    (0.1, 0.0, (0.096783, 2e-6), (0.0708, 1e-4), (0.0, 1e-9)),
+    pytest.param(0.1, 0.0, (0.096783, 2e-6), (0.0708, 1e-4), (0.0, 1e-9), marks=pytest.mark.slow),
     pytest.param(1.0, 0.0, (0.42996, 2e-5), (0.3601, 1e-4), (0.0, 1e-9), marks=pytest.mark.slow),
     pytest.param(0.01, 0.0, (0.024598, 1e-6), (0.0160, 3e-4), (0.0, 1e-9), marks=pytest.mark.slow),
     pytest.param(0.01, 0.01, (0.030522, 1e-6), (0.027614, 5e-6), (0.58045, 5e-5), marks=pytest.mark.slow),
@@ -38,6 +38,7 @@ def test_states_agree_with_finite_volumes(speed, kappa, central, minimum, share)
     assert state.nodal_fluid_pressure.min() == 0.0
 
 
+@pytest.mark.slow
 def test_in_boundary_lubrication_the_share_of_the_fluid_grows_with_the_speed_itself():
     slow, slower = (ball(speed, 0.1, 1e-3).values["fluid_load_share"] for speed in (1e-4, 1e-5))
     assert slow / 1e-4 == pytest.approx(1.664, rel=5e-4)
@@ -60,20 +61,24 @@ def test_a_heavy_ball_whose_torn_nodes_settle_slowly_is_solved_from_cold():
     assert ball(1.29283e-4, 8.91201e-3, 1e-4, 0.360854).outcome.ok
 
 
-def test_a_film_that_flow_factors_lift_breaks_from_a_full_film_with_these(subtests):
+@pytest.mark.parametrize(
+    ("speed", "load", "parts"),
+    [
+        (1e-4, 0.3, {"flow_factors": sb.fluids.PatirCheng(2.0)}),
+        pytest.param(1e-3, 2.0, {"flow_factors": sb.fluids.EffectiveMedium(2.0)}, marks=pytest.mark.slow),
+        pytest.param(
+            1e-3, 2.0, {"flow_factors": sb.fluids.PatirCheng(2.0), "fluid": sb.fluids.Barus(1.0)}, marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_a_film_that_flow_factors_lift_breaks_from_a_full_film_with_these(speed, load, parts):
     """From one between smooth surfaces, half as thick, it was lost; cavities of little suction are solved another way."""
-    for speed, load, kappa, parts in [
-        (1e-4, 0.3, 0.017, {"flow_factors": sb.fluids.PatirCheng(2.0)}),
-        (1e-3, 2.0, 0.017, {"flow_factors": sb.fluids.EffectiveMedium(2.0)}),
-        (1e-3, 2.0, 0.017, {"flow_factors": sb.fluids.PatirCheng(2.0), "fluid": sb.fluids.Barus(1.0)}),
-    ]:
-        with subtests.test(speed=speed, load=load, kappa=kappa, parts=parts):
-            groups = sb.Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
-            torn = sb.solve(groups, rtol=1e-3, cavitation="exit", **parts)
-            limit = sb.solve(groups, rtol=2e-3, cavitation="reform", cavity_pressure=-1e-4, **parts)
-            assert abs(torn.contact_load_share - limit.contact_load_share) < 1e-3
-            assert abs(torn.central_gap / limit.central_gap - 1) < 1e-3
-            assert torn.central_gap > 1.3 * sb.solve(groups, rtol=1e-3, cavitation="exit").central_gap
+    groups = sb.Groups(speed, load, 0.017 * load ** (2 / 3), geometry="point")
+    torn = sb.solve(groups, rtol=1e-3, cavitation="exit", **parts)
+    limit = sb.solve(groups, rtol=2e-3, cavitation="reform", cavity_pressure=-1e-4, **parts)
+    assert abs(torn.contact_load_share - limit.contact_load_share) < 1e-3
+    assert abs(torn.central_gap / limit.central_gap - 1) < 1e-3
+    assert torn.central_gap > 1.3 * sb.solve(groups, rtol=1e-3, cavitation="exit").central_gap
 
 
 @pytest.mark.slow
@@ -94,6 +99,7 @@ def test_ten_angles_serve_a_loose_tolerance_and_state_their_errors():
         assert abs(rough.values[name] - value) <= rough.absolute_errors[name] + sharp.absolute_errors[name], name
 
 
+@pytest.mark.slow
 def test_errors_of_thin_films_are_stated():
     """The central gap of a film that thins erred by 3.3 times what was stated."""
     rough, sharp = (ball(2e-3, 0.0, rtol, 1.4e-4) for rtol in (1e-3, 1e-4))
@@ -102,6 +108,7 @@ def test_errors_of_thin_films_are_stated():
     assert error <= rough.absolute_errors["central_gap"] + sharp.absolute_errors["central_gap"]
 
 
+@pytest.mark.slow
 def test_errors_are_stated_where_two_meshes_agree_by_chance():
     """Both meshes of a pair erred by the same: 1.8 times what was stated."""
     state = ball(0.146, 0.0, 1e-4, 2.4e-3)
@@ -110,14 +117,12 @@ def test_errors_are_stated_where_two_meshes_agree_by_chance():
     assert abs(state.values["offset"] - -0.771579) <= state.absolute_errors["offset"] + 1e-5
 
 
-def test_slow_films_along_a_curve_hold_their_tolerance_and_are_the_states_of_cold_starts(subtests):
+def test_slow_films_along_a_curve_hold_their_tolerance_and_are_the_states_of_cold_starts():
     """The pressure of the mesh for comparison had not settled: a state went to 45 angles, and the next one back."""
-    for kappa, load in ((0.1, 1e-3), (0.1, 1.0)):
-        with subtests.test(kappa=kappa, load=load):
-            groups = Groups(1e-2, load, kappa * load ** (2 / 3), geometry="point")
-            speeds = np.array([4.99e-3, 7.06e-3, 1e-2])
-            curve = sb.stribeck_curve(groups, speed=speeds, rtol=1e-3, cavitation="exit")
-            assert curve.outcome.ok and curve.error_estimate <= 1e-3
-            cold = ball(7.06e-3, kappa, 1e-3, load)
-            share = curve.observable("contact_load_share")[1]
-            assert share == pytest.approx(cold.values["contact_load_share"], abs=2e-3)
+    groups = Groups(1e-2, 1.0, 0.1, geometry="point")
+    speeds = np.array([4.99e-3, 7.06e-3, 1e-2])
+    curve = sb.stribeck_curve(groups, speed=speeds, rtol=1e-3, cavitation="exit")
+    assert curve.outcome.ok and curve.error_estimate <= 1e-3
+    cold = ball(7.06e-3, 0.1, 1e-3, 1.0)
+    share = curve.observable("contact_load_share")[1]
+    assert share == pytest.approx(cold.values["contact_load_share"], abs=2e-3)

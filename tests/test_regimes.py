@@ -69,9 +69,9 @@ def test_a_substrate_that_is_overtaken_has_regimes_too():
 # --- the way to the next regime ---
 
 
-def shares(contact, definition="balanced"):
+def shares(contact, definition="balanced", rtol=1e-8):
     """Return regime, the fluid's share of the load and the asperities' share of the friction."""
-    solution = sb.solve(contact, rtol=1e-8)
+    solution = sb.solve(contact, rtol=rtol)
     friction = solution.friction(definition=definition)
     part = friction.asperities / friction.total
     return sb.regime_of(solution.fluid_load_share, part), solution.fluid_load_share, part
@@ -97,7 +97,7 @@ def test_a_curve_of_another_definition_gives_no_margins(mixed):
 
 
 def test_at_a_crossing_the_named_regime_begins(subtests):
-    for changes, definition in [({}, "published"), ({"speed": 1e-5}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")]:
+    for changes, definition in [({}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")]:
         with subtests.test(changes=changes, definition=definition):
             contact = CONTACT.replace(**changes)
             found = regime_margins(contact, definition=definition)
@@ -119,9 +119,9 @@ def test_a_crossing_is_the_nearest(mixed):
     found = list(crossings(mixed))
     assert len(found) > 4
     for name, mark in found:
-        for part in np.linspace(0.05, 0.95, 5):
+        for part in (0.4, 0.95):
             nearer = CONTACT.replace(**{name: getattr(CONTACT, name) * mark.factor**part})
-            assert shares(nearer)[0] == "mixed"
+            assert shares(nearer, rtol=1e-4)[0] == "mixed"
 
 
 def test_a_mixed_contact_has_two_neighbours(mixed):
@@ -250,6 +250,7 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
         "To reach hydrodynamic lubrication: speed x 30.5 (to 30.46 mm/s), or load / 3750 (to 7.994 mN/m), or roughness" in text
     )
     assert "Only the product of speed and viscosity matters" in text
+    assert "95 %:" not in text  # no input has an error
     rows = {line.split("  ")[0].strip() for line in text.splitlines()}
     assert {"speed", "load", "viscosity", "effective modulus", "radius", "roughness", "dry friction coefficient"} <= rows
     assert {"contact-law alpha", "contact-law beta"} <= rows
@@ -276,10 +277,6 @@ def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path_factor
         (
             {"speed": 0.0},
             "To reach mixed lubrication: speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity.",
-        ),
-        (
-            {"roughness": 0.0},
-            "To reach mixed lubrication: roughness from zero to 97.71 nm; not reachable by changing speed, load, viscosity.",
         ),
         ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic lubrication: speed to any value above zero"),
         (
@@ -309,7 +306,7 @@ def moved_by(capsys, tmp_path, uncertain, error=0.01, **changes):
 
 
 def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests, capsys, tmp_path_factory):
-    for uncertain in ["roughness", "boundary_friction"]:
+    for uncertain in ["roughness"]:
         with subtests.test(uncertain=uncertain):
             tmp_path = tmp_path_factory.mktemp("case")
             found = moved_by(capsys, tmp_path, uncertain)
@@ -329,18 +326,14 @@ def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests, 
 
 
 def test_an_uncertain_input_moves_the_factor_by_which_it_is_to_be_changed_itself(capsys, tmp_path):
-    for uncertain in ("speed", "viscosity"):
-        found = moved_by(capsys, tmp_path, uncertain)
-        assert found["speed", "hydrodynamic"] == pytest.approx(1)
-    along_roughness = found["roughness", "hydrodynamic"]
-    assert along_roughness == pytest.approx(moved_by(capsys, tmp_path, "speed")["roughness", "hydrodynamic"])
+    by_speed, by_viscosity = (moved_by(capsys, tmp_path, uncertain) for uncertain in ("speed", "viscosity"))
+    assert by_speed["speed", "hydrodynamic"] == by_viscosity["speed", "hydrodynamic"] == pytest.approx(1)
+    assert by_speed["roughness", "hydrodynamic"] == pytest.approx(by_viscosity["roughness", "hydrodynamic"])
 
 
 @pytest.mark.quick
-def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with(capsys, tmp_path):
+def test_margins_with_errors_say_their_interval_in_the_sentence(capsys, tmp_path):
     path = tmp_path / "case.toml"
-    path.write_text(case_text())
-    assert "95 %:" not in call(capsys, "regimes", path, "-v").out
     path.write_text(case_text({"speed": '"1 mm/s +- 10 %"'}))
     said = " ".join(call(capsys, "regimes", path, "-v").out.split())
     reached = said[said.index("To reach hydrodynamic") :]
@@ -350,6 +343,7 @@ def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with
     assert "Intervals count the errors of speed; radius, effective modulus, " in said
 
 
+@pytest.mark.slow
 def test_a_fluid_that_thins_has_no_margin_in_viscosity():
     thinning = CONTACT.replace(speed="20 mm/s", fluid=sb.fluids.Carreau("1 ms", 0.5))
     found = regime_margins(thinning, rtol=1e-2)
@@ -360,16 +354,16 @@ def test_a_fluid_that_thins_has_no_margin_in_viscosity():
 def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
     heavy = CONTACT.replace(load="600 N/m")
     assert heavy.groups.load > 1
-    speed = regime_margins(heavy, rtol=1e-4).margins[0]
+    speed = regime_margins(heavy, rtol=1e-3).margins[0]
     slowest = speed.searched[0]
     assert speed.less is None and heavy.speed / 10 > slowest > 10 * heavy.speed / REACH
-    beyond = [sb.solve(heavy.replace(speed=slowest / factor), rtol=1e-4).fluid_load_share for factor in (1, 10, 1000)]
+    beyond = [sb.solve(heavy.replace(speed=slowest / factor), rtol=1e-3).fluid_load_share for factor in (1, 10, 1000)]
     assert beyond[0] > beyond[1] > beyond[2] > 1.5 * 0.05
 
 
-def test_margins_are_a_dataset():
+def test_margins_are_a_dataset(mixed):
     pytest.importorskip("xarray")
-    found = regime_margins(CONTACT)
+    found = mixed
     data = found.to_dataset()
     marks = {(margin.name, mark.regime): mark for margin in found.margins for mark in (margin.less, margin.more) if mark}
     rows = zip(data.input.values.tolist(), data.next_regime.values.tolist(), data.value.values.tolist(), strict=True)

@@ -39,12 +39,6 @@ def test_an_interval_says_which_inputs_count_as_exact(capsys):
     assert "beta" not in str(sb.propagate(surface, {"roughness": 0.1}, transitions=False)).split("count as exact")[0]
 
 
-def test_the_ways_to_other_regimes_say_it_in_their_line(capsys):
-    answer = call(capsys, "regimes", EXAMPLES / "lip_seal.toml", "-v")
-    lines = [line for line in answer.out.splitlines() if "95 %:" in line]
-    assert lines and all("Intervals count the errors of" in line and "count as exact" in line for line in lines)
-
-
 def test_transitions_beyond_the_speeds_that_were_searched_are_not_told():
     contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     curve = sb.stribeck_curve(contact, points=41, rtol=1e-3)
@@ -68,14 +62,13 @@ CURVED = {
 """Contacts near the minimum of friction, where it is curved, with errors, and the ends by 3000 solved states."""
 
 
-def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states_have_it(subtests):
-    for name in CURVED:
-        with subtests.test(name=name):
-            parts, errors, (low, high) = CURVED[name]
-            contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", **parts)
-            found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
-            # The ends of 3000 draws scatter by 2 % of the width themselves.
-            assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
+@pytest.mark.parametrize("name", ["layer", pytest.param("Carreau that ends", marks=pytest.mark.slow)])
+def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states_have_it(name):
+    parts, errors, (low, high) = CURVED[name]
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s", **parts)
+    found = sb.propagate(contact, errors, transitions=False)["friction"].interval_95
+    # The ends of 3000 draws scatter by 2 % of the width themselves.
+    assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
 
 
 def test_an_interval_that_solved_states_do_not_settle_says_so():
@@ -96,12 +89,9 @@ def test_samples_that_cannot_be_solved_are_counted_and_end_nothing():
     assert 0 < low < high < 1
 
 
-@pytest.mark.parametrize("free", [True, 5, 1.5, "roughness", None], ids=str)
+@pytest.mark.parametrize("free", [True, 5, 1.5, "roughness"], ids=str)
 def test_what_is_free_is_a_list_of_inputs(free):
     data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
-    if free is None:
-        assert sb.fit(data, case, intervals=False).inputs
-        return
     with pytest.raises(sb.InputError, match="free = .* must be a list of inputs"):
         sb.fit(data, case, free=free, intervals=False)
 

@@ -99,15 +99,12 @@ def test_groups_that_hold_a_memory_at_one_speed_have_no_curve_over_it():
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), solid=StandardLinearSolid(0.3, 2.0), points=3)
 
 
-def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed(subtests):
-    for solid in [StandardLinearSolid("1 ms", 2.0), Prony(["1 ms", "30 ms"], [0.7, 0.5])]:
-        with subtests.test(solid=solid):
-            contact = TRUE.replace(solid=solid)
-            curve = sb.stribeck_curve(contact, speed=(0.01, 0.1), points=3)
-            for speed in (0.02, 0.07):
-                state = sb.solve(contact.replace(speed=speed))
-                assert float(curve.at(speed).friction) == pytest.approx(state.friction().total, rel=1e-6)
-                assert curve.at(speed).central_gap == pytest.approx(state.central_gap, rel=1e-6)
+def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed():
+    contact = TRUE.replace(solid=Prony(["1 ms", "30 ms"], [0.7, 0.5]))
+    curve = sb.stribeck_curve(contact, speed=(0.01, 0.1), points=3)
+    state, found = sb.solve(contact.replace(speed=0.03)), curve.at(0.03)
+    assert float(found.friction) == pytest.approx(state.friction().total, rel=1e-6)
+    assert found.central_gap == pytest.approx(state.central_gap, rel=1e-6)
 
 
 def test_a_curve_along_which_a_body_remembers_more_and_more_of_the_panel_at_infinity_is_solved():
@@ -139,7 +136,7 @@ def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_its_parts(subtests):
     edges = np.array([-12.0, -6.0, -1.0, -0.5, 0.0, 0.5, 1.0, 6.0, 12.0])
     parts = np.unique(np.concatenate([np.linspace(a, b, 33) for a, b in zip(edges[:-1], edges[1:], strict=True)]))
     wide, fine = Mesh(edges, 12), Mesh(parts, 12)
-    for d, poisson_ratio in [(0.1, 0.45), (0.5, 0.4), (1.3, 0.0), (3.0, 0.5)]:
+    for d, poisson_ratio in [(0.1, 0.45), (3.0, 0.5)]:
         with subtests.test(d=d, poisson_ratio=poisson_ratio):
 
             def pressure(y):
@@ -168,18 +165,24 @@ def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():
 SINGULAR_BY_COLLOCATION = 256 / 16.868016151387604
 
 
+def composite(length, panels=400):
+    """Return nodes and weights on equal panels from zero."""
+    nodes, weights = np.polynomial.legendre.leggauss(10)
+    at = np.add.outer(np.arange(panels), 0.5 * (1 + nodes)).ravel() / panels
+    return length * at, length * np.tile(weights / (2 * panels), panels)
+
+
 def remembered(pressure, deborah):
     return Memory(FINE, np.array([deborah]))(pressure[None])[0]
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("deborah", [0.03, 0.3, 3.0])
+@pytest.mark.parametrize("deborah", [0.03, 3.0])
 def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
     found = remembered(bump(FINE.nodes), deborah)
     x = np.array([-0.5, 0.0, 0.3, 1.0, 6.0])
-    age, weights = np.polynomial.legendre.leggauss(2000)
-    age, weights = 20 * (1 + age) * deborah, 20 * weights
-    expected = [np.sum(weights * np.exp(-age / deborah) * bump(each - age)) for each in x]
+    age, weights = composite(40.0)
+    expected = [np.sum(weights * np.exp(-age) * bump(each - deborah * age)) for each in x]
     np.testing.assert_allclose(FINE.interpolate(found, x), expected, atol=1e-9)
     assert FINE.weights @ found == pytest.approx(FINE.weights @ bump(FINE.nodes), rel=1e-9)  # the load is kept
 
@@ -188,10 +191,9 @@ def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
 @pytest.mark.parametrize("deborah", [1.0, SINGULAR_BY_COLLOCATION])
 def test_memory_of_a_pressure_that_reaches_to_infinity(deborah):
     found = remembered(1 / (1 + FINE.nodes**2), deborah)
-    nodes, weights = np.polynomial.legendre.leggauss(10)
-    age = np.add.outer(np.arange(400), 0.5 * (1 + nodes)).ravel() / 10  # 400 panels up to 40 times
+    age, weights = composite(40.0)
     past = 1 / (1 + (FINE.nodes[:, None] - deborah * age) ** 2)
-    expected = past @ (np.tile(weights / 20, 400) * np.exp(-age))
+    expected = past @ (weights * np.exp(-age))
     np.testing.assert_allclose(found * (1 + FINE.nodes**2), expected * (1 + FINE.nodes**2), rtol=0, atol=1e-6)
 
 
@@ -232,8 +234,7 @@ def test_the_layer_deflects_as_hankels_transform_says(thickness, ratio):
     mesh = PolarMesh(np.array([0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2.0, 10.0, 50.0]), 7, 12, 3)
     by_mode = layer_by_mode(mesh, Layer(thickness, ratio))
     s, r = 0.3, mesh.radii
-    q, w = np.polynomial.legendre.leggauss(2000)
-    q, w = 25 * (1 + q), 25 * w
+    q, w = composite(50.0)
     spectrum = 4 / np.pi * transfer(q * thickness, ratio) * s**2 * np.exp(-((q * s) ** 2) / 2)
     bump = np.exp(-(r**2) / (2 * s**2))
     assert by_mode[0] @ bump == pytest.approx(j0(np.outer(r, q)) @ (w * spectrum), abs=1e-9)
