@@ -14,7 +14,7 @@ import stribeck as sb
 from stribeck.cli.exits import complain
 from stribeck.files.writing import check_writable, need_extra
 from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.units import InputError, read_number, show, to_si
+from stribeck.quantities.units import InputError, checked_word, read_number, show, to_si
 
 DEFAULT_RTOL = 1e-6  # Tolerance of a case that names none; to load cases for it alone takes longer than a state.
 
@@ -143,7 +143,7 @@ def curve_arguments(
     from stribeck.cases.case import CurveSettings, curve_range
 
     settings = case.curve if case else CurveSettings()
-    varied = settings.over if over is None else _axis(over)
+    varied = settings.over if over is None else checked_word("over", over, GROUPS)
     found: dict[str, Any] = {"points": settings.points if points is None else points, "rtol": as_rtol(rtol, case)}
     if case is not None:
         found |= {"problem": case.contact, "definition": case.definition}
@@ -161,12 +161,6 @@ def curve_arguments(
     elif varied != "speed":
         raise InputError(f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}.")
     return found
-
-
-def _axis(text: str) -> str:
-    if text not in GROUPS:
-        raise InputError(f"over = {show(text)} must be 'speed', 'load' or 'roughness'.")
-    return text
 
 
 def check_outputs(force: bool, plot: Path | None, case: Path | None = None, data: Sequence[Path] = ()) -> None:

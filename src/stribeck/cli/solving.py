@@ -74,9 +74,8 @@ def solve_command(
     from stribeck.cli.reports import state_and_curve as report
 
     checks = checks_of_solution(solution, loaded.facts) if loaded else None
-    lines = report.solution_lines if verbose else report.solution_answer
-    said = solution, loaded, mu, b, checks
-    answer(json, lambda: solution.to_dict(mu, b), lambda: lines(*said), checks, loaded, [plot])
+    said = solution, loaded, mu, b, checks, verbose
+    answer(json, lambda: solution.to_dict(mu, b), lambda: report.solution_lines(*said), checks, loaded, [plot])
     return 0
 
 
@@ -145,8 +144,8 @@ def curve_command(
         errors = {} if verdict.errors is None else {"uncertainty": verdict.errors.to_dict()}
         return {"title": title} | curve.to_dict() | {"files": written} | errors
 
-    lines = report.curve_lines if verbose else report.curve_answer
-    answer(json, content, lambda: lines(curve, loaded, verdict), verdict.checks, loaded, written)
+    said = curve, loaded, verdict, verbose
+    answer(json, content, lambda: report.curve_lines(*said), verdict.checks, loaded, written)
     if problems:
         return complain("\n".join(problems), EXIT_BAD_INPUT)
     stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"

@@ -98,7 +98,7 @@ def new_case(geometry: Geometry = "line") -> str:
     ]
     for row in table.kept.values():
         left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
-        lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {_value(row)}"]
+        lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {row.example}"]
         for form in reversed(table.forms):
             if table.stands_for.get(form.inputs[0].name) != row.name or form.joins:
                 continue
@@ -107,7 +107,7 @@ def new_case(geometry: Geometry = "line") -> str:
             if form.second:
                 lines.append(f"#   and, if the other body is not rigid, {_values(form.second)}")
         if row.name == "radius":
-            lines.append(f"# radius_2 = {_value(table.quantities['radius_2'])}   # if the other body is curved too")
+            lines.append(f"# radius_2 = {table.quantities['radius_2'].example}   # if the other body is curved too")
         lines.append("")
     if geometry == "line":
         lines += [
@@ -123,9 +123,7 @@ def new_case(geometry: Geometry = "line") -> str:
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]
-    lines += [
-        f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS.values()
-    ]
+    lines += [f"# {fact.name} = {fact.example}   # {fact.label}; {fact.source}" for fact in FACTS.values()]
     return "\n".join(lines) + "\n"
 
 
@@ -165,12 +163,4 @@ def _about(row: Input) -> list[str]:
 
 
 def _values(rows: tuple[Input, ...]) -> str:
-    return "; ".join(f"{row.name} = {_value(row)}" for row in rows)
-
-
-def _value(row: Input) -> str:
-    return _quoted(row.typical, row.dimension)
-
-
-def _quoted(typical: str, dimension: str) -> str:
-    return f'"{typical}"' if DIMENSIONS[dimension].unit else typical
+    return "; ".join(f"{row.name} = {row.example}" for row in rows)

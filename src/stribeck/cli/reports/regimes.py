@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import stribeck as sb
-from stribeck.cli.reports.text import all_lines, answer_lines, mark_table, mark_texts, outcome_line
+from stribeck.cli.reports.text import mark_table, mark_texts, outcome_line, report_lines
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.quantities.formats import MIN_STATED_SHARE, format_factor, format_si
@@ -30,7 +30,7 @@ def regimes_answer(found: Overview) -> Iterator[str]:
     """Yield what people read first: verdict, regime, the main numbers, the way to other regimes, doubts and notes in short."""
     body = [answer_sentence(found.solution, found.friction), *_main_table(found), *_margin_table(found), *_strongest(found)]
     body += [] if found.errors is None else [found.errors.probability_sentence]
-    return answer_lines(found.case, found.checks, body, found.notes, MORE)
+    return report_lines(found.solution, found.case, found.checks, body, found.notes, MORE)
 
 
 def regimes_lines(found: Overview) -> Iterator[str]:
@@ -42,7 +42,7 @@ def regimes_lines(found: Overview) -> Iterator[str]:
     body.append(outcome_line(found.curve.outcome.value, found.error_estimate, others))
     body += [f"No sensitivities: {found.no_sensitivities}"] if found.no_sensitivities else []
     body += [] if found.errors is None else [str(found.errors)]
-    return all_lines(found.case, found.solution, found.checks, body, found.notes)
+    return report_lines(found.solution, found.case, found.checks, body, found.notes)
 
 
 def _main_table(found: Overview) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from stribeck.cli.reports.text import all_lines, answer_lines, mark_table, number_lines, outcome_line, place
+from stribeck.cli.reports.text import mark_table, number_lines, outcome_line, place, report_lines
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.regime import regime_of
 from stribeck.quantities.results import table_lines
@@ -24,38 +24,29 @@ MORE_OF_STATE = "-v shows inputs, all films and positions, both frictions and fu
 MORE_OF_CURVE = "-v shows inputs, errors and full notes; -o FILE writes points, --plot FILE draws."
 
 
-def solution_answer(
-    solution: BaseSolution,
-    case: Case | None,
-    boundary_friction: float | None = None,
-    beta: float | None = None,
-    checks: Checks | None = None,
-) -> Iterator[str]:
-    """Yield what people read first of a state: verdict, regime, the main numbers, doubts and notes in short."""
-    definition = case.definition if case else "balanced"
-    body = [answer_sentence(solution, solution.friction(boundary_friction, beta, definition))]
-    body += _coefficients(solution, boundary_friction, beta)
-    body += number_lines(main_rows(solution, boundary_friction, beta, definition))
-    body += [] if solution.outcome.ok else [solution.outcome.value]
-    return answer_lines(case, checks, body, solution.notes_for(boundary_friction, beta), MORE_OF_STATE)
-
-
 def solution_lines(
     solution: BaseSolution,
     case: Case | None,
     boundary_friction: float | None = None,
     beta: float | None = None,
     checks: Checks | None = None,
+    verbose: bool = False,
 ) -> Iterator[str]:
-    """Yield everything about one state, as a table with units and errors."""
-    body = _coefficients(solution, boundary_friction, beta)
-    body += number_lines(report_rows(solution, boundary_friction, beta))
-    body.append(f"Regime: {regime_of(solution.fluid_load_share, solution.friction(boundary_friction, beta).contact_share)}.")
-    # The tolerance holds neither the minimum film of a ball nor the sum of the parts of friction.
-    friction = max(solution.friction(boundary_friction, beta, each).relative_error for each in DEFINITIONS)
-    others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}
-    body.append(outcome_line(solution.outcome.value, solution.error_estimate, others))
-    return all_lines(case, solution, checks, body, solution.notes_for(boundary_friction, beta))
+    """Yield what people read of a state: verdict, regime, the main numbers, doubts and notes in short, or everything."""
+    given, definition = (boundary_friction, beta), case.definition if case else "balanced"
+    body = _coefficients(solution, *given)
+    if verbose:
+        body += number_lines(report_rows(solution, *given))
+        body.append(f"Regime: {regime_of(solution.fluid_load_share, solution.friction(*given).contact_share)}.")
+        # The tolerance holds neither the minimum film of a ball nor the sum of the parts of friction.
+        friction = max(solution.friction(*given, each).relative_error for each in DEFINITIONS)
+        others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}
+        body.append(outcome_line(solution.outcome.value, solution.error_estimate, others))
+    else:
+        body.insert(0, answer_sentence(solution, solution.friction(*given, definition)))
+        body += number_lines(main_rows(solution, *given, definition))
+        body += [] if solution.outcome.ok else [solution.outcome.value]
+    return report_lines(solution, case, checks, body, solution.notes_for(*given), "" if verbose else MORE_OF_STATE)
 
 
 def _coefficients(solution: BaseSolution, boundary_friction: float | None, beta: float | None) -> list[str]:
@@ -65,26 +56,21 @@ def _coefficients(solution: BaseSolution, boundary_friction: float | None, beta:
     return [f"Friction is for boundary_friction = {dry:g} and beta = {slope:g}: --boundary-friction, --beta."]
 
 
-def curve_answer(curve: StribeckCurve, case: Case | None, verdict: CurveVerdict) -> Iterator[str]:
-    """Yield what people read first of a curve: verdict, regimes, transitions, doubts and notes in short."""
+def curve_lines(curve: StribeckCurve, case: Case | None, verdict: CurveVerdict, verbose: bool = False) -> Iterator[str]:
+    """Yield what people read of a curve: verdict, regimes, transitions, doubts and notes in short, or everything."""
     body, errors = [*_regime_lines(curve)], verdict.errors
-    if errors is not None:
-        friction = errors["friction"].text
-        body.append(f"At the {curve.over} of the contact itself: friction {friction}; {errors.probabilities}.")
-    return answer_lines(case, verdict.checks, body, curve.notes, MORE_OF_CURVE)
-
-
-def curve_lines(curve: StribeckCurve, case: Case | None, verdict: CurveVerdict) -> Iterator[str]:
-    """Yield what a curve holds: inputs, regimes, transitions, what errors leave open, error, notes."""
-    if verdict.headline and verdict.checks is not None and not verdict.checks.first_line:
-        yield verdict.headline
-    body, errors = [*_regime_lines(curve)], verdict.errors
-    if errors is not None:
-        body.append(f"At the {curve.over} of the contact itself, {place(curve, getattr(errors.contact, curve.over), 4)}:")
-        body.append(str(errors))
-    friction = {"friction": float(curve.friction.relative_error.max(initial=0.0))}
-    body.append(outcome_line(curve.outcome.value, curve.error_estimate, friction))
-    yield from all_lines(case, curve, verdict.checks, body, curve.notes, curve.over)
+    if verbose:
+        if verdict.headline and verdict.checks is not None and not verdict.checks.first_line:
+            yield verdict.headline
+        if errors is not None:
+            body.append(f"At the {curve.over} of the contact itself, {place(curve, getattr(errors.contact, curve.over), 4)}:")
+            body.append(str(errors))
+        friction = {"friction": float(curve.friction.relative_error.max(initial=0.0))}
+        body.append(outcome_line(curve.outcome.value, curve.error_estimate, friction))
+    elif errors is not None:
+        friction_text = errors["friction"].text
+        body.append(f"At the {curve.over} of the contact itself: friction {friction_text}; {errors.probabilities}.")
+    yield from report_lines(curve, case, verdict.checks, body, curve.notes, "" if verbose else MORE_OF_CURVE)
 
 
 def _regime_lines(curve: StribeckCurve) -> Iterator[str]:

@@ -24,33 +24,30 @@ SCREEN_WIDTH = 80  # Columns of the terminal for which notes of an answer are sh
 NOTE_LINES = 4  # Lines of such a terminal that the notes of an answer may take together.
 
 
-def answer_lines(
-    case: Case | None, checks: Checks | None, body: Iterable[str], notes: Sequence[str], more: str
-) -> Iterator[str]:
-    """Yield what people read first: whether the model applies, of what contact, its numbers, doubts and notes in short."""
-    if checks is not None:
-        yield checks.first_line or checks.headline
-    if case and case.title:
-        yield case.title
-    yield from body
-    yield from _doubts(checks, notes)
-    yield more
-
-
-def all_lines(
-    case: Case | None,
+def report_lines(
     result: BaseSolution | StribeckCurve,
+    case: Case | None,
     checks: Checks | None,
     body: Iterable[str],
     notes: Sequence[str],
-    over: str | None = None,
+    more: str = "",
 ) -> Iterator[str]:
-    """Yield everything: whether the model applies if it does not, inputs and groups that do not vary, numbers, all notes."""
-    if checks is not None and checks.first_line:
-        yield checks.first_line
-    if case and case.title:
-        yield case.title
-    contact, groups = result.contact, result.groups
+    """Yield whether the model applies, of what contact, numbers and notes: in short and how to see ``more``, or everything."""
+    first = "" if checks is None else checks.first_line or (checks.headline if more else "")
+    yield from filter(None, (first, case.title if case else ""))
+    yield from () if more else _constant(result)
+    yield from body
+    if more:
+        yield from _doubts(checks, notes)
+        yield more
+        return
+    yield from (f"Note: {note}" for note in notes if checks is None or not checks.covers(note))
+    yield from conversion_lines(case)
+
+
+def _constant(result: BaseSolution | StribeckCurve) -> Iterator[str]:
+    """Yield the inputs, groups and parts of the model that do not vary."""
+    contact, groups, over = result.contact, result.groups, getattr(result, "over", None)
     if contact is not None:
         rows = contact.INPUTS.quantities
         inputs = [(rows[name], value) for name, value in contact.inputs() if name != over]
@@ -63,9 +60,6 @@ def all_lines(
     model = model_words(groups, contact)
     if model:
         yield f"Model: {model}."
-    yield from body
-    yield from (f"Note: {note}" for note in notes if checks is None or not checks.covers(note))
-    yield from conversion_lines(case)
 
 
 def number_lines(numbers: Sequence[Number]) -> list[str]:
