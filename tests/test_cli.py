@@ -577,12 +577,23 @@ assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & s
 def test_solve_loads_no_more_than_it_needs(subtests):
     for tokens in [["solve", *GROUPS], ["solve", str(PDMS)]]:
         with subtests.test(tokens=tokens):
-            unneeded = {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "nicegui", "pydantic"}
+            unneeded = {
+                "matplotlib",
+                "xarray",
+                "netCDF4",
+                "pandas",
+                "pint",
+                "nicegui",
+                "pydantic",
+                "unittest",
+                "numpy.f2py.crackfortran",
+            }
             code = f"""
 import re
 import sys
-from stribeck.cli import main
-main({tokens!r})
+from stribeck.__main__ import main
+sys.argv = ["stribeck", *{tokens!r}]
+main()
 assert not {unneeded!r} & set(sys.modules)
 for name in ("special", "interpolate", "optimize", "sparse", "fft", "integrate", "stats"):
     assert f"scipy.{{name}}" not in sys.modules, name

@@ -8,12 +8,18 @@ import mmap
 import os
 import signal
 import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import LazyLoader
 from types import FrameType
 
 __all__ = ["main"]
 
 NEEDED = 500_000_000
 """Address space that loading the package, a solve and a picture take [byte]; measured are 0.47e9."""
+
+UNUSED = ("numpy.f2py", "numpy.testing")
+"""Modules that SciPy names when it is loaded and that no command uses; to load them takes a fifth of the time of a solve."""
 
 FAILED, INTERRUPTED = 1, 130
 
@@ -30,6 +36,7 @@ def main() -> int:
             "another machine.",
             FAILED,
         )
+    sys.meta_path.insert(0, _OnFirstUse)
     try:
         from stribeck.cli import main as run
     except OSError as problem:  # no file handles, or a disk that cannot be read
@@ -41,6 +48,18 @@ def main() -> int:
     if heeds:
         signal.signal(signal.SIGINT, _leave_after)
     return code
+
+
+class _OnFirstUse:
+    """Finder of those modules, which are then loaded where something in them is asked for."""
+
+    @staticmethod
+    def find_spec(name: str, path: Sequence[str] | None, target: object = None) -> ModuleSpec | None:
+        """Return where one of them is found, and None of others."""
+        spec = PathFinder.find_spec(name, path) if name in UNUSED else None
+        if spec is not None and spec.loader is not None:
+            spec.loader = LazyLoader(spec.loader)
+        return spec
 
 
 def _memory_suffices() -> bool:

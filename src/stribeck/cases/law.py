@@ -21,7 +21,6 @@ from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.forms import Form
 from stribeck.contacts.inputs import InputTable, read_inputs
-from stribeck.files.text_table import read_two_columns
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
 
@@ -138,6 +137,8 @@ def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:
     path = _file_of("surface", entries, folder)
     if path is None:
         return _lists("surface", entries)
+    from stribeck.files.text_table import read_two_columns  # slow to import, and most cases name no file
+
     rows, units = read_two_columns(path, None, {"wavenumber": "wavenumber", "density": "spectral density"})
     assert units is not None
     return rows[:, 0] * units[0], rows[:, 1] * units[1]

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stribeck._types import Array
-from stribeck.files.text_table import read_two_columns
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
@@ -106,6 +105,8 @@ class TableLaw:
         InputError
             If the file cannot be read or is no such table; the sentence names line and column.
         """
+        from stribeck.files.text_table import read_two_columns  # slow to import, and most laws have no file
+
         rows, units = read_two_columns(Path(path), PLAIN, WITH_UNITS)
         s, p = rows[:, 0], rows[:, 1]
         if units is not None:
