@@ -19,6 +19,7 @@ from figure_data import data_of, picture_of
 import stribeck as sb
 from stribeck.figures import FIGURES, PaperFigure, build, figure_names, load_figure, make_figures, style
 from stribeck.figures.build import FigureJob, column, dataset
+from stribeck.files.datasets import write_netcdf
 
 PANELS = {
     "3": "ab",
@@ -76,59 +77,50 @@ def test_each_figure_has_its_module_its_name_and_full_sentences(subtests):
 
 # --- every figure ---
 
-
-def test_the_data_of_each_figure_are_described_and_converged(subtests):
-    for name in FIGURES:
-        with subtests.test(name=name):
-            data = data_of(name)
-            assert data.attrs["figure"] == name
-            assert data.attrs["source"] == f"stribeck {sb.__version__}"
-            assert data.attrs["finding"].endswith(".") and any(letter.isdigit() for letter in data.attrs["finding"])
-            assert 0 < data.attrs["error_estimate"] <= data.attrs["rtol"] <= 1e-6
-            for variable in data.variables.values():
-                assert variable.attrs["units"] and len(variable.attrs["long_name"]) > 5
-                assert variable.size > 0
-                if variable.dtype.kind == "f":
-                    assert not np.isinf(variable.values).any()
-                    assert np.isfinite(variable.values).any()
+QUICKLY_SOLVED = {"5", "6", "8"}
+each_figure = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICKLY_SOLVED)) for name in FIGURES]
+)
 
 
-def test_each_figure_comes_back_from_its_file_as_it_was(subtests, tmp_path_factory):
-    for name in FIGURES:
-        with subtests.test(name=name):
-            tmp_path = tmp_path_factory.mktemp("case")
-            from stribeck.files.datasets import write_netcdf
-
-            write_netcdf(data_of(name), tmp_path / f"{name}.nc")
-            found = opened(tmp_path / f"{name}.nc")
-            xr.testing.assert_identical(found, data_of(name))
-            assert found.attrs == data_of(name).attrs
-
-
-def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance(subtests):
-    for name in FIGURES:
-        with subtests.test(name=name):
-            figure = picture_of(name)
-            titles = [axes.get_title(loc="left") for axes in figure.axes]
-            letters = {title[1] for title in titles if title.startswith("(")}
-            assert set(PANELS[name]) <= letters
-            words = "".join(text.get_text() for text in figure.texts).replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
-            for part in (f"Figure {name}: ", load_figure(name).title, f"stribeck {sb.__version__}, rtol 1e-"):
-                assert part.replace(" ", "") in words
+@each_figure
+def test_the_data_of_each_figure_are_described_and_converged(name):
+    data = data_of(name)
+    assert data.attrs["figure"] == name
+    assert data.attrs["source"] == f"stribeck {sb.__version__}"
+    assert data.attrs["finding"].endswith(".") and any(letter.isdigit() for letter in data.attrs["finding"])
+    assert 0 < data.attrs["error_estimate"] <= data.attrs["rtol"] <= 1e-6
+    for variable in data.variables.values():
+        assert variable.attrs["units"] and len(variable.attrs["long_name"]) > 5
+        assert variable.size > 0
+        if variable.dtype.kind == "f":
+            assert not np.isinf(variable.values).any()
+            assert np.isfinite(variable.values).any()
 
 
-def test_nothing_of_a_figure_is_cut_off_by_its_edge(subtests):
-    for name in FIGURES:
-        with subtests.test(name=name):
-            figure = picture_of(name)
-            box, (width, height) = figure.get_tightbbox(figure.canvas.get_renderer()), figure.get_size_inches()
-            assert box.x0 > 0 and box.x1 < width
-            assert box.y0 > 0 and box.y1 < height
+@each_figure
+def test_each_figure_comes_back_from_its_file_as_it_was(name, tmp_path):
+    write_netcdf(data_of(name), tmp_path / f"{name}.nc")
+    found = opened(tmp_path / f"{name}.nc")
+    xr.testing.assert_identical(found, data_of(name))
+    assert found.attrs == data_of(name).attrs
+
+
+@each_figure
+def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance_and_nothing_is_cut_off(name):
+    figure = picture_of(name)
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    letters = {title[1] for title in titles if title.startswith("(")}
+    assert set(PANELS[name]) <= letters
+    words = "".join(text.get_text() for text in figure.texts).replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
+    for part in (f"Figure {name}: ", load_figure(name).title, f"stribeck {sb.__version__}, rtol 1e-"):
+        assert part.replace(" ", "") in words
+    box, (width, height) = figure.get_tightbbox(figure.canvas.get_renderer()), figure.get_size_inches()
+    assert box.x0 > 0 and box.x1 < width
+    assert box.y0 > 0 and box.y1 < height
 
 
 def test_the_same_numbers_give_the_same_bytes_also_from_the_file(tmp_path):
-    from stribeck.files.datasets import write_netcdf
-
     data = data_of("5")
     write_netcdf(data, tmp_path / "data.nc")
     for i, source in enumerate((data, opened(tmp_path / "data.nc"))):
@@ -221,32 +213,25 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
     assert opened(tmp_path / "figure_3.nc").attrs["fingerprint"] == "another"
 
 
-@pytest.mark.parametrize(
-    ("changed", "of_3", "of_4"),
-    [
-        ("numerics/newton.py", True, True),
-        ("asymptotics/smooth/hydrodynamic.py", True, True),
-        ("figures/build.py", True, True),
-        ("figures/article/figure_3.py", True, False),
-        ("figures/article/figure_4.py", False, True),
-        ("figures/style.py", False, False),
-        ("cli/solving.py", False, False),
-        ("plot/curve.py", False, False),
-        ("fits/fit.py", False, False),
-    ],
-)
-def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch, changed, of_3, of_4):
+def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch):
     package = Path(build.__file__).parents[1]
     shutil.copytree(package, tmp_path / "stribeck", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(build, "__file__", str(tmp_path / "stribeck" / "figures" / "build.py"))
     figures = [Fakes().figure(name) for name in ("3", "4")]
     before = [build.fingerprint(figure) for figure in figures]
     assert before[0] != before[1]
-    with (tmp_path / "stribeck" / changed).open("r+") as file:  # of a source that exists
-        file.seek(0, os.SEEK_END)
-        file.write("\n# another word\n")
-    after = [build.fingerprint(figure) for figure in figures]
-    assert [a != b for a, b in zip(after, before, strict=True)] == [of_3, of_4]
+    for changed, expected in (
+        ("numerics/newton.py", [True, True]),
+        ("figures/article/figure_3.py", [True, False]),
+        ("figures/style.py", [False, False]),
+        ("plot/curve.py", [False, False]),
+    ):
+        with (tmp_path / "stribeck" / changed).open("r+") as file:  # of a source that exists
+            file.seek(0, os.SEEK_END)
+            file.write("\n# another word\n")
+        after = [build.fingerprint(figure) for figure in figures]
+        assert [a != b for a, b in zip(after, before, strict=True)] == expected
+        before = after
 
 
 def test_ctrl_c_keeps_what_is_finished(fakes, tmp_path):
@@ -428,6 +413,7 @@ def test_the_command_names_what_it_wrote_and_what_it_kept(fakes, tmp_path, capsy
 
 def test_the_command_makes_all_figures_into_the_folder_figures(fakes, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(style, "save", lambda figure, path: path.touch())
     assert call(capsys, "figures").code == 0
     assert fakes.computed == list(FIGURES)
     assert len(os.listdir(tmp_path / "figures")) == 3 * len(FIGURES)
@@ -465,6 +451,7 @@ def test_the_exit_code_of_the_command_says_what_went_wrong(fakes, tmp_path, caps
     assert (answer.code, answer.err) == (130, "stribeck: Interrupted at figure 4; none was finished.\n")
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_the_finished_figures_of_the_command_outside_this_process(tmp_path):
     def heed():
         signal.signal(signal.SIGINT, signal.default_int_handler)
