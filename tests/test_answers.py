@@ -13,7 +13,12 @@ LINES, COLUMNS = 25, 80
 
 CASES = sorted({*EXAMPLES.glob("*.toml"), HEAVY} - {SWEEP})
 
-FAST = ("pdms_cylinder", "wiper_blade")  # The regimes and curves of the others take minutes together
+FAST = ("pdms_cylinder", "wiper_blade")  # The states, regimes and curves of the others take minutes together
+
+
+def unless(path, *names):
+    """Return the mark of a slow test, none for cases of these names."""
+    return [pytest.mark.slow] * (path.stem not in names)
 
 
 def height(text):
@@ -21,31 +26,29 @@ def height(text):
     return sum(max(1, math.ceil(len(line) / COLUMNS)) for line in text.splitlines())
 
 
-def test_the_answer_of_a_state_fits_a_screen(subtests, capsys):
-    for path in CASES:
-        with subtests.test(path=path):
-            answer = call(capsys, "solve", path)
-            first, *_, last = answer.out.splitlines()
-            assert (answer.code, answer.err) == (0, "")
-            assert height(answer.out) <= LINES, answer.out
-            assert re.match("The model applies|Outside the range of the model", first)
-            assert re.search(
-                r"^(Boundary|Mixed|Hydrodynamic) lubrication at .*: friction .* The minimum film is ", answer.out, re.M
-            )
-            assert last.startswith("-v shows ")
-            contact = sb.load_case(path).contact
-            state = sb.solve(contact, rtol=sb.load_case(path).rtol)
-            files = state.to_dict()
-            for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
-                film, stated = files[name], files[f"{name}_error"]
-                [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
-                assert contact.replace(radius=shown).radius == pytest.approx(film, rel=1e-2)
-                assert contact.replace(radius=error).radius == pytest.approx(stated, rel=0.06)  # two digits
-                assert stated < 0.2 * film
+@pytest.mark.parametrize("path", [pytest.param(path, marks=unless(path, *FAST, "heavy", "pdms_ball")) for path in CASES])
+def test_the_answer_of_a_state_fits_a_screen(capsys, monkeypatch, path):
+    solve, states = sb.solve, []
+    monkeypatch.setattr(sb, "solve", lambda *given, **options: states.append(solve(*given, **options)) or states[-1])
+    answer = call(capsys, "solve", path)
+    first, *_, last = answer.out.splitlines()
+    assert (answer.code, answer.err) == (0, "")
+    assert height(answer.out) <= LINES, answer.out
+    assert re.match("The model applies|Outside the range of the model", first)
+    assert re.search(r"^(Boundary|Mixed|Hydrodynamic) lubrication at .*: friction .* The minimum film is ", answer.out, re.M)
+    assert last.startswith("-v shows ")
+    [state] = states
+    files, contact = state.to_dict(), state.contact
+    for label, name in (("central film", "central_film_thickness"), ("minimum film", "minimum_film_thickness")):
+        film, stated = files[name], files[f"{name}_error"]
+        [shown, error] = re.findall(rf"^ {label} +(\S+ \S+m) +± (\S+ \S+m)$", answer.out, re.M)[0]
+        assert contact.replace(radius=shown).radius == pytest.approx(film, rel=1e-2)
+        assert contact.replace(radius=error).radius == pytest.approx(stated, rel=0.06)  # two digits
+        assert stated < 0.2 * film
 
 
 COMMANDS = [
-    pytest.param(command, path, id=f"{command}-{path.stem}", marks=[pytest.mark.slow] * (path.stem not in FAST))
+    pytest.param(command, path, id=f"{command}-{path.stem}", marks=unless(path, *FAST))
     for command in ("regimes", "curve")
     for path in CASES
 ]
@@ -75,9 +78,11 @@ def test_a_note_that_repeats_a_doubt_is_not_said_twice(capsys, tmp_path):
 # --- progress without a terminal ---
 
 
-def test_a_fit_and_a_comparison_say_how_far_they_are(capsys, monkeypatch):
+def test_a_fit_and_a_comparison_say_how_far_they_are(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
-    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+    data, case = tmp_path / "data.csv", tmp_path / "case.toml"
+    case.write_text(case_text({}, fit={"free": '["boundary_friction"]'}))
+    data.write_text("speed (mm/s),friction\n0.1,0.6\n1,0.5\n10,0.2\n")
     for command, last in (("fit", "intervals"), ("compare", r"greenwood-tripp: \w+")):
         answer = call(capsys, command, data, case)
         lines = [line for line in answer.err.splitlines() if line.startswith("stribeck: ")]
