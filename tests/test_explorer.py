@@ -283,7 +283,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
             rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
             (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")
             (tmp_path / "law.csv").write_text("separation, pressure\n0, 1\n1, 0.4\n2, 0.1\n4.5, 1e-3\n")
-            for _ in range(1 if kind[1] in SURFACES else 12):  # the law of a spectrum takes half a second
+            for _ in range(1 if kind[1] in SURFACES else 4):  # the law of a spectrum takes half a second
                 case = sb.load_case(some_case(random, kind, tmp_path))
                 shown = inputs.from_case(case)
                 same_contact(shown.contact, case.contact)
@@ -434,12 +434,12 @@ def test_a_law_that_is_chosen_presses_as_the_one_before_at_a_gap_of_one_h_rms():
 
 
 def test_what_many_changes_lead_to_goes_through_link_and_saved_case(subtests):
-    for start in ["cylinder", "ball", "surface", "ball on a surface"]:
+    for start in ["cylinder", "ball", "ball on a surface"]:
         with subtests.test(start=start):
             random = np.random.default_rng([16, *map(ord, start)])
             first = BALL if "ball" in start else START
             first = with_scan(first, read_scan("profile.csv", PROFILE)) if "surface" in start else first
-            for _ in range(2 if "surface" in start else 12):  # the law of a surface takes half a second
+            for _ in range(1 if "surface" in start else 5):  # the law of a surface takes half a second
                 shown = first.replace(
                     abscissa=random.choice(["speed", "hersey"]).item(),
                     definition=random.choice(sorted(charts.DEFINITION_LABELS)).item(),
@@ -713,7 +713,7 @@ def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
 
 
 def test_the_numbers_are_those_of_solve_within_their_errors(subtests):
-    for name in ["speed", "load_group", "roughness", "boundary_friction"]:
+    for name in ["speed", "load_group"]:
         with subtests.test(name=name):
             model = Answerer()
             model(START)
@@ -1090,6 +1090,7 @@ def test_ctrl_c_ends_it_with_exit_code_0(monkeypatch, capsys):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     monkeypatch.setitem(curves.SOLVED_ROWS, "point", curves.SolvedRows(33, 5, 1e-2))
     contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact

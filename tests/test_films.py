@@ -13,8 +13,10 @@ from stribeck.fluids import Barus, Carreau, DowsonHigginson, EffectiveMedium, Ey
 from stribeck.solids import Layer, hysteresis_friction
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
-FILMS = [row for row in REFERENCE["b_d_e"] if row["case"] != "rigid barus"]
-THINNING = [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]
+LAWS = REFERENCE["b_d_e"][1:] + [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]
+FILMS = REFERENCE["a_free_exit"][::4] + [*{row["case"]: row for row in LAWS}.values()] + REFERENCE["combined"]
+"""Speeds of a free exit, a film of each law, and one of all together; the golden values have many more."""
+
 SHARE = {"phi_x+phi_s v=+1": 1.0, "phi_x+phi_s v=-1": 0.0}
 """Of the substrate in the roughness."""
 
@@ -70,7 +72,7 @@ def differences(solution, row):
 
 
 def test_a_film_is_that_of_an_independent_solver(subtests):
-    for row in REFERENCE["a_free_exit"] + FILMS + THINNING + REFERENCE["combined"]:
+    for row in FILMS:
         with subtests.test(row=row):
             solution = sb.solve(groups_of(row), cavitation="exit", **parts_of(row))
             assert max(differences(solution, row).values()) < 1e-6
@@ -133,6 +135,7 @@ def test_the_cavity_of_a_film_that_forms_anew_is_at_its_pressure():
     assert -0.05 < outside[1] < 0
 
 
+@pytest.mark.slow
 def test_a_cavity_is_found_by_its_length_where_its_inlet_is_thin():
     """With the length among the unknowns the inlet moved by many of its own lengths: no state was found in 80 s."""
     groups, parts = (
@@ -193,10 +196,10 @@ def test_the_dry_smooth_contact_on_a_layer_is_refused():
 
 
 def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
-    groups, speeds = sb.Groups(1e-4, 0.1, 1e-4), np.geomspace(1e-5, 1e-2, 31)
+    groups, speeds = sb.Groups(1e-4, 0.1, 1e-4), np.geomspace(1e-5, 1e-2, 7)
     for keywords in ({"fluid": sb.fluids.Carreau(0.02, 0.5)}, {"cavitation": "exit"}):
         curve = sb.stribeck_curve(groups, speed=speeds, **keywords)
-        for k in (3, 15, 22):
+        for k in (1, 4):
             single = sb.solve(curve.solutions[k].groups)
             assert curve.solutions[k].central_gap == pytest.approx(single.central_gap, rel=1e-6)
 
@@ -229,6 +232,7 @@ def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_pane
             assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
 
 
+@pytest.mark.slow
 def test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error():
     """Newton's iteration ended without a state, as its steps were rounding before they were as small as asked for."""
     groups, fluid = (
@@ -286,20 +290,27 @@ def test_a_panel_ends_where_the_last_path_through_an_effective_medium_closes():
     assert found.viscous_published == pytest.approx(6.6999643e-4, rel=1e-6)  # of its mesh with each panel halved
 
 
-def test_films_thinner_than_the_fits_of_the_flow_go_are_found(subtests):
+@pytest.mark.parametrize(
+    ("groups", "factors"),
+    [
+        ((2.6949457220654108e-05, 0.06175178558197661, 0.05545762765741805), (3.7662695662678196, 1 / 9, 0.0)),
+        ((4.0837349565841006e-07, 9.629742446055435, 0.3084386977268185), (1.7234322688164228, 1.0, 0.0)),
+        pytest.param(
+            (5.5325382930505305e-09, 5.56342839683587, 0.15559433591820415),
+            (2.1941613361280785, 1 / 9, 0.5),
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_films_thinner_than_the_fits_of_the_flow_go_are_found(groups, factors):
     """By the fits themselves, phi_x falls to its floor within 1e-3 of the gap and transport falls with it: none was found."""
-    for groups, alpha, gamma, share in [
-        ((2.6949457220654108e-05, 0.06175178558197661, 0.05545762765741805), 3.7662695662678196, 1 / 9, 0.0),
-        ((4.0837349565841006e-07, 9.629742446055435, 0.3084386977268185), 1.7234322688164228, 1.0, 0.0),
-        ((5.5325382930505305e-09, 5.56342839683587, 0.15559433591820415), 2.1941613361280785, 1 / 9, 0.5),
-    ]:
-        with subtests.test(groups=groups, alpha=alpha, gamma=gamma, share=share):
-            speed, load, kappa = groups
-            factors = sb.fluids.PatirCheng(alpha, gamma, share)
-            found = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-4, flow_factors=factors)
-            assert any("fits above" in note for note in found.notes)
-            finer = sb.solve(sb.Groups(speed, load, kappa * load), rtol=1e-6, flow_factors=factors)
-            assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
+    speed, load, kappa = groups
+    found, finer = (
+        sb.solve(sb.Groups(speed, load, kappa * load), rtol=rtol, flow_factors=sb.fluids.PatirCheng(*factors))
+        for rtol in (1e-4, 1e-6)
+    )
+    assert any("fits above" in note for note in found.notes)
+    assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
 
 
 def test_a_curve_takes_few_states_where_its_film_passes_the_end_of_the_fits_of_the_flow():
@@ -441,13 +452,8 @@ GROUPS = sb.Groups(1e-3, 0.1, 1e-4)
 TIGHT = 1e-8
 
 
-def change(groups=GROUPS, **parts):
-    """Return by how much parts change the central film, relatively."""
-    plain = sb.solve(groups, cavitation=parts.get("cavitation", "none"), rtol=TIGHT)
-    return sb.solve(groups, rtol=TIGHT, **parts).central_gap / plain.central_gap - 1
-
-
 def test_a_law_that_does_little_leaves_the_film_of_the_article(subtests):
+    plain = sb.solve(GROUPS, rtol=TIGHT).central_gap
     for parts, power in [
         (lambda e: {"fluid": sb.fluids.Barus(e)}, 1.0),
         (lambda e: {"fluid": sb.fluids.Roelands(e, 1.0, 1e-3)}, 1.0),
@@ -462,7 +468,7 @@ def test_a_law_that_does_little_leaves_the_film_of_the_article(subtests):
         (lambda e: {"solid": sb.solids.StandardLinearSolid(e, 2.0)}, 1.0),
     ]:
         with subtests.test(parts=parts, power=power):
-            small, smaller = (change(**parts(e)) for e in (0.03, 0.01))
+            small, smaller = (sb.solve(GROUPS, rtol=TIGHT, **parts(e)).central_gap / plain - 1 for e in (0.03, 0.01))
             assert 1e-6 < abs(small) < 0.1
             assert np.log(small / smaller) / np.log(3) == pytest.approx(power, abs=0.12)
 
@@ -503,7 +509,7 @@ def test_the_drag_of_the_fluid_is_linear_in_the_sliding_about_that_of_rolling():
 
 
 def test_the_central_film_is_that_of_moes_within_two_per_cent(subtests):
-    for M, L in [(5, 2.5), (5, 5), (20, 2.5)]:
+    for M, L in [(5, 5), (20, 2.5)]:
         with subtests.test(M=M, L=L):
             rigid, elastic = 3 / M, 2.621 * M**-0.2
             stiff, both = 1.287 * L ** (2 / 3), 1.311 * M ** (-1 / 8) * L**0.75
@@ -519,20 +525,22 @@ def test_the_central_film_is_that_of_moes_within_two_per_cent(subtests):
 
 
 def test_the_hysteresis_friction_is_what_the_walls_of_the_fluid_lack(subtests):
-    for solid in [sb.solids.StandardLinearSolid(0.3, 4.0), sb.solids.Prony((1.0, 0.1), (1.5, 1.0))]:
-        for cavitation in ["none", "exit"]:
-            with subtests.test(solid=solid, cavitation=cavitation):
-                solution = sb.solve(GROUPS, solid=solid, cavitation=cavitation, rtol=1e-7)
-                x = np.concatenate(
-                    [-np.geomspace(1e3, 4, 40_001), np.linspace(-4, 4, 400_001)[1:-1], np.geomspace(4, 1e3, 40_001)]
-                )
-                pressure = solution.profile(x).pressure
-                moment = np.sum(0.5 * (x[1:] * pressure[1:] + x[:-1] * pressure[:-1]) * np.diff(x)) / (np.pi / 2)
-                moment += 1e3**2 * (pressure[-1] - pressure[0]) / (np.pi / 2)  # beyond, pressures fall as the third power
-                friction = solution.friction(1.0, 1.0)
-                lacking = -(friction.lower - friction.upper) / (2 * np.sqrt(0.1)) - moment
-                assert solution.hysteresis_friction > 0.01
-                assert solution.hysteresis_friction == pytest.approx(lacking, rel=1e-4)
+    for solid, cavitation in [
+        (sb.solids.StandardLinearSolid(0.3, 4.0), "none"),
+        (sb.solids.Prony((1.0, 0.1), (1.5, 1.0)), "exit"),
+    ]:
+        with subtests.test(solid=solid, cavitation=cavitation):
+            solution = sb.solve(GROUPS, solid=solid, cavitation=cavitation, rtol=1e-7)
+            x = np.concatenate(
+                [-np.geomspace(1e3, 4, 40_001), np.linspace(-4, 4, 400_001)[1:-1], np.geomspace(4, 1e3, 40_001)]
+            )
+            pressure = solution.profile(x).pressure
+            moment = np.sum(0.5 * (x[1:] * pressure[1:] + x[:-1] * pressure[:-1]) * np.diff(x)) / (np.pi / 2)
+            moment += 1e3**2 * (pressure[-1] - pressure[0]) / (np.pi / 2)  # beyond, pressures fall as the third power
+            friction = solution.friction(1.0, 1.0)
+            lacking = -(friction.lower - friction.upper) / (2 * np.sqrt(0.1)) - moment
+            assert solution.hysteresis_friction > 0.01
+            assert solution.hysteresis_friction == pytest.approx(lacking, rel=1e-4)
 
 
 def test_the_hysteresis_friction_is_that_of_the_slope_and_within_a_loose_tolerance(subtests):
@@ -570,7 +578,7 @@ def test_a_substrate_that_moves_backwards_on_a_body_with_memory_is_refused():
 
 
 def test_films_of_power_laws_grow_with_the_speed_as_the_inlet_says(subtests):
-    for exponent in [0.3, 0.5, 0.7]:
+    for exponent in [0.3, 0.7]:
         with subtests.test(exponent=exponent):
             films = []
             for speed in (1e-6, 1e-5):

