@@ -188,11 +188,11 @@ def test_states_between_the_solved_ones_of_a_curve_have_its_law():
 
 def test_curves_over_load_and_roughness_and_at_rest_follow_a_law():
     law = GreenwoodTripp()
-    for over in ({"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}):
-        for speed in (1e-4, 0.0):
-            curve = sb.stribeck_curve(**over, speed=speed, points=5, law=law)
-            last = sb.solve(curve.solutions[-1].groups, rtol=1e-8)
-            assert curve.observable("central_gap")[-1] == pytest.approx(last.central_gap, rel=1e-5)
+    over_load, over_roughness = {"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}
+    for over, speed in ((over_load, 1e-4), (over_roughness, 0.0)):
+        curve = sb.stribeck_curve(**over, speed=speed, points=5, law=law)
+        last = sb.solve(curve.solutions[-1].groups, rtol=1e-8)
+        assert curve.observable("central_gap")[-1] == pytest.approx(last.central_gap, rel=1e-5)
 
 
 def test_a_phase_diagram_is_made_with_a_law():

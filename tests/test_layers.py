@@ -92,7 +92,7 @@ def test_the_film_converges_with_the_reach():
 
 
 @EVERY_LAYER
-@pytest.mark.parametrize("finer", [{"width": 0.125}, {"order": 16}])
+@pytest.mark.parametrize("finer", [{"order": 16}])
 def test_finer_panels_change_nothing(name, finer):
     solve = LAYERS[name]
     xi = np.linspace(-6, 6, 97)

@@ -24,41 +24,37 @@ def sizes(found, wall):
 
 
 def test_the_minimum_of_an_overtaken_substrate_is_that_of_the_cylinder_that_overtakes_in_its_place(subtests):
-    for ratio in [0.5, 4.0]:
-        for cavitation in ["none", "exit"]:
-            with subtests.test(ratio=ratio, cavitation=cavitation):
-                there = curve(GROUPS, ratio, 1e-5, cavitation=cavitation)
-                back = curve(GROUPS, -ratio, 1e-5, cavitation=cavitation)
-                assert sizes(back, "lower") == pytest.approx(sizes(there, "upper"), rel=1e-4, abs=1e-6)
-                minimum, size = back.minimum, sizes(there, "upper")
-                i = int(np.argmin(size))
-                assert there.values[i - 1] < minimum.value < there.values[i + 1]
-                mirrored = (
-                    sb.solve(minimum.solution.groups, slide_to_roll=ratio, cavitation=cavitation).friction(DRY, BETA).upper
-                )
-                assert -minimum.friction == pytest.approx(mirrored, abs=1e-7)
-                assert abs(minimum.friction) <= size.min()
-                if ratio == 0.5:  # the pull of the film outweighs the sliding: friction changes its sign
-                    assert minimum.friction == 0
-                for name in ("boundary_end", "equal_shares"):
-                    marks = there.landmark(name), back.landmark(name)
-                    assert marks[1].value == pytest.approx(marks[0].value, rel=marks[0].error + marks[1].error)
-                    assert marks[1].friction < 0 < marks[0].friction
-
-
-def test_the_minimum_of_a_ball_goes_by_the_size_too(subtests):
-    for ratio in [-0.5, -4.0]:
-        with subtests.test(ratio=ratio):
-            found = curve(BALL, ratio, 1e-3)
-            size, minimum = np.abs(found.friction.total), found.minimum
+    for ratio, cavitation in [(0.5, "none"), (4.0, "exit")]:
+        with subtests.test(ratio=ratio, cavitation=cavitation):
+            there = curve(GROUPS, ratio, 1e-5, cavitation=cavitation)
+            back = curve(GROUPS, -ratio, 1e-5, cavitation=cavitation)
+            assert sizes(back, "lower") == pytest.approx(sizes(there, "upper"), rel=1e-4, abs=1e-6)
+            minimum, size = back.minimum, sizes(there, "upper")
             i = int(np.argmin(size))
-            assert 0 < i < len(found) - 1 and found.values[i - 1] < minimum.value < found.values[i + 1]
-            assert abs(minimum.friction) <= 1.001 * size.min()
-            assert (minimum.friction == 0) is (ratio == -0.5)
-            dry = found.friction.asperities
-            assert dry == pytest.approx(-DRY * found.observable("contact_load_share"), rel=1e-12)
-            read = friction(BALL, DRY, BETA, slide_to_roll=ratio)
-            assert read == pytest.approx(sb.solve(BALL, slide_to_roll=ratio, rtol=1e-4).friction(DRY, BETA).total, rel=2e-3)
+            assert there.values[i - 1] < minimum.value < there.values[i + 1]
+            mirrored = sb.solve(minimum.solution.groups, slide_to_roll=ratio, cavitation=cavitation).friction(DRY, BETA).upper
+            assert -minimum.friction == pytest.approx(mirrored, abs=1e-7)
+            assert abs(minimum.friction) <= size.min()
+            if ratio == 0.5:  # the pull of the film outweighs the sliding: friction changes its sign
+                assert minimum.friction == 0
+            for name in ("boundary_end", "equal_shares"):
+                marks = there.landmark(name), back.landmark(name)
+                assert marks[1].value == pytest.approx(marks[0].value, rel=marks[0].error + marks[1].error)
+                assert marks[1].friction < 0 < marks[0].friction
+
+
+def test_the_minimum_of_a_ball_goes_by_the_size_too():
+    ratio = -0.5
+    found = curve(BALL, ratio, 1e-3)
+    size, minimum = np.abs(found.friction.total), found.minimum
+    i = int(np.argmin(size))
+    assert 0 < i < len(found) - 1 and found.values[i - 1] < minimum.value < found.values[i + 1]
+    assert abs(minimum.friction) <= 1.001 * size.min()
+    assert minimum.friction == 0
+    dry = found.friction.asperities
+    assert dry == pytest.approx(-DRY * found.observable("contact_load_share"), rel=1e-12)
+    read = friction(BALL, DRY, BETA, slide_to_roll=ratio)
+    assert read == pytest.approx(sb.solve(BALL, slide_to_roll=ratio, rtol=1e-4).friction(DRY, BETA).total, rel=2e-3)
 
 
 def test_derivatives_off_the_atlas_are_those_of_the_friction_with_its_sign():

@@ -159,7 +159,10 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+DEAR = ("stiffening, ends", "rough cylinder, mean gap, ends")
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in DEAR)) for name in CASES])
 def test_a_ball_with_parts_is_that_of_finite_volumes(name):
     parts, flow = CASES[name]
     ours = sb.solve(sb.Groups(SPEED, LOAD, KAPPA * LOAD ** (2 / 3), geometry="point"), rtol=1e-4, **parts)

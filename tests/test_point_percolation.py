@@ -7,7 +7,7 @@ import stribeck as sb
 # Speed, load, kappa, alpha.  By what two degrees tell, J_published was wrong by 3 to 8 times what was stated.
 STATES = [
     (1.71e-6, 0.3725, 0.0813, 2.53),
-    (2.74e-5, 2.323, 0.2019, 1.137),
+    pytest.param((2.74e-5, 2.323, 0.2019, 1.137), marks=pytest.mark.slow),
     pytest.param((3.5e-6, 0.1961, 8.35e-3, 2.9), marks=pytest.mark.slow),
 ]
 OF_MINIMA = ("minimum_gap", "minimum_gap_on_axis", "minimum_radius", "minimum_angle")
@@ -34,9 +34,14 @@ def test_where_the_flow_closes_errors_are_within_what_is_stated(at):
     assert max(found.values()) <= 1, found
 
 
-def test_the_place_of_a_flat_minimum_is_within_what_is_stated(subtests):
+@pytest.mark.parametrize(
+    "at",
+    [
+        pytest.param((0.00037472, 1.531, 0.015222, 1.7032), marks=pytest.mark.slow),
+        (0.0039558, 0.78557, 0.085869, 3.0964),
+    ],
+)
+def test_the_place_of_a_flat_minimum_is_within_what_is_stated(at):
     """Two meshes agreed by chance: angle and radius were off by 1.5 and 1.2 times what was stated."""
-    for at in [(0.00037472, 1.531, 0.015222, 1.7032), (0.0039558, 0.78557, 0.085869, 3.0964)]:
-        with subtests.test(at=at):
-            found = missed(ball(*at, 1e-4), ball(*at, 1e-5), minima=True)
-            assert max(found.values()) <= 1, found
+    found = missed(ball(*at, 1e-4), ball(*at, 1e-5), minima=True)
+    assert max(found.values()) <= 1, found

@@ -181,7 +181,7 @@ def test_python_refuses_what_a_number_cannot_be():
 
 
 def test_a_file_and_the_command_refuse_what_a_number_cannot_be(tmp_path, capsys):
-    path = tmp_path / "case.toml"
+    path, called = tmp_path / "case.toml", set()
 
     def text(value):
         if isinstance(value, list):
@@ -199,7 +199,8 @@ def test_a_file_and_the_command_refuse_what_a_number_cannot_be(tmp_path, capsys)
         ]
         path.write_text("\n".join(lines))
         said = refusal(sb.load_case, path)
-        if value is True:  # the command says what the file does
+        if value is True and place.table not in called:  # the command says what the file does
+            called.add(place.table)
             answer = call(capsys, "solve", path)
             assert (answer.code, answer.out) == (2, "")
             assert answer.err == "".join(f"stribeck: {line}\n" for line in said.splitlines())

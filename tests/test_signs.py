@@ -137,7 +137,7 @@ def broken(found, contact):
 
 
 def test_no_random_contact_has_a_sign_that_physics_forbids(subtests):
-    for seed in range(16):
+    for seed in range(8):
         with subtests.test(seed=seed):
             contact, given = drawn(np.random.default_rng(seed))
             contact = contact.replace(**given)
@@ -149,7 +149,7 @@ def test_a_drop_whose_friction_is_lost_in_a_thick_film_that_breaks_is_refused():
     contact = sb.PointContact.from_groups(
         groups, radius=0.01, modulus=2e6, viscosity=0.1, alpha=2.0, beta=0.05, boundary_friction=0.7
     )
-    for radii in (1.05, 2.0, 5.0, 20.0):
+    for radii in (1.05, 20.0):
         try:
             found = sb.solve(contact.replace(cavitation="exit", wetted_radius=radii * contact.hertz.half_width), rtol=1e-2)
         except sb.SolveError as failure:

@@ -285,9 +285,9 @@ def test_a_saturated_point_counts_as_dead_and_roughness_does_not():
 
 def test_rough_surfaces_have_no_spikes(subtests):
     for points in [(64, 64), (1024,)]:
-        for hurst in [0.3, 0.8, 1.0]:
+        for hurst in [0.3, 1.0]:
             with subtests.test(points=points, hurst=hurst):
-                for seed in range(6):
+                for seed in range(2):
                     for surface in (SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), SelfAffine(1e-6, 1e4, 1e6, hurst)):
                         assert synthetic_topography(surface, points, 1e-6, seed).repaired().notes == ()
 

@@ -154,7 +154,7 @@ def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
 
 
 def test_our_minimum_is_that_of_the_solver(subtests):
-    for load, kappa in [(1e-3, 1e-4), (1e-3, 1e-2), (0.1, 1e-3), (0.5, 1e-4), (0.5, 1e-2)]:
+    for load, kappa in [(1e-3, 1e-2), (0.1, 1e-3), (0.5, 1e-4)]:
         with subtests.test(load=load, kappa=kappa):
             found = minimum(kappa, load)
             groups = sb.Groups(1.0, load, kappa * load)

@@ -8,7 +8,7 @@ import pytest
 import stribeck as sb
 from stribeck.asymptotics import OutOfRangeWarning, hydrodynamic, load_sharing, perturbation, uniform, wedge
 
-STATES = 120
+STATES = 60
 SPEEDS = np.geomspace(1e-9, 1e2, 12)
 
 
@@ -43,7 +43,7 @@ def test_the_contact_share_is_good_to_the_stated_error_down_to_a_millionth(solve
     groups, solutions = solved
     share = np.array([s.contact_load_share for s in solutions])
     counts = share > 1e-6
-    assert counts.sum() > 60
+    assert counts.sum() > 30
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutOfRangeWarning)  # where nothing is left of the share
         found = load_sharing.contact_load_share(groups)

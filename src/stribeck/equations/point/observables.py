@@ -25,7 +25,7 @@ from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import tails
 from stribeck.equations.point.films import OutsideFilm
-from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
+from stribeck.equations.point.minimum import Minimum, centre, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
 
@@ -79,9 +79,12 @@ def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
         "central_pressure": at_centre(mesh, contact + y.fluid),
         "offset": y.offset,
     }
-    lowest: Minimum = minimum_gap(mesh, h)
+    # At rest the gap is that of rings, whose descent to the centre would end in the rounding of its angle.
+    is_central = equations.speed == 0.0 and not h.argmin(axis=1).any()
+    lowest: Minimum = centre(mesh, h) if is_central else minimum_gap(mesh, h)
+    on_axis = lowest if is_central else minimum_on_axis(mesh, h)
     found |= {"minimum_gap": lowest.gap, "minimum_radius": lowest.radius, "minimum_angle": lowest.angle}
-    return found | {"minimum_gap_on_axis": minimum_on_axis(mesh, h).gap} | friction(equations, y, contact)
+    return found | {"minimum_gap_on_axis": on_axis.gap} | friction(equations, y, contact)
 
 
 def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, float]:
