@@ -69,8 +69,8 @@ def test_other_models_are_refused_and_not_covered():
 
 
 def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_made_from():
-    found = certify(60, seed=60221)
-    assert found.errors.shape == (60, len(quantities(TABLES[0])))
+    found = certify(30, seed=60221)
+    assert found.errors.shape == (30, len(quantities(TABLES[0])))
     for errors in (found.friction, found.film):
         assert np.median(errors) < 1e-5
         assert errors.max() < 1e-4
@@ -79,17 +79,17 @@ def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_ma
 
 
 def test_where_fluid_and_asperities_share_the_load_it_is_as_good():
-    found = certify(40, seed=141421, mixed=True)
+    found = certify(16, seed=141421, mixed=True)
     assert ((found.contact_share > 0.009) & (found.contact_share < 0.991)).all()
-    assert found.speed.size == 40
+    assert found.speed.size == 16
     assert np.median(found.errors) < 1e-6
     assert np.nanmax(found.errors) < 3e-5
 
 
 def test_heavy_loads_on_nearly_smooth_surfaces_are_as_good():
     rng = np.random.default_rng(23606)
-    load = np.array([1.0, 1.0, *np.exp(-np.exp(rng.uniform(np.log(1e-6), np.log(0.01), 6)))])
-    kappa, speed = np.exp(rng.uniform(np.log(2e-6), np.log(1e-3), 8)), np.exp(rng.uniform(np.log(1e-12), np.log(1e-3), 8))
+    load = np.array([1.0, *np.exp(-np.exp(rng.uniform(np.log(1e-6), np.log(0.01), 3)))])
+    kappa, speed = np.exp(rng.uniform(np.log(2e-6), np.log(1e-3), 4)), np.exp(rng.uniform(np.log(1e-12), np.log(1e-3), 4))
     found = compare(
         speed, load, kappa, np.array([solved(TABLES[0].name, state) for state in zip(speed, load, kappa, strict=True)])
     )
@@ -107,8 +107,8 @@ def test_the_certificate_holds_on_five_thousand_states(mixed):
 
 @pytest.mark.quick
 def test_rest_is_that_of_the_solver(subtests):
-    for kappa in [1e-5, 0.03, 30.0]:
-        for load in [0.3, 0.999, 1.0]:
+    for kappa in [1e-5, 30.0]:
+        for load in [0.3, 1.0]:
             with subtests.test(kappa=kappa, load=load):
                 groups = sb.Groups(0.0, load, kappa * load)
                 state = sb.solve(groups, rtol=1e-8)
@@ -122,7 +122,7 @@ def test_rest_is_that_of_the_solver(subtests):
 
 
 def test_smooth_contacts_are_those_of_the_solver(subtests):
-    for speed in [1e-12, 1e-5, 3.0, 1e6]:
+    for speed in [1e-12, 3.0]:
         with subtests.test(speed=speed):
             groups = sb.Groups(speed, 0.4, 0.0)
             state = sb.solve(groups, rtol=1e-7, on_failure="return")
@@ -153,8 +153,8 @@ def of_law(row, speed, load, kappa):
 def test_another_table_is_within_its_stated_error_of_states_it_was_not_made_from(subtests):
     for row in [row for row in TABLES[1:] if row.geometry == "line"]:
         with subtests.test(row=row):
-            found = certify(8, seed=77, mixed=True, row=row)
-            assert found.speed.size == 8
+            found = certify(4, seed=77, mixed=True, row=row)
+            assert found.speed.size == 4
             assert found.friction.max() < row.error
             assert np.median(found.friction) < 1e-4
             assert found.film.max() < 3 * row.error
@@ -459,7 +459,7 @@ def test_a_curve_knows_what_it_does_not_have(contact):
 
 def test_a_phase_diagram_read_off_it_is_the_solved_one():
     pytest.importorskip("xarray")
-    grid = {"load": (0.01, 0.3), "roughness": [0.0, 1e-6, 1e-4], "speed": (1e-8, 1.0), "points": {"load": 2, "speed": 13}}
+    grid = {"load": 0.1, "roughness": [0.0, 1e-6, 1e-4], "speed": (1e-8, 1.0), "points": {"speed": 9}}
     solved, read = (sb.phase_diagram(**grid, rtol=1e-6, method=method) for method in ("solver", "atlas"))
     assert set(read.variables) == set(solved.variables)
     assert (read.outcome == "CONVERGED").all()

@@ -188,30 +188,11 @@ def test_good_input_gets_past_the_checks(capsys, folder):
 # --- in a process of its own ---
 
 
-@pytest.mark.parametrize(
-    ("tokens", "sentence"),
-    [
-        (["curve", "case.toml", "-o", "old.nc"], "old.nc exists already and is kept"),
-        (["curve", "bad.toml", "-o", "new.nc"], "speed = '1 m' is a length"),
-        (["solve", "binary.toml"], "is not text"),
-        (["curve", "case.toml", "--points", "0"], "points = 0"),
-    ],
-)
-def test_the_installed_command_refuses_in_the_same_way(folder, tokens, sentence):
-    (folder / "bad.toml").write_text(case_text({"speed": '"1 m"'}))
-    before = contents(folder)
-    answer = call_outside(*tokens, cwd=folder)
-    assert (answer.code, answer.out) == (2, "")
-    assert sentence in answer.err
-    assert answer.err.count("\n") == 1
-    assert contents(folder) == before
-
-
 def test_a_tolerance_that_rounding_forbids_is_refused_with_that_sentence(folder):
     # Known only after the solve, so that this one is not stopped before it.
     tokens = ["solve", "--groups", "1e-12", "1", "0", "--rtol", "1e-9", "--plot", "new.png"]
     answer = call_outside(*tokens, cwd=folder)
-    assert answer.code == 2
+    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
     assert re.search(r"rtol = 1e-09 cannot be reached at .*Double precision keeps the error", answer.err)
     assert not (folder / "new.png").exists()
 
@@ -234,7 +215,7 @@ WORDS = st.one_of(
 @pytest.mark.quick
 @example(tokens=["--help", "--help"])  # a NameError in cyclopts 4.0
 @given(tokens=st.lists(WORDS, max_size=7))
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
     before = contents(folder)
     answer = call(capsys, *tokens)
@@ -248,7 +229,7 @@ def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
 
 
 @given(value=st.one_of(st.text(max_size=12), st.floats(), st.integers(), st.booleans(), st.lists(st.integers())))
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_value_of_any_key_gets_a_sentence_and_never_a_traceback(capsys, folder, value):
     text = {True: "true", False: "false"}.get(value, repr(value)) if isinstance(value, bool) else repr(value)
     for table, key in (("contact", "radius"), ("contact", "alpha"), ("curve", "points"), ("solver", "rtol")):

@@ -25,10 +25,10 @@ TEXT = {page: page.read_text() for page in PAGES}
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
-def blocks(language):
-    """Return the code blocks of all pages in one language, as parameters of a test."""
+def blocks(language, slow=()):
+    """Return the code blocks of all pages in one language, as parameters of a test, slow ones of some pages."""
     return [
-        pytest.param(code, id=f"{page.stem}-{i}")
+        pytest.param(code, id=f"{page.stem}-{i}", marks=[pytest.mark.slow] * (page.stem in slow))
         for page, text in TEXT.items()
         for i, (found, code) in enumerate(FENCE.findall(text))
         if found == language
@@ -43,7 +43,11 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("code", blocks("python"))
+SOLVING = {"batch", "checks", "cli", "contact_laws", "fitting", "for_engineers"}
+"""Pages whose code takes seconds a block: `make docs` runs it."""
+
+
+@pytest.mark.parametrize("code", blocks("python", SOLVING))
 def test_a_python_block_runs(code, desk):
     exec(compile(code, "block", "exec"), {"__name__": "block"})
 

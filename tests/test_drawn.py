@@ -55,12 +55,13 @@ KINDS = (
 )
 
 
-def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path_factory):
+def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path):
+    results["solution"].plot(tmp_path / "solution.svg")
+    assert b"<svg" in (tmp_path / "solution.svg").read_bytes()
     for kind in KINDS:
         with subtests.test(kind=kind):
-            tmp_path = tmp_path_factory.mktemp("case")
             found = results[kind]
-            assert found.plot(tmp_path / f"{kind}.svg").axes
+            assert found.plot().axes
             axes = Figure().subplots()
             assert found.plot(ax=axes) is axes.figure
             assert axes.has_data() and axes.get_xlabel()

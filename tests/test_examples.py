@@ -10,10 +10,12 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "examples"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
-SLOW = {"fit_a_ball", "transition_of_a_ball"}
+FAST = {"film_that_ends", "force_balance", "formula_against_solver", "one_state", "stribeck_curve", "surface_to_contact_law"}
+"""The others take seconds each."""
+
 EACH = pytest.mark.parametrize(
     "path",
-    [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem in SLOW)) for path in EXAMPLES],
+    [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem not in FAST)) for path in EXAMPLES],
 )
 
 
@@ -38,12 +40,12 @@ def results():
     return run
 
 
-@EACH
-def test_an_example_fits_on_a_page_and_says_what_it_answers(path):
-    text = path.read_text()
-    assert len(text.splitlines()) <= 60
-    docstring = ast.get_docstring(ast.parse(text))
-    assert all(words in docstring for words in ("theory.md", "Runs in"))
+def test_an_example_fits_on_a_page_and_says_what_it_answers():
+    for path in EXAMPLES:
+        text = path.read_text()
+        assert len(text.splitlines()) <= 60, path
+        docstring = ast.get_docstring(ast.parse(text))
+        assert all(words in docstring for words in ("theory.md", "Runs in")), path
 
 
 @EACH
@@ -78,12 +80,14 @@ def test_the_fluid_carries_two_thirds_in_the_mixed_state(results):
     assert fields.gap.min() == pytest.approx(state.minimum_gap, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_roughness_and_load_move_the_minimum_most(results):
     _, exponents = results("what_moves_the_minimum")
     assert exponents["roughness"] == pytest.approx((0.879, 1.350), abs=2e-3)
     assert exponents["load"] == pytest.approx((-0.491, 0.361), abs=2e-3)
 
 
+@pytest.mark.slow
 def test_viscosity_and_speed_are_one_variable(results):
     _, exponents = results("what_moves_the_minimum")
     assert exponents["viscosity"] == pytest.approx((0, -1), abs=1e-5)
@@ -112,6 +116,7 @@ def test_the_profile_of_the_example_shows_what_it_was_made_with(results):
         assert abs(found - made) < 2 * error < 0.5 * made
 
 
+@pytest.mark.slow
 def test_half_the_roughness_of_a_seal_does_more_than_twice_the_viscosity(results):
     _, curves = results("levers_of_a_seal")
     friction = {name: float(np.interp(0.1, curve.values, curve.friction)) for name, curve in curves.items()}
@@ -119,6 +124,7 @@ def test_half_the_roughness_of_a_seal_does_more_than_twice_the_viscosity(results
     assert curves["oil twice as viscous"].minimum.value == pytest.approx(curves["as it is"].minimum.value / 2, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_fit_of_the_example_finds_what_the_data_were_made_with(results):
     module, fit = results("fit_measured_friction")
     assert fit.converged
@@ -127,6 +133,7 @@ def test_the_fit_of_the_example_finds_what_the_data_were_made_with(results):
         assert low < truth < high < 1.5 * low
 
 
+@pytest.mark.slow
 def test_a_rougher_contact_changes_its_regimes_at_higher_speeds(results):
     _, diagram = results("regimes_of_a_contact")
     for name in ("speed_at_5_percent_fluid", "speed_at_minimum"):
@@ -141,6 +148,7 @@ def test_the_formula_of_the_example_errs_by_what_is_stated(results):
     assert worst < 0.072
 
 
+@pytest.mark.slow
 def test_perssons_law_keeps_the_plateau_where_the_exponential_law_loses_it(results):
     _, curves = results("two_laws_at_heavy_load")
     assert curves["exponential"].friction[0] == pytest.approx(0.70, abs=0.005)
@@ -148,6 +156,7 @@ def test_perssons_law_keeps_the_plateau_where_the_exponential_law_loses_it(resul
     assert curves["Persson"].solutions[0].minimum_gap > 0
 
 
+@pytest.mark.slow
 def test_each_change_of_the_fluid_moves_the_state_as_an_independent_solver_says(results):
     _, curves = results("what_the_fluid_changes")
     friction = {name: curve.friction[4] for name, curve in curves.items()}  # at speed 1e-3
@@ -169,16 +178,19 @@ def test_the_transition_of_a_ball_lies_in_the_reported_range_at_every_roughness(
     assert (min(ratios), max(ratios)) == pytest.approx((3.08, 3.59), rel=0.03)
 
 
-def test_an_effect_is_as_large_as_its_example_shows(subtests, results):
-    for name, observable, plain, other in [
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "observable", "plain", "other"),
+    [
         ("film_that_ends", "minimum_gap", 0.01088, 0.01146),
         ("oil_that_stiffens", "minimum_gap", 0.01146, 0.01299),
         ("fluid_that_thins", "minimum_gap", 0.01146, 0.00347),
         ("flow_between_asperities", "contact_load_share", 0.31245, 0.26326),
         ("rubber_on_a_base", "minimum_gap", 0.00574, 0.00466),
         ("both_surfaces_move", "friction", 0.0400, 0.0103),
-    ]:
-        with subtests.test(name=name, observable=observable, plain=plain, other=other):
-            _, curves = results(name)
-            read = [curve.friction if observable == "friction" else curve.observable(observable) for curve in curves.values()]
-            assert [each[12] for each in read] == pytest.approx([plain, other], rel=3e-3)
+    ],
+)
+def test_an_effect_is_as_large_as_its_example_shows(results, name, observable, plain, other):
+    _, curves = results(name)
+    read = [curve.friction if observable == "friction" else curve.observable(observable) for curve in curves.values()]
+    assert [each[12] for each in read] == pytest.approx([plain, other], rel=3e-3)

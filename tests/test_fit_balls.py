@@ -169,6 +169,7 @@ def test_fits_of_balls_find_the_numbers_of_their_fluid(name):
         assert getattr(found.contact, each) == pytest.approx(getattr(contact, each), rel=0.02), each
 
 
+@pytest.mark.slow
 def test_the_stated_error_of_friction_of_a_fluid_that_thins_covers_the_solved_one_and_is_near_the_tolerance(tmp_path):
     ball = {"geometry": '"point"', "load": '"1 N"', "speed": '"10 mm/s"', "roughness": '"0.3 um"', "viscosity": '"0.5 Pa*s"'}
     path = tmp_path / "ball.toml"

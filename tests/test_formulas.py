@@ -24,8 +24,8 @@ from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
 from stribeck.asymptotics import formula as formulas
 
 SEED = 60913
-STATES = 6
-LANDMARK_STATES = 3
+STATES = 3
+LANDMARK_STATES = 2
 """States in range at which a formula is judged; few for what needs a whole curve over the speed."""
 
 SPAN = {"speed": (1e-10, 1e8), "load": (1e-8, 0.9), "relative_roughness": (1e-6, 1e3)}
@@ -320,9 +320,9 @@ def test_the_scan_knows_the_formulas_of_the_table_and_no_other():
 
 # --- the range ---
 
-SPEEDS = (0.0, 1e-12, 1e-2, 3.0, 1e280)
-LOADS = (1e-5, 0.1, 1.0, 30.0)
-KAPPAS = (0.0, 1e-200, 1e-3, 0.5, 1e280)
+SPEEDS = (0.0, 1e-12, 3.0, 1e280)
+LOADS = (1e-5, 0.1, 30.0)
+KAPPAS = (0.0, 1e-200, 1e-3, 1e280)
 
 
 def anywhere(geometry):
