@@ -20,6 +20,7 @@ from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
 from stribeck.solver.point.estimate import Pair
+from stribeck.solver.point.level import predicted
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
@@ -201,9 +202,8 @@ class _BallSteps:
         """Return a state from those along a line, from cold where that fails."""
         moving = [(s, each) for s, each in line if isinstance(each.work, Pair)]
         weights = steady_weights([s for s, _ in moving], 0.0, MAX_AMPLIFICATION)
-        states = [each for _, each in moving[len(moving) - len(weights) :]]
-        several = list(zip(weights.tolist(), states, strict=True)) if len(states) > 1 else []
-        return solve_from(line[-1][1], groups, self.rtol, several)
+        levels = [each.work.fine for _, each in moving[len(moving) - len(weights) :]]
+        return solve_from(line[-1][1], groups, self.rtol, predicted(weights, levels) if len(levels) > 1 else None)
 
     def kept(self, state: PointState) -> PointState:
         """Return the state without the factors that fill the memory."""

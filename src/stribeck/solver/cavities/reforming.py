@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
+from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.estimate import Pair
@@ -45,20 +45,17 @@ def refine_reforming(
 
 
 def follow_reforming(
-    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
+    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, prediction: Unknowns | None = None
 ) -> Pair | None:
     """Return the state of other groups from a neighbour, on its meshes if they serve; None if the iteration fails."""
-    # Of the states in ``line`` that predict this one, only those that cavitate like the neighbour count.
-    model, is_cavitated_film = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, CavitatedSystem)
-    if any(isinstance(each.fine.equations, CavitatedSystem) is not is_cavitated_film for _, each in line):
-        line = ()
-    if is_cavitated_film:
-        found = follow(speed, law, neighbour, rtol, line)
+    model = neighbour.fine.resolution.model
+    if isinstance(neighbour.fine.equations, CavitatedSystem):
+        found = follow(speed, law, neighbour, rtol, prediction)
         if found is None or is_cavitated(found):
             return found
         return _refine_full_film(speed, law, found.fine.relabelled(full_model(model)), rtol, model)
     full = full_model(model)
-    found = follow(speed, law, neighbour.relabelled(full), rtol, [(weight, each.relabelled(full)) for weight, each in line])
+    found = follow(speed, law, neighbour.relabelled(full), rtol, prediction)
     if found is None or not found.outcome.ok:
         return None
     if found.fine.unknowns.fluid.min() >= model.cavity_pressure:

@@ -75,6 +75,10 @@ class Path(ABC):
         first, *_, last = self.expansions[0], *self.expansions
         return min(first, last, key=lambda one: float(abs(one.coordinate - s)))
 
+    def last_states(self, upwards: bool) -> Sequence[Any]:
+        """Return the states from which the path grows."""
+        return [self.expansions[-1 if upwards else 0]]
+
     def places(self, parts: Array) -> Array:
         """Return coordinates at parts of all intervals, and the last one."""
         starts, lengths = self.coordinates[:-1], np.diff(self.coordinates)
@@ -120,7 +124,9 @@ def follow(
             step = min(left, MAX_LOG_STEP, max(MIN_LOG_STEP, path.step_length(upwards, rtol)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= (1 + HALF_DIGITS) * step else 0.5 * left
-            while isinstance(new := problem.solve(_next_coordinate(here, end, step, upwards), [here]), Outcome):
+            while isinstance(
+                new := problem.solve(_next_coordinate(here, end, step, upwards), path.last_states(upwards)), Outcome
+            ):
                 step /= STEP_GROWTH
                 if step < MIN_LOG_STEP:
                     break

@@ -1,13 +1,14 @@
 r"""A path of states along one coordinate whose observables are known with their slopes: Hermite interpolation between them.
 
 Between two states each observable is the polynomial through the values and slopes of the six states around: of its logarithm
-if it is positive in all states, of the load shares the logarithm of their ratio.  The error is that of the polynomial through
-the four nearest, which is larger.
+if it keeps its sign in all states, of the load shares the logarithm of their ratio.  The error is that of the polynomial
+through the four nearest, which is larger.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -53,8 +54,12 @@ class KnotProblem(PathProblem, Protocol):
         """Columns of the two load shares, whose sum is one."""
 
     @property
-    def positive(self) -> Flags:
-        """Which observables are never negative."""
+    def one_signed(self) -> Flags:
+        """Which observables never change their sign."""
+
+    @property
+    def summands(self) -> tuple[int, int]:
+        """Columns of an observable of one sign, and of another one that is smoother in the sum of both."""
 
     @property
     def controlled(self) -> Flags:
@@ -86,9 +91,14 @@ class HermitePath(Path):
         at, slope = weights_through(self.coordinates[first : last + 1], s)
         values, slopes = (np.stack([getattr(knot, name) for knot in knots]) for name in ("values", "slopes"))
         found = at @ values + slope @ slopes
-        keeps: Flags = np.logical_and(self.problem.positive, (values > 0).all(axis=0))
+        same_sign = (values > 0).all(axis=0) | (values < 0).all(axis=0)
+        keeps: Flags = np.logical_and(self.problem.one_signed, same_sign)
         with np.errstate(all="ignore"):
-            found[:, keeps] = np.exp(at @ np.log(values[:, keeps]) + slope @ (slopes[:, keeps] / values[:, keeps]))
+            logs = at @ np.log(np.abs(values[:, keeps])) + slope @ (slopes[:, keeps] / values[:, keeps])
+            one, other = self.problem.summands
+            found[:, other] += found[:, one]
+            found[:, keeps] = np.sign(values[0, keeps]) * np.exp(logs)
+            found[:, other] -= found[:, one]
             one, other = self.problem.shares
             if keeps[one] and keeps[other]:
                 ratio = at @ np.log(values[:, one] / values[:, other])
@@ -157,6 +167,10 @@ class HermitePath(Path):
         """The solved states."""
         return self.knots
 
+    def last_states(self, upwards: bool) -> Sequence[Knot]:
+        """Return the last two states, whose slopes predict the next as well as four states would."""
+        return self.knots[-2:] if upwards else self.knots[:2]
+
     def with_state(self, new: Knot) -> HermitePath:
         """Return the path with one more state, beyond its ends or between others."""
         return replace(self, knots=tuple(sorted([*self.knots, new], key=lambda knot: knot.coordinate)))
@@ -173,8 +187,10 @@ class HermitePath(Path):
         return float(lengths[k]) * min(max(growth, 1 / STEP_GROWTH), STEP_GROWTH)
 
     def intervals_to_halve(self, rtol: float, is_whole: bool) -> list[int]:
-        """Return the numbers of the intervals whose error is larger than allowed, once all states around them are there."""
-        return [k for k in range(len(self.knots) - 1) if self.excess(k, rtol) > 1.0] if is_whole else []
+        """Return the numbers of the intervals whose error is larger than allowed, once states on both sides are there."""
+        count = len(self.knots) - 1
+        tested = range(count) if is_whole else sorted({1, count - 2}) if count >= WINDOW else []
+        return [k for k in tested if self.excess(k, rtol) > 1.0]
 
     def excess(self, k: int, rtol: float) -> float:
         """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""

@@ -52,6 +52,14 @@ class Pair:
         """Return the pair without the operators and factors that fill the memory."""
         return replace(self, coarse=self.coarse.without_operators(), fine=self.fine.without_operators())
 
+    def with_factors_of(self, other: Pair) -> Pair:
+        """Return the pair with the factors of another one if this lies on the same meshes."""
+        levels = [(self.coarse, other.coarse), (self.fine, other.fine)]
+        if any(a.resolution != replace(b.resolution, model=a.resolution.model) for a, b in levels):
+            return self
+        coarse, fine = (replace(a, iterated=replace(a.iterated, preconditioner=b.iterated.preconditioner)) for a, b in levels)
+        return replace(self, coarse=coarse, fine=fine)
+
     @property
     def total(self) -> float:
         """Largest error over its scale among the observables that a tolerance limits."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,13 +13,14 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, FrictionWithin, identity_error, observables
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.settings import HALF_DIGITS, NEGLIGIBLE, SHARE
+from stribeck.numerics.hermite import weights_through
+from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
-from stribeck.solver.point.sensitivity import derivatives_along
+from stribeck.solver.point.level import Level, predicted
+from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, ReadState
 
@@ -27,7 +29,14 @@ __all__ = ["BallKnots", "KnotState"]
 UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle")  # Observables whose errors are absolute
 COLUMNS = (*OBSERVABLES, *WITHIN)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))
-POSITIVE = [OBSERVABLES[i] for i in SHARES] + ["central_gap", "central_pressure", "minimum_gap", "minimum_gap_on_axis"]
+ONE_SIGNED = [OBSERVABLES[i] for i in SHARES] + [
+    "central_gap",
+    "central_pressure",
+    "minimum_gap",
+    "minimum_gap_on_axis",
+    "J_pcx",
+]
+SUMMANDS = (OBSERVABLES.index("J_pcx"), OBSERVABLES.index("J_published"))
 ABSOLUTE = [COLUMNS.index(name) for name in UNIT_SCALED]
 OFFSET = COLUMNS.index("offset")
 WHOLE = [COLUMNS.index(name) for name in ("J_balanced", "J_published")]
@@ -37,17 +46,34 @@ CutOffs = Callable[[float], tuple[float, float]]
 """Logarithms of the radii up to which friction by shear and by pressure counts, at a coordinate."""
 
 
+@dataclass(frozen=True, eq=False)
+class BallKnot(Knot):
+    """A solved state of a ball with the derivatives of its unknowns, by which neighbours are predicted."""
+
+    change: Unknowns | None  # None at rest
+
+    def moved(self, step: float) -> Level:
+        """Return the state moved by a step of the coordinate along its derivatives, the gap by its logarithm."""
+        level: Level = self.state.work.fine
+        assert self.change is not None
+        y, change = level.unknowns, self.change
+        gap = y.gap * np.exp(step * change.gap / y.gap)
+        there = Unknowns(gap, y.fluid + step * change.fluid, y.offset + step * change.offset)
+        return replace(level, iterated=replace(level.iterated, unknowns=there))
+
+
 class BallKnots:
     """The states of a ball along one coordinate: ``groups_at(s)`` gives the groups there."""
 
     path = HermitePath
     names = COLUMNS
     shares = SHARES
-    positive = np.isin(COLUMNS, POSITIVE)
+    one_signed = np.isin(COLUMNS, ONE_SIGNED)
+    summands = SUMMANDS
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None) -> None:
         self.groups_at, self.rtol, self.cut_offs = groups_at, rtol, cut_offs
-        self.neighbours = Neighbours(SHARE * rtol)
+        self.last: PointState | None = None  # The last state, with its factors
         self.failure: PointState | None = None
 
     @cached_property
@@ -90,41 +116,69 @@ class BallKnots:
 
         return measured
 
-    def solve(self, s: float, near: Sequence[Knot] = ()) -> Knot | Outcome:
+    def solve(self, s: float, near: Sequence[BallKnot] = ()) -> BallKnot | Outcome:
         """Return the state at a coordinate with its slopes."""
-        state: PointState = self.neighbours.at(self.groups_at(s))
+        groups = self.groups_at(s)
+        state = self._solved(s, near)
         if not state.outcome.ok:
             self.failure = state
             return state.outcome
-        groups = self.groups_at(s)
+        self.last, change = None, None
         if groups.speed > 0:
+            self.last = state
             measure = self._measure(s)
             fine = state.work.fine
             values = dict(state.values) | {
                 name: value for name, value in measure(fine.equations, fine.unknowns).items() if name in WITHIN
             }
-            slopes = {
-                name: float(column[0])
-                for name, column in derivatives_along(
-                    state, {"along": lambda step: self.groups_at(s + step)}, measure, HALF_DIGITS
-                ).items()
-            }
+
+            def moved(step: float) -> Groups:
+                return self.groups_at(s + step)
+
+            [change] = changes_along(state, {"along": moved}, HALF_DIGITS).values()
+            slopes = measured_change(state, moved, change, measure)
         else:
             values = dict(state.values)
             step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
             ends = [solve_cold(self.groups_at(s + each), self.rtol) for each in (step, -step)]
             slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * step) for name in values}
+            values["J_pcx"] = slopes["J_pcx"] = 0.0  # it has nothing but rounding, which has no sign
         errors = state.errors
         row, slope = (np.array([each.get(name, 0.0) for name in COLUMNS]) for each in (values, slopes))
         behind, here, ahead = self.units(np.array([s - 1, s, s + 1]))  # powers of what varies
         growth = 0.5 * np.log(ahead / behind)
-        return Knot(
+        return BallKnot(
             s,
             row / here,
             (slope - growth * row) / here,
             np.array([errors.get(name, errors["J_balanced"]) for name in COLUMNS]),
             state.without_factors(),
+            change,
         )
+
+    def _solved(self, s: float, near: Sequence[BallKnot]) -> PointState:
+        """Return the state at a coordinate, from the polynomial through neighbours and their slopes."""
+        groups, rtol = self.groups_at(s), SHARE * self.rtol
+        if not near:
+            return solve_cold(groups, rtol)
+        if any(knot.change is None for knot in near):
+            return solve_from(near[-1].state, groups, rtol)
+        pairs = {
+            knot: knot.state.work if self.last is None else knot.state.work.with_factors_of(self.last.work) for knot in near
+        }
+
+        def nearness(knot: BallKnot) -> tuple[int, bool]:
+            return -round(abs(knot.coordinate - s) / MIN_LOG_STEP), pairs[knot] is not knot.state.work
+
+        *others, neighbour = sorted(near, key=nearness)
+        for knots in ([*others, neighbour], [neighbour]):
+            at, along = (each[0] for each in weights_through(np.array([knot.coordinate for knot in knots]), np.array([s])))
+            if np.abs(at).sum() <= MAX_AMPLIFICATION:
+                break
+        # Moved along its derivatives a state adds these, less itself.
+        levels = [knot.moved(step) for knot, step in zip(knots, along.tolist(), strict=True)]
+        prediction = predicted([*(at - 1.0), *np.ones(len(knots))], [*(knot.state.work.fine for knot in knots), *levels])
+        return solve_from(replace(neighbour.state, work=pairs[neighbour]), groups, rtol, prediction)
 
     def states_at(self, path: HermitePath, places: Array) -> Iterator[PointState]:
         """Yield the states at coordinates, read off the path."""
@@ -133,7 +187,7 @@ class BallKnots:
 
     def release(self) -> None:
         """Forget the factors of the last state, which fill the memory."""
-        self.neighbours.release()
+        self.last = None
 
     def solved_at(self, path: HermitePath, s: float, rtol: float | None = None) -> PointState:
         """Return the state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""

@@ -125,6 +125,13 @@ PROBLEMS: dict[Cavitation, tuple[type[Equations], Callable[..., Iterated]]] = {
 }
 
 
+def predicted(weights: Sequence[float] | Array, levels: Sequence[Level]) -> Unknowns | None:
+    """Return the weighted sum of states on the mesh of the last, None where some cavitate by other equations than others."""
+    if len({type(level.equations) for level in levels}) > 1:
+        return None
+    return extrapolate_levels(weights, levels, levels[-1].mesh)
+
+
 def extrapolate_levels(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:
     """Return the weighted sum of states on a mesh, in the logarithms of their gaps, the pressures and the offsets."""
     parts = [transfer(level.unknowns, level.mesh, mesh, level.equations.least) for level in levels]

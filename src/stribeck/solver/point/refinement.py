@@ -8,7 +8,6 @@ with the finer one of before, unless panels are split first, where their fields 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -49,7 +48,7 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.estimate import Pair, pair_of
-from stribeck.solver.point.level import PROBLEMS, Level, extrapolate_levels, solve_level, transfer
+from stribeck.solver.point.level import PROBLEMS, Level, solve_level, transfer
 from stribeck.solver.refinement import newton_tolerance
 
 __all__ = ["follow", "holds", "is_cavitated", "refine"]
@@ -236,17 +235,17 @@ def follow(
     law: ContactLaw,
     neighbour: Pair,
     rtol: float,
-    line: Sequence[tuple[float, Pair]] = (),
+    prediction: Unknowns | None = None,
 ) -> Pair | None:
     """Return the state of other groups from a neighbour, on its meshes where they fit; None if the iteration fails.
 
-    ``line`` holds weights and states whose sum predicts this one.
+    The prediction, on the neighbour's finer mesh, is the neighbour itself by default.
     """
     rtol = max(rtol, neighbour.fine.equations.finest)
-    now, weights = neighbour.fine.resolution, [weight for weight, _ in line]
+    now, old = neighbour.fine.resolution, neighbour.coarse
     tolerance, wanted = newton_tolerance(rtol), mesh_for_neighbour(speed, law, neighbour, rtol)
     mesh = neighbour.fine.mesh
-    start = extrapolate_levels(weights, [each.fine for _, each in line], mesh) if line else neighbour.fine.unknowns
+    start = neighbour.fine.unknowns if prediction is None else prediction
     # From a guess that needs much shorter steps a film is not found sooner than from cold, if at all.
     least_part = NEGLIGIBLE if now.is_full else HALF_DIGITS
     if wanted != now:
@@ -255,27 +254,25 @@ def follow(
             return None
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
-    old = neighbour.coarse
-    guess = extrapolate_levels(weights, [each.coarse for _, each in line], old.mesh) if line else old.unknowns
+    guess = old.unknowns if prediction is None else on_other_mesh(prediction, neighbour.fine, old)
     coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, least_part)
     if not coarse.outcome.ok:
         return None
-    if not (line and not now.is_full):
-        start = guess_from_coarse(coarse, neighbour)
+    if prediction is None or now.is_full:
+        start = on_other_mesh(coarse.unknowns, old, neighbour.fine)
     fine = solve_level(now, speed, law, start, mesh, tolerance, neighbour.fine.iterated.preconditioner)
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
-def guess_from_coarse(coarse: Level, neighbour: Pair) -> Unknowns:
-    """Return the guess on the finer mesh from the coarse state plus the neighbour's coarse-fine difference."""
-    old, mesh, least = neighbour.fine.unknowns, neighbour.fine.mesh, coarse.equations.least
-    carried = transfer(coarse.unknowns, coarse.mesh, mesh, least)
-    known = transfer(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh, least)
-    fluid = np.maximum(carried.fluid + old.fluid - known.fluid, just_above(least))
+def on_other_mesh(y: Unknowns, here: Level, there: Level) -> Unknowns:
+    """Return unknowns on the mesh of one level of a neighbour from those on the mesh of its other, by how these two differ."""
+    least, other = here.equations.least, there.unknowns
+    carried, known = (transfer(each, here.mesh, there.mesh, least) for each in (y, here.unknowns))
+    fluid = np.maximum(carried.fluid + other.fluid - known.fluid, just_above(least))
     return Unknowns(
-        carried.gap * (old.gap / known.gap),
+        carried.gap * (other.gap / known.gap),
         np.where(carried.fluid <= least, least, fluid),
-        carried.offset + (old.offset - known.offset),
+        carried.offset + (other.offset - known.offset),
     )
 
 

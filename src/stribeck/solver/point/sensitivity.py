@@ -30,7 +30,7 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.state import PointState
 
-__all__ = ["GROUPS", "LOG_STEP", "derivatives_along", "state_derivatives"]
+__all__ = ["GROUPS", "LOG_STEP", "changes_along", "derivatives_along", "measured_change", "state_derivatives"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
@@ -63,12 +63,19 @@ def derivatives_along(
     state: PointState, directions: Mapping[str, Direction], measure: Measure = observables, tolerance: float = EPSILON
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions, to a relative tolerance."""
+    changes = changes_along(state, directions, tolerance)
+    columns = [measured_change(state, directions[name], change, measure) for name, change in changes.items()]
+    return {name: np.array([column[name] for column in columns]) for name in columns[0]}
+
+
+def changes_along(state: PointState, directions: Mapping[str, Direction], tolerance: float) -> dict[str, Unknowns]:
+    """Return the derivatives of the unknowns along directions, to a relative tolerance."""
     pair = state.work
     assert isinstance(pair, Pair)
     equations, y, kept = pair.fine.equations, pair.fine.unknowns, pair.fine.iterated.preconditioner
     linear = equations.linear(y)
     precondition = _preconditioner(linear, kept)
-    columns: dict[str, list[float]] = {}
+    found: dict[str, Unknowns] = {}
     for name, moved in directions.items():
         near = [_beside(equations, moved(sign * LOG_STEP)) for sign in (1.0, -1.0)]
         ahead, behind = (each.residual(y) for each in near)
@@ -82,15 +89,19 @@ def derivatives_along(
             x = _solved(linear, precondition, right, tolerance)
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
-        dy = linear.changes(x, change[0])
-        size = LOG_STEP / max(1.0, float(np.abs(dy.gap / y.gap).max()))
-        values = []
-        for sign in (1.0, -1.0):
-            each = _beside(equations, moved(sign * size))
-            values.append(measure(each, each.with_same_active_set(y.moved(dy, sign * size), y)))
-        for each_name, value in values[0].items():
-            columns.setdefault(each_name, []).append((value - values[1][each_name]) / (2 * size))
-    return {name: np.array(column) for name, column in columns.items()}
+        found[name] = linear.changes(x, change[0])
+    return found
+
+
+def measured_change(state: PointState, moved: Direction, change: Unknowns, measure: Measure = observables) -> dict[str, float]:
+    """Return the derivatives of all observables along a direction, from those of the unknowns."""
+    equations, y = state.work.fine.equations, state.work.fine.unknowns
+    size = LOG_STEP / max(1.0, float(np.abs(change.gap / y.gap).max()))
+    values = []
+    for sign in (1.0, -1.0):
+        each = _beside(equations, moved(sign * size))
+        values.append(measure(each, each.with_same_active_set(y.moved(change, sign * size), y)))
+    return {name: (value - values[1][name]) / (2 * size) for name, value in values[0].items()}
 
 
 def _preconditioner(linear: Linear, kept: Any) -> Apply:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -78,10 +78,10 @@ def solve_from(
     neighbour: PointState,
     groups: Groups,
     rtol: float = 1e-6,
-    line: Sequence[tuple[float, PointState]] = (),
+    prediction: Unknowns | None = None,
 ) -> PointState:
     """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves, or from cold if that fails."""
-    # ``line`` holds weights and states whose sum predicts this one.
+    # The prediction lies on the neighbour's finer mesh.
     check(groups, rtol)
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
@@ -97,9 +97,8 @@ def solve_from(
     warm = None
     if pair.fine.resolution.model == model:
         refined, followed = _methods(model)
-        pairs = [(weight, state.work.relabelled(model)) for weight, state in line if isinstance(state.work, Pair)]
         with suppress(MeshTooLargeError):
-            found = followed(speed, law, pair, rtol, pairs if len(pairs) == len(line) else ())
+            found = followed(speed, law, pair, rtol, prediction)
             if found is not None:
                 held = holds(found, rtol)
                 warm = _state(groups, rtol, found if held else refined(speed, law, found.fine, rtol, model, found))
