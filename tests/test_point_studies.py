@@ -40,6 +40,7 @@ def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
     assert float(found["friction_balanced"].values.ravel()[1]) == pytest.approx(alone.friction(beta=0.1).total, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_two_processes_find_what_one_does(tmp_path):
     pytest.importorskip("xarray")
     path = tmp_path / "sweep.toml"
@@ -53,12 +54,13 @@ def test_two_processes_find_what_one_does(tmp_path):
         np.testing.assert_array_equal(one[name].values, two[name].values, err_msg=name)
 
 
-def test_the_command_draws_a_ball(capsys, tmp_path):
+def test_the_command_prints_and_draws_a_ball(capsys, tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "ball.svg"
-    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "--plot", picture)
+    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "-v", "--plot", picture)
     assert answer.code == 0
-    assert f"Written: {picture}\n" in answer.out
+    for said in ("slide-to-roll ratio 1", "distance of minimum film", "central pressure", f"Written: {picture}\n"):
+        assert said in answer.out, said
     drawn = picture.read_text()
     assert "<svg" in drawn
     for said in ("film", "µm", "MPa"):
@@ -85,12 +87,3 @@ def test_the_command_solves_a_ball(capsys):
     assert found["inputs"]["slide_to_roll"] == 1.0
     assert "wetted_radius" not in found["inputs"]
     assert found["central_film_thickness"] == pytest.approx(found["central_gap"] * found["hertz_indentation"], rel=1e-12)
-
-
-def test_the_command_prints_a_ball(capsys):
-    answer = call(capsys, "solve", EXAMPLES / "rubber_ball.toml", "--rtol", "1e-3", "-v")
-    assert answer.code == 0
-    out = answer.out
-    assert "slide-to-roll ratio 1" in out
-    assert "distance of minimum film" in out
-    assert "central pressure" in out

@@ -312,7 +312,7 @@ def test_a_plane_has_no_roughness():
 @pytest.fixture(scope="module")
 def scan(tmp_path_factory):
     path = tmp_path_factory.mktemp("scan") / "scan.csv"
-    rough = on_cylinder(synthetic_topography(ROLLED, (128, 96), STEP, 102), 5e-3)
+    rough = on_cylinder(synthetic_topography(ROLLED, (96, 64), STEP, 102), 5e-3)
     x, y = np.meshgrid(*(np.arange(n) * 1.0 for n in rough.heights.shape), indexing="ij")
     table = np.stack((x.ravel(), y.ravel(), rough.heights.ravel() * 1e9), axis=1)
     np.savetxt(path, table, fmt="%.6g", delimiter=",", header="x (um),y (um),z (nm)")
