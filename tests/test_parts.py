@@ -145,7 +145,7 @@ def test_a_refusal_shows_an_example_that_the_input_may_have():
     for table in (sb.LineContact.INPUTS, sb.PointContact.INPUTS):
         for name, row in table.quantities.items():
             with pytest.raises(sb.InputError, match=re.escape(row.typical)):
-                table.checked(name, "what")
+                table.quantities[name].checked("what")
             assert row.typical_value > 0
 
 

@@ -69,7 +69,7 @@ def friction(
     -----
     Both parts are positive for surfaces of which one rests, so that its relative error is at most the larger of theirs.
     """
-    boundary_friction = LINE.checked("boundary_friction", boundary_friction)
+    boundary_friction = LINE.quantities["boundary_friction"].checked(boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     contact, viscous = friction_terms(groups, inputs, check_definition(definition))
     return reshape_to_groups(groups, boundary_friction * _sliding_factor(groups, inputs) * contact + viscous)
@@ -150,7 +150,7 @@ def friction_derivatives(
     -----
     Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
     """
-    boundary_friction = LINE.checked("boundary_friction", boundary_friction)
+    boundary_friction = LINE.quantities["boundary_friction"].checked(boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     reading = read_friction(groups, check_definition(definition), slopes=3)
     contact, viscous = slopes_of(groups, reading, inputs, definition)
@@ -255,7 +255,7 @@ def shares_and_friction(
     InputError
         If a state is outside the box of its table, or an argument is wrong.
     """
-    boundary_friction = LINE.checked("boundary_friction", boundary_friction)
+    boundary_friction = LINE.quantities["boundary_friction"].checked(boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     reading = read_friction(groups, check_definition(definition), slopes=1)
     arrays = inputs_for(groups, inputs)
@@ -270,7 +270,7 @@ def _inputs(groups: Groups, beta: float, slide_to_roll: float, wetted_radius: fl
     if not isinstance(groups, Groups):
         raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
     wanted = RULES[groups.geometry].inputs
-    given = {"beta": LINE.checked("beta", beta), "slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
+    given = {"beta": LINE.quantities["beta"].checked(beta), "slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
     usual = {"beta": beta, "slide_to_roll": PURE_SLIDING, "wetted_radius": math.inf}
     for name, value in given.items():
         if name not in wanted and np.any(np.asarray(value) != usual[name]):

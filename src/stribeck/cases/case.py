@@ -68,7 +68,7 @@ def curve_range(value: Any, over: str, inputs: InputTable = LINE) -> tuple[float
 
     def end(value: Any) -> float:
         try:
-            found = inputs.checked(over, value)
+            found = inputs.quantities[over].checked(value)
         except InputError as problem:
             raise InputError(f"in range, {problem}") from None
         if found == 0:

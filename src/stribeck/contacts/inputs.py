@@ -93,14 +93,6 @@ class InputTable:
             found[name] = f"{kind}\n    {row.description}{means}{follows}"
         return found
 
-    def checked(self, name: str, value: Any) -> float:
-        """Return one input in SI units, checked."""
-        return self.quantities[name].checked(value)
-
-    def unit(self, name: str) -> str:
-        """Return the SI unit of an input in the spelling of UDUNITS, which files use."""
-        return self.quantities[name].unit
-
     def text(self, name: str, value: float, digits: int = 4) -> str:
         """Return an input with its unit."""
         return format_si(value, self.quantities[name].dimension, digits).replace("*", "·")

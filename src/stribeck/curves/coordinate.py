@@ -91,7 +91,7 @@ class Coordinate:
     @property
     def unit(self) -> str:
         """SI unit of what varies; ``"1"`` of groups."""
-        return self.base.INPUTS.unit(self.over) if isinstance(self.base, Contact) else "1"
+        return self.base.INPUTS.quantities[self.over].unit if isinstance(self.base, Contact) else "1"
 
     def where(self, *values: float) -> str:
         """Return values in words, such as ``"speed 1 mm/s to 1 m/s"``."""

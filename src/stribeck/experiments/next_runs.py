@@ -216,7 +216,7 @@ def _places(
     """Return the states that may be measured, each with the curve that it belongs to."""
     table = fit.contacts[0].INPUTS
     given = {
-        name: None if values is None else [table.checked(name, value) for value in values]
+        name: None if values is None else [table.quantities[name].checked(value) for value in values]
         for name, values in (("speed", speeds), ("load", loads), ("viscosity", viscosities))
     }
     low, high = _speed_range(fit)
@@ -282,4 +282,4 @@ def _run(row: tuple[str, Contact, Array, float, float], covariance: Array, noise
     curve, contact, j, friction, price = row
     gain = _gain(j, covariance, noise)
     place = contact.speed, contact.load, contact.viscosity
-    return NextRun(curve, *place, friction, gain, price, errors, contact.INPUTS.unit("load"))
+    return NextRun(curve, *place, friction, gain, price, errors, contact.INPUTS.quantities["load"].unit)

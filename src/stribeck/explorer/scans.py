@@ -59,5 +59,5 @@ def with_scan(now: Inputs, scan: Scan) -> Inputs:
     tables["contact"] |= {"law": "persson"}
     tables["surface"] = scan.table | {"shape_only": True}
     _, found = law_of_file("persson", {}, {"surface": scan.table}, Path())
-    roughness = now.table.checked("roughness", scan.table["h_rms"])
+    roughness = now.table.quantities["roughness"].checked(scan.table["h_rms"])
     return now.edited({"roughness": roughness, "alpha": found["alpha"], "beta": found["beta"]}, tables)

@@ -72,6 +72,6 @@ def cheapest_levers(
             after = solve(contact.replace(**changes), rtol=rtol).friction(definition=definition).total
         except (InputError, SolveError):
             continue
-        unit = contact.INPUTS.unit(name)
+        unit = contact.INPUTS.quantities[name].unit
         found[name] = Lever(name, row.label, changes[name], factor, after, after / friction - 1, unit, row.dimension)
     return tuple(found.values())

@@ -48,7 +48,7 @@ class RegimeMargins(Tabled):
     def to_dict(self) -> dict[str, Any]:
         """Return the margins by input, ready for JSON."""
         table = INPUT_TABLES[self.geometry]
-        return {margin.name: asdict(margin) | {"unit": table.unit(margin.name)} for margin in self.margins}
+        return {margin.name: asdict(margin) | {"unit": table.quantities[margin.name].unit} for margin in self.margins}
 
     def _labelled(self) -> Labelled:
         table = INPUT_TABLES[self.geometry]
@@ -59,7 +59,7 @@ class RegimeMargins(Tabled):
             "input": ("crossing", listed([name for name, _ in found]), "1", "input that is changed"),
             "next_regime": ("crossing", listed([mark.regime for mark in marks]), "1", "regime that is entered"),
             "value": ("crossing", [mark.value for mark in marks], "see unit", "value of the input there"),
-            "unit": ("crossing", listed([table.unit(name) for name, _ in found]), "1", "SI unit of the value"),
+            "unit": ("crossing", listed([table.quantities[name].unit for name, _ in found]), "1", "SI unit of the value"),
             "factor": ("crossing", [mark.factor for mark in marks], "1", "the same over the present value"),
             "factor_low_95": ("crossing", ends[:, 0], "1", "low end of the 95 % interval of factor"),
             "factor_high_95": ("crossing", ends[:, 1], "1", "high end of the 95 % interval of factor"),

@@ -100,7 +100,7 @@ class Diagram:
 
     def unit(self, name: str) -> str:
         """Return the unit of an axis."""
-        return "1" if self.contact is None or name == "1" else self.contact.INPUTS.unit(name)
+        return "1" if self.contact is None or name == "1" else self.contact.INPUTS.quantities[name].unit
 
     def problem(self, i: int, j: int) -> tuple[Contact | Groups, Groups, float]:
         """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""

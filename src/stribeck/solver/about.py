@@ -50,7 +50,7 @@ def input_attributes(contact: Contact | None, *varied: str) -> dict[str, float |
 
 def units_of_inputs(contact: Contact) -> dict[str, str]:
     """Return the SI units of the inputs of a contact."""
-    return {name: contact.INPUTS.unit(name) for name, _ in contact.inputs()}
+    return {name: contact.INPUTS.quantities[name].unit for name, _ in contact.inputs()}
 
 
 def constant_groups(groups: Groups) -> dict[str, float]:

@@ -118,7 +118,7 @@ def read_axes(
 def checked_group(name: str, value: Any) -> float:
     """Return a group or a coefficient, checked."""
     if name in COEFFICIENTS:
-        return INPUT_TABLES["line"].checked(name, value)
+        return INPUT_TABLES["line"].quantities[name].checked(value)
     if isinstance(value, str):
         raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))

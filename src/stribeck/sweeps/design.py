@@ -224,7 +224,7 @@ def _contacts(base: Contact, forms: dict[str, Any], varying: dict[str, Array]) -
     kept = [contact.to_si() for contact in contacts]
     inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
     for name in forms:
-        inputs[name] = np.full(len(contacts), base.INPUTS.checked(name, forms[name]))
+        inputs[name] = np.full(len(contacts), base.INPUTS.quantities[name].checked(forms[name]))
     groups = [contact.groups for contact in contacts]
     columns = np.array([[getattr(each, name) for name in GROUPS] for each in groups])
     return {"inputs": inputs | varying, "groups": columns, "contacts": contacts, "physics": groups[0].physics}

@@ -86,7 +86,7 @@ class Values:
             raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
         if meaning in self.settings.inputs.quantities and meaning != "speed":
             try:
-                self.settings.inputs.checked(meaning, value)
+                self.settings.inputs.quantities[meaning].checked(value)
             except InputError as problem:
                 raise InputError(f"{where}: {problem}") from None
         return value
