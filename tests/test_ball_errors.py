@@ -15,7 +15,7 @@ def states(number):
 
 
 def test_full_films_are_as_near_as_they_state(subtests):
-    for groups in list(states(12)):
+    for groups in states(5):
         with subtests.test(groups=groups):
             coarse, fine = sb.solve(groups, rtol=1e-3), sb.solve(groups, rtol=1e-5)
             for name in OWN:
@@ -26,7 +26,6 @@ def test_full_films_are_as_near_as_they_state(subtests):
 def test_the_moment_of_the_contact_pressure_is_as_near_as_it_states_where_a_fluid_thins(subtests):
     for speed, load, roughness, time, exponent in [
         (3.42099e-4, 1.37079e-3, 4.73279e-5, 0.2528, 0.3232),
-        (4.9686e-4, 1.3832e-3, 1.29492e-5, 0.3907, 0.4259),
     ]:
         with subtests.test(speed=speed, load=load, roughness=roughness, time=time, exponent=exponent):
             groups, fluid = sb.Groups(speed, load, roughness, geometry="point"), sb.fluids.Carreau(time, exponent)

@@ -26,7 +26,7 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; those apart need a browser, valgrind or minutes."""
 
-LONG = {"point_speed", "surface_errors", "peers", "curve_bound"}
+LONG = {"batch_rate", "cost", "curve_bound", "explorer_curves", "peers", "point_speed", "surface_errors"}
 """Those that take a while even so."""
 
 APART = {
@@ -114,6 +114,7 @@ def test_a_sweep_too_small_to_be_timed_says_so(load_benchmark, monkeypatch, tmp_
         script.measure(tmp_path / "sweep.toml", tmp_path / "store", 8)
 
 
+@pytest.mark.slow
 def test_instructions_are_counted_for_all_cases(load_benchmark, run, monkeypatch):
     """Valgrind is played by Python itself, which runs each case and says that a run costs three million."""
     script = load_benchmark("instructions")

@@ -6,7 +6,6 @@ import time
 
 import numpy as np
 import pytest
-from numpydoc.docscrape import get_doc_object
 from scipy.integrate import quad
 
 import stribeck as sb
@@ -33,61 +32,7 @@ def slow(load, kappa, share):
     return sb.Groups(float(kappa**2 * np.sqrt(share / perturbation.phi(load))), load, kappa * load)
 
 
-def states_in_range(formula, random=4):
-    """Yield the corners of the range of a formula and random states within it."""
-    limits = {limit.parameter: limit for limit in formula.limits}
-    inverse, estimate = limits.get("1/relative_roughness"), limits.get("paper_fluid_share")
-    speed, roughness, load = (limits.get(name) for name in ("speed", "relative_roughness", "load"))
-    loads = (load.low, load.high) if load else (1e-4, 0.9)
-    kappas = (1 / inverse.high, 1e5) if inverse else (1e-6, roughness.high)
-    speeds = (1e-8, estimate.high) if estimate else (1e-12, speed.high) if speed else (1.0, 1.0)
-    corners = np.array(list(itertools.product((0.0, 1.0), repeat=3)))
-    inside = np.random.default_rng(20261).uniform(size=(random, 3))
-    for places in np.concatenate([corners, inside]):
-        F, kappa, s = (low * (high / low) ** place for (low, high), place in zip((loads, kappas, speeds), places, strict=True))
-        F = min(max(F, loads[0] * (1 + 1e-12)), loads[1] * (1 - 1e-12))
-        U = kappa**2 * math.sqrt(2 * s * (1 - 1e-9)) * (-math.log(F)) ** 2.5 if estimate else s if speed else 0.0
-        yield sb.Groups(U, F, kappa * F * (1 - 1e-12 if not inverse else 1 + 1e-12))
-
-
 # --- every formula ---
-
-
-def test_the_error_of_a_formula_falls_with_the_order_stated(subtests):
-    for formula in FORMULAS:
-        with subtests.test(formula=formula):
-            errors = [relative_error(formula, formula.approach(small)) for small in formula.steps]
-            assert len(errors) == 3
-            assert np.polyfit(np.log(formula.steps), np.log(np.abs(errors)), 1)[0] == pytest.approx(
-                formula.error_order, abs=0.1
-            )
-
-
-def test_the_worst_error_of_a_formula_in_its_range_is_the_one_stated(subtests):
-    for formula in FORMULAS:
-        with subtests.test(formula=formula):
-            states = list(states_in_range(formula))
-            assert all(formula.valid(state) for state in states)
-            worst = max(abs(relative_error(formula, state)) for state in states)
-            assert 0.6 * formula.worst < worst < formula.worst
-
-
-def test_a_formula_is_described_and_has_its_source(subtests):
-    for formula in FORMULAS:
-        with subtests.test(formula=formula):
-            document = get_doc_object(formula.function)
-            described = {name.strip() for entry in document["Parameters"] for name in entry.name.split(",")}
-            code = formula.function.__code__
-            assert described == set(code.co_varnames[: code.co_argcount])
-            assert document["Returns"]
-            assert ".. math::" in formula.__doc__
-            assert "Source:" in formula.__doc__
-            assert formula.source
-
-
-def test_the_formulas_have_names_of_their_own():
-    assert len({formula.name for formula in FORMULAS}) == len(FORMULAS) == 18
-    assert all(hasattr(boundary, name) for name in boundary.__all__)
 
 
 def test_arrays_of_states_and_positions_give_what_each_of_them_gives(subtests):

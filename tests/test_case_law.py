@@ -146,8 +146,6 @@ def test_every_output_names_the_law_and_its_parameters(case, capsys, tmp_path):
     assert "# contact_law: persson\n" in text and f"# contact_law_beta: {law.beta}\n" in text
     assert "central_area_fraction [1]" in text
     assert "persson contact law (alpha" in " ".join((tmp_path / "c.svg").read_text().split())
-    regimes = json.loads(call(capsys, "regimes", path, "--json").out)
-    assert (regimes["contact_law"], regimes["contact_law_parameters"]["gamma"]) == ("persson", 0.45)
 
 
 def test_groups_take_the_name_of_a_law_without_parameters(capsys):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from command_line import EXAMPLES
+from fit_data import noisy
 from matplotlib.figure import Figure
 
 import stribeck as sb
@@ -14,8 +15,8 @@ ALONG = np.linspace(-2.0, 2.0, 41)
 def results():
     contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     ball = sb.solve(sb.load_case(EXAMPLES / "rubber_ball.toml").contact, rtol=1e-2)
-    data = sb.read_measurements(EXAMPLES / "pdms_measured.csv")
-    fit = sb.fit(data, contact, free=("boundary_friction", "roughness"), intervals=False)
+    data = noisy(7, rows=8)
+    fit = sb.fit(data, contact, free=("boundary_friction",), intervals=False)
     state, rows = sb.solve(contact), np.linspace(0.05, 12.0, 60)
     return {
         "solution": state,
@@ -31,7 +32,10 @@ def results():
         "measurements": data,
         "fit": fit,
         "comparison": sb.compare(
-            data, contact, laws={"one": None, "two": sb.contact_laws.TableLaw(rows, np.exp(-rows) + 0.1 * np.exp(-2 * rows))}
+            data,
+            fit.contact,
+            free=("boundary_friction",),
+            laws={"one": None, "two": sb.contact_laws.TableLaw(rows, np.exp(-rows) + 0.1 * np.exp(-2 * rows))},
         ),
         "plan": sb.next_runs(fit, 1, speeds=["1 mm/s", "10 mm/s", "0.1 m/s"], loads=["30 N/m"]),
     }

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from command_line import EXAMPLES, call
+from command_line import call, case_text
 from fit_data import TRUE, exact, measured, noisy
 
 import stribeck as sb
@@ -56,17 +56,11 @@ def test_another_load_costs_more(found):
 
 
 def test_the_command_prints_a_table_and_draws(tmp_path, capsys):
-    picture = tmp_path / "next.png"
-    tokens = (
-        "next",
-        EXAMPLES / "pdms_measured.csv",
-        EXAMPLES / "pdms_fit.toml",
-        "--count",
-        "2",
-        "--speeds",
-        "1 mm/s",
-        "0.1",  # in SI units
-    )
+    picture, data, case = (tmp_path / name for name in ("next.png", "data.csv", "case.toml"))
+    data.write_text("speed (mm/s),friction\n0.1,0.69\n0.2,0.68\n1,0.56\n5,0.2\n")
+    speeds = "--speeds", "1 mm/s", "0.1"  # in SI units
+    case.write_text(case_text({}, fit={"free": '["boundary_friction"]'}))
+    tokens = "next", data, case, "--count", "2", *speeds
     answer = call(capsys, *tokens, "--plot", picture)
     assert (answer.code, answer.err) == (0, "")
     assert "standard errors after it" in answer.out and picture.stat().st_size > 5000

@@ -45,7 +45,7 @@ def with_settings(tmp_path, contact=TRUE, **settings):
 
 @pytest.mark.quick
 def test_data_without_noise_give_the_true_inputs_from_far_away():
-    speeds, friction = exact()
+    speeds, friction = exact(rows=12)
     far = TRUE.replace(boundary_friction=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
     found = sb.fit(
         measured(speeds, friction), far, free=["boundary_friction", "roughness", "modulus", "beta"], intervals=False
@@ -115,9 +115,9 @@ def test_intervals_of_nearly_linear_inputs_are_those_of_the_covariance(fitted):
 
 
 def test_given_errors_set_the_width_and_are_tested(tmp_path):
-    speeds, friction = exact()
+    speeds, friction = exact(rows=12)
     sigma = 0.03 * friction
-    noise = np.random.default_rng(5).standard_normal(25)
+    noise = np.random.default_rng(5).standard_normal(12)
     right = sb.fit(measured(speeds, friction + sigma * noise, sigma), TRUE, intervals=False)
     assert 0.01 < right.quality.chi_squared_probability < 0.99
     assert right.quality.messages == () and math.isnan(right.noise)
@@ -176,10 +176,10 @@ def test_a_boundary_friction_that_no_contact_has_is_named():
 
 def test_curves_share_inputs_or_have_their_own(tmp_path):
     rough = TRUE.replace(roughness="2 um")
-    (u, first), (_, second) = exact(), exact(rough)
-    noise = np.exp(0.02 * np.random.default_rng(6).standard_normal(50))
+    (u, first), (_, second) = exact(rows=12), exact(rough, rows=12)
+    noise = np.exp(0.02 * np.random.default_rng(6).standard_normal(24))
     data = measured(
-        np.tile(u, 2), np.append(first, second) * noise, curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=({}, {})
+        np.tile(u, 2), np.append(first, second) * noise, curve=[0] * 12 + [1] * 12, curves=("a", "b"), inputs=({}, {})
     )
     case = with_settings(tmp_path, free=("boundary_friction", "roughness"), per_curve=("roughness",))
     found = sb.fit(data, case, intervals=False)
