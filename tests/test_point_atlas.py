@@ -173,6 +173,7 @@ def rubber():
     )
 
 
+@pytest.mark.slow
 def test_a_real_ball_with_the_law_of_persson_is_read_off_its_table(rubber):
     ends = {"speed": (1e-3, 0.1), "points": 4, "rtol": 1e-4}
     read, exact = (sb.stribeck_curve(rubber, **ends, method=method) for method in ("atlas", "solver"))
