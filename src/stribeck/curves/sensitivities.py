@@ -21,7 +21,6 @@ from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
-from stribeck.solver.path.line_path import with_ending_of
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
@@ -84,10 +83,8 @@ def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Deriv
         named = [name for name in LINE.exponents if getattr(contact, name, None)] if groups.model != BASE_MODEL else []
         beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
         changes = {name: each for name, each in beside.items() if each is not None}
-        # Of a film that may re-form, with a cavity or without.
-        along = [(with_ending_of(state, low), with_ending_of(state, high), width) for low, high, width in changes.values()]
         rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
-        slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
+        slopes = friction_slopes(state, rubbing, contact.beta, definition, list(changes.values()))
         by_groups, through = slopes[:3], dict(zip(changes, slopes[3:].tolist(), strict=True))
     friction = solution.friction(definition=definition)
     return solution, by_groups, through, {"boundary_friction": friction.asperities, "beta": friction.fluid}

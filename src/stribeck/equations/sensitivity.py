@@ -1,4 +1,4 @@
-r"""Derivatives of the observables with respect to the groups, by implicit differentiation of the equations.
+r"""Derivatives of the observables with respect to the groups and the model, by implicit differentiation of the equations.
 
 .. math:: \frac{dy}{d\ln G} = -J^{-1} \frac{\partial R}{\partial \ln G}
 
@@ -16,46 +16,53 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.model import Model
-from stribeck.equations.line import Equations
 from stribeck.equations.observables import ROW, changes, measured
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
 from stribeck.numerics.trace import Trace
+from stribeck.quantities.outputs import ALL_NAMES
 
 GROUPS = ("speed", "load", "roughness")
-DIFFERENTIATED = ("contact_load_share", "viscous_published", "viscous_balanced")
 
 Change = tuple[Model, Model, float]
 """Two models, and the distance of the values that give them."""
 
 
 def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Array]:
-    """Return the derivatives of contact share and both viscous frictions with respect to ln(group)."""
+    """Return the derivatives of all observables with respect to ln(group), and along changes of the model."""
     equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)
-    direct, moves = np.zeros((len(GROUPS) + len(beside), len(DIFFERENTIATED))), np.zeros((len(GROUPS) + len(beside), y.size))
+    count = len(GROUPS) + len(beside)
+    found, moves = np.zeros((count, len(ALL_NAMES))), np.zeros((count, y.size))
     for k, name in enumerate(GROUPS):
         if float(getattr(state.groups, name)) > 0:
-            at_fixed = measured(equations, equations.fields(y), load, name)
-            direct[k] = [_by(at_fixed[each], name) for each in DIFFERENTIATED]
+            for each, value in measured(equations, equations.fields(y), load, name).items():
+                found[k, ROW[each]] = _by(value, name)
             moves[k] = units * inverse(equations.parameter_derivative(y, name))
     for k, (below, above, width) in enumerate(beside, len(GROUPS)):
-        first, second = (replace(equations, operators=Operators(state.mesh, model)) for model in (below, above))
-        direct[k] = (_values(second, y, load) - _values(first, y, load)) / width
+        # Of a film that may re-form, with a cavity or without.
+        first, second = (
+            replace(equations, operators=Operators(state.mesh, with_ending_of(state, model))) for model in (below, above)
+        )
+        before, after = (measured(each, each.fields(y), load) for each in (first, second))
+        for each, value in after.items():
+            found[k, ROW[each]] = float(value[0] - before[each][0]) / width
         moves[k] = units * inverse((second.residual(y) - first.residual(y)) / width)
-    found = direct + changes(equations, y, load, moves)[:, [ROW[name] for name in DIFFERENTIATED]]
-    return dict(zip(DIFFERENTIATED, found.T, strict=True))
+    found += changes(equations, y, load, moves)
+    return dict(zip(ALL_NAMES, found.T, strict=True))
+
+
+def with_ending_of(state: State, model: Model) -> Model:
+    """Return a model with the cavitation of a state."""
+    cavitation = state.groups.model.cavitation
+    if model.cavitation is cavitation:
+        return model
+    return replace(model, cavitation=cavitation, cavity_pressure=0.0)
 
 
 def _by(value: Any, name: str) -> float:
     """Return the derivative of a number by the logarithm of a group."""
     return float(np.sum(value.columns.get(name, 0.0))) if isinstance(value, Trace) else 0.0
-
-
-def _values(equations: Equations, y: Array, load: float) -> Array:
-    """Return the observables that are differentiated."""
-    found = measured(equations, equations.fields(y), load)
-    return np.array([float(found[name][0]) for name in DIFFERENTIATED])
 
 
 def friction_slopes(

@@ -32,10 +32,6 @@ from stribeck.fits.objective import Objective, objective
 from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
 from stribeck.fits.residuals import excess_of, judge_residuals
 from stribeck.fits.result import Fit, FittedInput, unit_of
-from stribeck.fits.states.interpolation import Between
-from stribeck.fits.states.parts import PartsOf
-from stribeck.fits.states.solved import count_states
-from stribeck.fits.states.sources import in_atlas, rtol_of_states, ways_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
 
@@ -129,27 +125,26 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = _Progress(model, on_step)
-    rtol = report.rtol = rtol_of_states(model, problem.rtol)
-    quick, solved = ways_of(model, definition, rtol, report.count_state)
-    goal = objective(model, quick, settings, settings.robust)
+    rtol = report.rtol = model.rtol_of_states(problem.rtol)
+    states = model.states(definition, rtol, report.count_state)
+    goal = objective(model, states, settings, settings.robust)
 
     found = _search(goal, definition, report)
-    wanted_rtol = rtol_of_states(model, problem.rtol, found.relative_noise)
+    wanted_rtol = model.rtol_of_states(problem.rtol, found.relative_noise)
     if wanted_rtol < rtol:  # the data are better than the states so far
         report.rtol = wanted_rtol
-        quick, solved = ways_of(model, definition, wanted_rtol, report.count_state)
-        found = replace(found, objective=replace(found.objective, parts_of=quick))
-    reads = isinstance(quick, Between)
-    fine = found if quick is solved else _solved(found, solved, report)
-    if reads:  # what was solved is read from now on
-        found = replace(fine, objective=replace(fine.objective, parts_of=quick))
+        states = model.states(definition, wanted_rtol, report.count_state)
+        found = replace(found, objective=replace(found.objective, states=states))
+    fine = _solved(found, report)
+    if not states.uses_atlas:  # what was solved is read from now on
+        found = replace(fine, objective=replace(fine.objective, states=states))
     covariance, quantiles, inflation = _covariance(fine)
     before = found
     ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
-    if quick is not solved and found is not before:  # a profile led to a better fit, to which the ends belong
-        fine = _solved(found, solved, report)
+    if found is not before:  # a profile led to a better fit, to which the ends belong
+        fine = _solved(found, report)
         covariance, quantiles, inflation = _covariance(fine)
-    if reads or quick is solved:
+    if not states.uses_atlas:
         return _result(fine, ends, covariance, quantiles, problem, None)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
@@ -183,7 +178,7 @@ class _Progress:
         """Say what is done."""
         self.what = what
         if self.on_step is not None:
-            of_place = count_states(self.model, self.rtol)
+            of_place = self.model.count_states(self.rtol)
             total = of_place * max(SOLVED_PLACES, self.done // of_place + 1)
             self.on_step(self.what, self.done, total)
 
@@ -222,7 +217,7 @@ def _search(goal: Objective, definition: Definition, report: _Progress) -> Minim
     """Return the best minimum found from the case, and with the atlas from places around it, with the noise settled."""
     first = replace(goal, scale=FIRST_NOISE if goal.sigma is None else 1.0)
     starts = [np.zeros(len(goal.model.free))]
-    if in_atlas(goal.model):
+    if goal.states.uses_atlas:
         starts += _best(first, _places(goal), definition)
     best: Minimum | None = None
     for start in starts:
@@ -233,18 +228,19 @@ def _search(goal: Objective, definition: Definition, report: _Progress) -> Minim
     return _brought_back(settle(best.objective, best.theta, lambda: report("fitting")))
 
 
-def _solved(found: Minimum, solved: PartsOf | Between, report: _Progress) -> Minimum:
+def _solved(found: Minimum, report: _Progress) -> Minimum:
     """Return the minimum on solved states, from that on states that were read.
 
     What is read is solved at the minimum, and the minimum found anew, until the solved states say that it is there.
     """
-    for _ in range(ROUNDS) if isinstance(solved, Between) else ():
-        fine = minimise(replace(found.objective, parts_of=solved), found.theta, near=math.inf)
+    solved = found.objective.states.solved()
+    for _ in () if solved.uses_atlas else range(ROUNDS):
+        fine = minimise(replace(found.objective, states=solved), found.theta, near=math.inf)
         report("solving")
         if fine.converged:
             return fine
         found = _brought_back(settle(found.objective, found.theta))
-    return _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda: report("solving")))
+    return _brought_back(settle(replace(found.objective, states=solved), found.theta, lambda: report("solving")))
 
 
 def _brought_back(found: Minimum) -> Minimum:

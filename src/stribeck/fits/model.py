@@ -18,7 +18,7 @@ and on those of the Hertz contact, and give the friction a further derivative at
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,13 +32,20 @@ from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import models_at_both_sides, refuse_fixed_memory
+from stribeck.equations.sensitivity import Change
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
-from stribeck.fits.states.interpolation import Between
-from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
+from stribeck.fits.states import Changes, FrictionParts, States, places, together
 from stribeck.numerics.dual import Dual
+from stribeck.quantities.outputs import GROUPS
 
 __all__ = ["FrictionModel", "Prediction"]
+
+# Smallest and largest tolerance of states of balls that the noise of the data may ask for: what a rig resolves lies between
+# them.  That of the case holds where it is larger.
+BALL_RTOL = 1e-4, 1e-3
+
+ERROR_SHARE = 1 / 3  # Tolerance of states over the standard error of a common factor on the friction, which it widens by 5 %
 
 
 @dataclass(frozen=True)
@@ -74,36 +81,62 @@ class FrictionModel:
         self.moving = tuple(self._moving(curve, still) for curve in range(len(data.curves)))
 
     @property
+    def in_atlas(self) -> bool:
+        """Whether a table holds for all contacts, wherever in its box their states lie."""
+        kinds = {each.groups.model for each in self.contacts}
+        return len(kinds) == 1 and not any(self.moving) and atlas.for_groups(self.contact.groups) is not None
+
+    def states(self, definition: Definition, rtol: float, on_state: Callable[[], object]) -> States:
+        """Return what gives the states, to a tolerance."""
+        moves = np.abs(self.exponents[:, :, :3]).max(axis=(0, 1)) > 0
+        by = tuple(name for name, is_moved in zip(GROUPS, moves, strict=True) if is_moved)
+        return States(self.contact, by, self.in_atlas, definition, rtol, on_state)
+
+    def count_states(self, rtol: float) -> int:
+        """Return how many states are solved for all rows at one place."""
+        speeds = [np.unique(self.data.values[self.data.curve == curve])[::-1] for curve in np.unique(self.data.curve)]
+        return sum(map(len, speeds)) if any(self.remembers) else sum(len(places(each, rtol)) for each in speeds)
+
+    def rtol_of_states(self, rtol: float, relative_noise: Array | float = math.inf) -> float:
+        """Return the tolerance of solved states, given that of the case and the relative noise of each row if it is known."""
+        if self.contact.groups.geometry == "line":  # which takes milliseconds at any tolerance
+            return rtol
+        low, high = BALL_RTOL
+        with np.errstate(divide="ignore"):
+            standard_error = np.sum(np.broadcast_to(relative_noise, len(self.data)) ** -2.0) ** -0.5
+        return max(rtol, min(max(low, ERROR_SHARE * float(standard_error)), high))
+
+    @property
     def rule(self) -> FrictionRule:
         """What friction is made of, found by name, so that fits can be pickled."""
         return RULES[self.contact.groups.geometry]
 
     def _moving(self, curve: int, theta: Array) -> tuple[int, ...]:
         """Return the free inputs on which the model of a curve depends at fixed groups."""
-        return tuple(change.input for change in self._changes(curve, theta, range(len(self.free))))
+        return tuple(self._changes(curve, theta, range(len(self.free))))
 
-    def _changes(self, curve: int, theta: Array, of: Iterable[int], speed: float | None = None) -> tuple[ModelChange, ...]:
+    def _changes(self, curve: int, theta: Array, of: Iterable[int], speed: float | None = None) -> Changes:
         """Return what each of some free inputs changes of the model of a curve, those that change nothing left out."""
-        contact, found = self.contact_of(curve, theta, speed), []
+        contact, found = self.contact_of(curve, theta, speed), dict[int, Change]()
         for k in of:
             free = self.free[k]
             if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
                 continue
             beside = models_at_both_sides(contact, free.name)
             if beside is not None:
-                found.append(ModelChange(k, *beside))
-        return tuple(found)
+                found[k] = beside
+        return found
 
-    def _parts(self, theta: Array, x: Array, curve: Indices, values: Array, parts_of: PartsOf) -> FrictionParts:
+    def _parts(self, theta: Array, x: Array, curve: Indices, values: Array, states: States) -> FrictionParts:
         """Return the parts of the friction of all rows, those with different models on their own."""
-        groups: list[tuple[Physics, tuple[ModelChange, ...], list[Indices]]] = []
+        groups: list[tuple[Physics, Changes, list[Indices]]] = []
         for c in np.unique(curve).tolist():
             own, moving, remembers = np.nonzero(curve == c)[0], self.moving[c], self.remembers[c]
             for rows in own[:, None] if remembers else own[None]:
                 speed = float(values[rows[0]]) if remembers else None
                 moved = moving or remembers
                 physics = self.contact_of(c, theta, speed).groups.physics if moved else self.physics[c]
-                changes = self._changes(c, theta, moving, speed) if moved else ()
+                changes = self._changes(c, theta, moving, speed) if moved else {}
                 same = next((each[2] for each in groups if each[:2] == (physics, changes)), None)
                 if same is None:
                     groups.append((physics, changes, same := []))
@@ -111,15 +144,15 @@ class FrictionModel:
         found = []
         for physics, changes, several in groups:
             rows = np.concatenate(several)
-            states, at = np.unique(x[rows, :3], axis=0, return_inverse=True)  # repeats of a row are one state
-            each, at = parts_of(Groups(*states.T, **physics), changes), at.ravel()
+            rows_of, at = np.unique(x[rows, :3], axis=0, return_inverse=True)  # repeats of a row are one state
+            each, at = states.parts(Groups(*rows_of.T, **physics), changes), at.ravel()
             slopes = np.zeros((len(each.values), 3 + len(self.free), len(rows)))
             slopes[:, :3] = each.slopes[:, :3, at]
-            slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:, at]
-            found.append((rows, replace(each, values=each.values[:, at], slopes=slopes, errors=each.errors[:, at])))
-        return _together(found)
+            slopes[:, [3 + k for k in changes]] = each.slopes[:, 3:, at]
+            found.append((rows, FrictionParts(each.values[:, at], slopes, each.errors[:, at])))
+        return together(found)
 
-    def _read(self, theta: Array, x: Array, known: Between) -> FrictionParts:
+    def _read(self, theta: Array, x: Array, states: States) -> FrictionParts:
         """Return the parts of all measured rows, with slopes along the inputs alone, read between curves that are solved."""
         found = []
         for c, A in enumerate(self.exponents[..., :3]):
@@ -128,13 +161,13 @@ class FrictionModel:
             moves[list(self.moving[c])] = True
 
             def solved(A: Array = A, rows: Indices = rows) -> FrictionParts:
-                each = self._parts(theta, x[rows], self.data.curve[rows], self.data.values[rows], known.solve)
+                each = self._parts(theta, x[rows], self.data.curve[rows], self.data.values[rows], states)
                 return replace(each, slopes=np.einsum("kd,pdn->pkn", A, each.slopes[:, :3]) + each.slopes[:, 3:])
 
-            each = known.at(c, theta[moves], solved, np.nonzero(moves)[0])
+            each = states.curve(c, theta[moves], np.nonzero(moves)[0], solved)
             none = np.zeros((len(each.values), 3, len(rows)))
             found.append((rows, replace(each, slopes=np.concatenate([none, each.slopes], axis=1))))
-        return _together(found)
+        return together(found)
 
     def _exponents(self, curve: int) -> list[list[float]]:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
@@ -181,9 +214,9 @@ class FrictionModel:
             **{name: value * factors[name] for name, value in values.items() if value is not None},
         )
 
-    def read(self, places: Array, definition: Definition) -> Array:
-        """Return the friction of all rows at many places at once, off the atlas, see :func:`in_atlas`."""
-        x = np.exp(self.logs + np.einsum("mp,npk->mnk", places, self.exponents[self.data.curve]))
+    def read(self, theta: Array, definition: Definition) -> Array:
+        """Return the friction of all rows at many places at once, off the atlas, see :attr:`in_atlas`."""
+        x = np.exp(self.logs + np.einsum("mp,npk->mnk", theta, self.exponents[self.data.curve]))
         physics = self.contact.groups.physics
         inside = atlas.covers(Groups(x[..., 0], x[..., 1], x[..., 2], **physics)).all(axis=1)
         found = np.full(x.shape[:2], np.nan)
@@ -195,16 +228,14 @@ class FrictionModel:
             found[inside] = np.abs(self.signs[self.data.curve] * x[..., 3] * contact + viscous)
         return found
 
-    def predict(self, theta: Array, parts_of: PartsOf | Between, at: tuple[Indices, Array] | None = None) -> Prediction:
+    def predict(self, theta: Array, states: States, at: tuple[Indices, Array] | None = None) -> Prediction:
         """Return the friction at logarithms of factors."""
         curve, values, logs = (self.data.curve, self.data.values, self.logs) if at is None else (*at, self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        if isinstance(parts_of, Between):
-            found = self._read(theta, x, parts_of) if at is None else self._parts(theta, x, curve, values, parts_of.solve)
-        else:
-            found = self._parts(theta, x, curve, values, parts_of)
-        names = self.rule.parts(found.definition)
+        is_read = at is None and not states.uses_atlas
+        found = self._read(theta, x, states) if is_read else self._parts(theta, x, curve, values, states)
+        names = self.rule.parts(states.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
         fixed = {"far": far_film(self.model)}
         # By the logarithms of the groups, by the numbers of the model, and by the logarithms of the inputs.
@@ -219,7 +250,7 @@ class FrictionModel:
             for i, (name, size) in enumerate(zip(inputs, sizes, strict=True))
         }
         speed, load = (Dual(x[:, d], rows[:, d] * x[:, d]) for d in range(2))
-        viscous = self.rule.viscous(moved, speed, load, {**taken, **fixed}, found.definition)
+        viscous = self.rule.viscous(moved, speed, load, {**taken, **fixed}, states.definition)
         rubbing = self.signs[curve] * x[:, 3]
         contact, fluid = rubbing * found.values[0], viscous.value
         slopes = np.vstack([rubbing * found.slopes[0], of_inputs]) + viscous.slope
@@ -234,15 +265,5 @@ class FrictionModel:
             fluid_share=friction_share(fluid, contact),
             load_share=found.values[0],
             error=x[:, 3] * found.errors[0]
-            + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, found.definition),
+            + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, states.definition),
         )
-
-
-def _together(found: Sequence[tuple[Indices, FrictionParts]]) -> FrictionParts:
-    """Return the parts of all rows by those of some of them each."""
-    order = np.argsort(np.concatenate([rows for rows, _ in found]))
-    values, slopes, errors = (
-        np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
-        for name in ("values", "slopes", "errors")
-    )
-    return FrictionParts(values, slopes, errors, found[0][1].definition)

@@ -17,8 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.model import FrictionModel, Prediction
-from stribeck.fits.states.interpolation import Between
-from stribeck.fits.states.parts import PartsOf
+from stribeck.fits.states import States
 
 __all__ = ["Objective", "objective"]
 
@@ -27,10 +26,10 @@ CAUCHY = 2.385  # Constant c of the robust loss, in standard errors
 
 @dataclass(frozen=True)
 class Objective:
-    """What a fit minimises, for one way to obtain states and one scale of the noise."""
+    """What a fit minimises, for states from one source and one scale of the noise."""
 
     model: FrictionModel  # Predicts the friction of the rows
-    parts_of: PartsOf | Between  # What gives the states
+    states: States
     sigma: Array | None
     logarithmic: bool  # Whether residuals are of the logarithm of friction
     robust: bool  # Whether the loss is the robust one
@@ -38,7 +37,7 @@ class Objective:
 
     def residuals(self, theta: Array) -> tuple[Array, Array, Prediction]:
         """Return the residuals of the data, their derivatives, and the prediction they come from."""
-        predicted = self.model.predict(theta, self.parts_of)
+        predicted = self.model.predict(theta, self.states)
         J = predicted.jacobian / predicted.friction[:, None] if self.logarithmic else predicted.jacobian
         return self.misfit(predicted.friction), J / self.size[:, None], predicted
 
@@ -86,14 +85,14 @@ class Objective:
         return float(self.loss(r).sum() + ((rows @ theta - means) ** 2).sum())
 
 
-def objective(model: FrictionModel, parts_of: PartsOf | Between, settings: FitSettings, robust: bool) -> Objective:
+def objective(model: FrictionModel, states: States, settings: FitSettings, robust: bool) -> Objective:
     """Return the objective that the data and the settings ask for."""
     data = model.data
     if data.error is not None:
-        return Objective(model, parts_of, data.error, False, robust)
+        return Objective(model, states, data.error, False, robust)
     relative, absolute = settings.relative_error, settings.absolute_error
     if absolute is not None:
-        return Objective(model, parts_of, np.hypot((relative or 0.0) * data.friction, absolute), False, robust)
+        return Objective(model, states, np.hypot((relative or 0.0) * data.friction, absolute), False, robust)
     if relative is not None:
-        return Objective(model, parts_of, np.full(len(data), relative), True, robust)
-    return Objective(model, parts_of, None, settings.noise == "relative", robust)
+        return Objective(model, states, np.full(len(data), relative), True, robust)
+    return Objective(model, states, None, settings.noise == "relative", robust)

@@ -16,7 +16,6 @@ from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit, FittedInput, format_value
-from stribeck.fits.states.sources import in_atlas
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
@@ -83,7 +82,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
         raise InputError(f"steps = {steps!r}; a chain has at least 100.")
     at: Minimum = fit._minimum
-    missing = not in_atlas(at.objective.model)
+    missing = not at.objective.states.uses_atlas
     if not fit.converged or fit.robust or missing:
         why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
         raise InputError(f"no posterior is drawn. {why or f'The atlas has no table for the law {fit.law} of this contact.'}")

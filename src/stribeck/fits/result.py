@@ -21,7 +21,6 @@ from stribeck.files.results import Exported, Labelled, Record, columns_of_record
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
-from stribeck.fits.states.interpolation import Between
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import DIMENSIONS
@@ -253,11 +252,11 @@ class Fit(Exported, Told, ByValue):
         """
         at = self._minimum
         values = np.asarray(values, dtype=float)
-        model, parts_of = at.objective.model, at.objective.parts_of
+        model, states = at.objective.model, at.objective.states
         rows = np.nonzero(model.data.curve == curve)[0]
         places, first = np.unique(model.data.values[rows], return_index=True)
         inside = values.size > 0 and places[0] <= values.min() * (1 + 1e-12) and values.max() <= places[-1] * (1 + 1e-12)
-        if isinstance(parts_of, Between) and len(places) > 1 and inside:
+        if not states.uses_atlas and len(places) > 1 and inside:
             # Imported here because it takes longer than the rest of the package.
             from scipy.interpolate import pchip_interpolate
 
@@ -265,7 +264,7 @@ class Fit(Exported, Told, ByValue):
             friction, *slopes = pchip_interpolate(np.log(places), both, np.log(values)).T
             jacobian = np.reshape(slopes, (-1, len(values))).T
         else:
-            found = model.predict(at.theta, parts_of, (np.full(len(values), curve), values))
+            found = model.predict(at.theta, states, (np.full(len(values), curve), values))
             friction, jacobian = found.friction, found.jacobian
         relative = jacobian / friction[:, None]
         variance = np.einsum("np,pq,nq->n", relative, np.nan_to_num(self.covariance), relative)

@@ -70,3 +70,7 @@ MAX_AMPLIFICATION = 40.0  # Sum of absolute weights of a prediction above which 
 FLOOR = 1e-3  # Value below which the error of what crosses zero, the offset or a gap at rest, is not relative to it
 MIN_RTOL, MIN_RTOL_OF_BALLS, MAX_RTOL = 1e-11, 1e-8, 1e-2  # Tolerances that may be asked for
 MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film over rtol
+
+# Residual of the slopes of a state over the tolerance of the state: with the preconditioner of a neighbour their error is a
+# hundred times that.  To solve them to rounding takes a sixth more of a fit of a ball in Carreau's fluid.
+SLOPE_RESIDUAL = 1e-3

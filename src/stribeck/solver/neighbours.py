@@ -1,40 +1,56 @@
-"""States by their groups: each new one is solved from the nearest that is known, from cold where none is near."""
+"""States by their groups, with first derivatives: each is solved from the nearest known one, from cold where none is near."""
 
 from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields, is_dataclass
-from typing import Any, Protocol
+from dataclasses import fields, is_dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
+from stribeck.equations.observables import ROW
+from stribeck.equations.point.observables import FrictionWithin
 from stribeck.equations.prediction import extrapolate
+from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.numerics.continuation import steady_weights
-from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION
+from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, SLOPE_RESIDUAL
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import predicted
+from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solve import finish, hertz_solution
+from stribeck.solver.solve import finish, hertz_solution, stated_errors
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["Neighbours"]
+__all__ = ["Neighbours", "Observed"]
 
 MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
 MAX_STATES = 120  # States that are kept
 
+
 Line = Sequence[tuple[float, Any]]
 """States along a line through the one that is wanted, which lies at zero; the nearest last."""
+
+
+class Observed(NamedTuple):
+    """Some observables of a state."""
+
+    values: Array  # In the order of the names that were asked for
+    slopes: Array  # Derivatives by ln(speed), ln(load) and ln(roughness), and along changes of the model, shape (names, 3 + k)
+    errors: Array  # Errors as a solution states them
 
 
 class Neighbours:
@@ -51,7 +67,7 @@ class Neighbours:
         steps, here = self._steps[groups.geometry], _Known(groups)
         near, away = self._near(here)
         if near and near[0].groups == groups:
-            return near[0].state
+            return self._last[1] if self._last is not None and self._last[0] is near[0] else near[0].state
         state = steps.follow(self._line(near, away, steps.order), groups) if near else steps.start(groups)
         if state.outcome.ok:
             here.state = steps.kept(state)
@@ -65,6 +81,19 @@ class Neighbours:
         if not state.outcome.ok:
             self._steps[groups.geometry].finish(state, groups, None)
         return state
+
+    @one_blas_thread
+    def observed(
+        self,
+        groups: Groups,
+        names: Sequence[str],
+        changes: Sequence[Change] = (),
+        *,
+        by: Sequence[str] = GROUPS,
+        inputs: Mapping[str, float],
+    ) -> Observed:
+        """Return observables of a moving contact with derivatives; ``inputs`` say where the liquid of a ball ends."""
+        return self._steps[groups.geometry].observed(self.solved(groups), names, changes, by, inputs)
 
     @one_blas_thread
     def solution(self, groups: Groups, contact: Contact | None = None) -> Any:
@@ -151,6 +180,11 @@ class _Steps(Protocol):
     def kept(self, state: Any) -> Any:
         """Return what is kept of a state while others are solved."""
 
+    def observed(
+        self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
+    ) -> Observed:
+        """Return observables with their derivatives and errors."""
+
     def finish(self, state: Any, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
 
@@ -181,6 +215,16 @@ class _CylinderSteps:
         """Return the state, whose operators the corrector may drop."""
         return state
 
+    def observed(
+        self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
+    ) -> Observed:
+        """Return observables with their derivatives and errors, those by all groups at once."""
+        assert state.state is not None and state.values is not None
+        rows = [ROW[name] for name in names]
+        derivatives = log_derivatives(state.state, changes)
+        slopes = np.stack([derivatives[name] for name in names])
+        return Observed(state.values.array()[rows], slopes, stated_errors(state, self.rtol)[rows])
+
     def finish(self, state: RefinedState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
         return finish(state, groups, contact, self.rtol)
@@ -209,6 +253,46 @@ class _BallSteps:
         """Return the state without the factors that fill the memory."""
         return state.without_factors()
 
+    def observed(
+        self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
+    ) -> Observed:
+        """Return observables with their derivatives and errors; a fluid that thins far out counts up to the liquid's edge."""
+        groups = state.groups
+        values, errors = (np.array([each[name] for name in names]) for each in (state.values, state.relative_errors))
+        by_groups = state_derivatives(state, by, tolerance=SLOPE_RESIDUAL * self.rtol)
+        slopes = np.array([by_groups[name] for name in names])
+        if changes:
+            moved = {str(i): partial(_moved, groups, change) for i, change in enumerate(changes)}
+            along = derivatives_along(state, moved, tolerance=SLOPE_RESIDUAL * self.rtol)
+            slopes = np.append(slopes, [along[name] for name in names], axis=1)
+        if groups.model.film.uses_speed and isinstance(state.work, Pair):
+            fine = state.work.fine
+            within = FrictionWithin.of(fine.equations, fine.unknowns, {name: float(v) for name, v in state.values.items()})
+            cut_offs = log_cut_offs(float(groups.slope(inputs["beta"])), inputs["wetted_radius"])
+            for which, (name, cut) in enumerate(zip(("J_couette", "J_poiseuille"), cut_offs, strict=True)):
+                row = names.index(name)
+                beyond = within(which, float(cut))
+                wrong = errors[row] * abs(values[row]) + abs(beyond)
+                values[row] += beyond
+                errors[row] = wrong / (abs(values[row]) or state.scales[name])
+        return Observed(values, slopes, errors)
+
     def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
         return finish_point(state, contact)
+
+
+def _moved(groups: Groups, change: Change, step: float) -> Groups:
+    """Return groups whose model is moved by a step of a logarithm."""
+    below, above, width = change
+    return replace(groups, model=_between(below, above, 0.5 + step / width))
+
+
+def _between(one: Any, other: Any, part: float) -> Any:
+    """Return what lies between two frozen dataclasses of one kind, by their numbers; other parts are those of the first."""
+    if isinstance(one, float) and isinstance(other, float):
+        return one + (other - one) * part
+    if one == other or not is_dataclass(one) or isinstance(one, type):
+        return one
+    values = [_between(getattr(one, each.name), getattr(other, each.name), part) for each in fields(one) if each.init]
+    return type(one)(*values)

@@ -13,11 +13,9 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.curves.regime import Transition
-from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.threads import one_blas_thread
@@ -29,7 +27,7 @@ from stribeck.quantities.schema import Input
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
-from stribeck.uncertainty.states import NODE_DEVIATION, SampledStates, films_of
+from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of
 
 __all__ = ["STATE_RTOL", "errors_of_kept_inputs", "inputs_tied_to", "propagate"]
 
@@ -40,8 +38,7 @@ STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth 
 
 CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
-
-LOG_STEP = 1e-3  # Of inputs in the differences that find the powers of scales, which are power laws
+INTERVAL_95 = 1.96  # Half-width of the 95 % interval of a normal distribution, in standard deviations
 
 # Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2.
 SUBSTITUTES = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
@@ -87,10 +84,10 @@ def propagate(
 
     Notes
     -----
-    20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
-    two solved states for each input, corrected by up to 120 more at both ends of the interval of friction until solved states
-    lie within 5 % of its width of where they are predicted (``test_data_sheet.py``); ``notes`` of the result say where
-    they do not, or cannot be solved.  Transitions move to first order, and are left out where their interval leaves the
+    20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else read between up to 120
+    solved ones with their derivatives, at both ends of the interval of friction and anywhere, until further ones lie within
+    5 % of its width of where they are read (``test_data_sheet.py``); ``notes`` of the result say where they do not, or
+    cannot be solved.  Transitions move to first order, and are left out where their interval leaves the
     speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
@@ -102,8 +99,9 @@ def propagate(
         raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     sigmas = errors_of_kept_inputs(contact, errors)
     names = list(sigmas)
-    draws = np.random.default_rng(SEED).standard_normal((SAMPLES, max(1, len(names))))
-    offsets = draws[:, : len(names)] * np.array([sigmas[name] for name in names])
+    widths = np.array([sigmas[name] for name in names])
+    draws = np.random.default_rng(SEED).standard_normal((SAMPLES, len(names)))
+    offsets = draws * widths
     moves = [inputs_tied_to(contact, name, sigmas) for name in names]
 
     def power(function: Any) -> Array:
@@ -112,29 +110,29 @@ def propagate(
 
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in GROUPS])
-    rtol = STATE_RTOL[groups.geometry]
-    solution, sensitivities, _ = sensitivities_if_known(contact, rtol=rtol, definition=definition)
+    sampled = SampledStates(contact, moves, of_groups, definition, STATE_RTOL[groups.geometry])
+    solution = sampled.neighbours.solution(groups, contact)
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
 
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
-    rubbing = rule.sliding_factor(groups, inputs) * scale(lambda each: each.boundary_friction)
-    shearing = np.full(SAMPLES, contact.beta)
+    of_rubbing = power(lambda each: [each.boundary_friction])[:, 0]
+    of_shearing = np.zeros(len(names))
     for name, exponent in _exponents(solution, inputs, definition).items():
-        shearing = shearing * (scale(rule.inputs[name]) / inputs[name]) ** exponent
+        of_shearing += exponent * power(lambda each, name=name: [rule.inputs[name](each)])[:, 0]
+    rub = rule.sliding_factor(groups, inputs) * contact.boundary_friction
+    rubbing, shearing = rub * np.exp(offsets @ of_rubbing), contact.beta * np.exp(offsets @ of_shearing)
 
     def friction_of(states: dict[str, Array]) -> Array:
         return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
 
-    sampled = SampledStates(contact, definition, rtol, friction_of)
-    if groups.model == BASE_MODEL:
-        states, method, notes = sampled.by_groups(offsets @ of_groups)
-    else:
-        widths = np.array([sigmas[name] for name in names])
-        states, notes = sampled.by_inputs(moves, widths, draws[:, : len(names)])
+    notes: tuple[str, ...] = ()
+    states, method = sampled.off_atlas(offsets), "atlas"
+    if states is None:
         method = "solver"
+        states, notes = sampled.solved(draws, widths, friction_of)
     share = states["contact_load_share"]
     dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
@@ -153,9 +151,11 @@ def propagate(
         spreads.append(_spread("lambda_ratio", labels["lambda_ratio"], solution.lambda_ratio, ratio))
     if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
-    known = zip(names, moves, strict=True) if sensitivities else ()
-    slopes = {name: sum(sensitivities[each] for each in inputs) for name, inputs in known}
-    parts = {name: (slope * sigmas[name]) ** 2 for name, slope in slopes.items()}
+    middle = sampled.at(np.zeros(len(names)))
+    on_asperities, by_odds, by_drag = solution.contact_load_share, middle.slopes[:, 0], middle.slopes[:, VISCOUS]
+    slopes = rub * on_asperities * (solution.fluid_load_share * by_odds + of_rubbing)
+    slopes += contact.beta * (by_drag + middle.values[VISCOUS] * of_shearing)
+    parts = dict(zip(names, ((slopes * widths) ** 2).tolist(), strict=True))
     total = sum(parts.values()) or 1.0
     return Uncertainty(
         contact=contact,
@@ -195,14 +195,13 @@ def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[s
 
 
 def _check_range(row: Input, value: float, sigma: float) -> None:
-    """Refuse an error with which the states that are solved beside the middle would leave the range of a number."""
+    """Refuse an error with which the 95 % interval of a number leaves its range."""
     low, high = row.range
-    for end, bound in ((value * math.exp(-NODE_DEVIATION * sigma), low), (value * math.exp(NODE_DEVIATION * sigma), high)):
+    for end, bound in ((value * math.exp(-INTERVAL_95 * sigma), low), (value * math.exp(INTERVAL_95 * sigma), high)):
         if not low <= end <= high:
             raise InputError(
-                f"the error of {row.name} = {format_si(value, row.dimension, 3)} is too large: states are solved at "
-                f"{NODE_DEVIATION:.3g} standard errors beside it, which reaches {end:.3g}, "
-                f"past its bound {bound:g}; give a smaller one."
+                f"the error of {row.name} = {format_si(value, row.dimension, 3)} is too large: its 95 % interval reaches "
+                f"{end:.3g}, past its bound {bound:g}; give a smaller one."
             )
 
 
@@ -265,7 +264,7 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
                 variances[mark] += math.log(moved[mark] / value) ** 2
     found = []
     for mark, value in start.items():
-        factors = [math.exp(z * math.sqrt(variances[mark])) for z in (1.0, 1.96)]
+        factors = [math.exp(z * math.sqrt(variances[mark])) for z in (1.0, INTERVAL_95)]
         (low, high), (lowest, highest) = ((value / factor, value * factor) for factor in factors)
         if not searched[0] <= lowest <= highest <= searched[1]:
             continue  # it may lie anywhere beyond the speeds that were searched

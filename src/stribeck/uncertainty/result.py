@@ -75,8 +75,7 @@ class Uncertainty(Exported, Told):
     regimes: Annotated[dict[str, float], "probability of boundary, mixed and hydrodynamic lubrication"]
     contributions: Annotated[
         dict[str, float],
-        "share of each input in the variance of ln(friction), by exact derivatives; they sum to one. Empty for a "
-        "model without derivatives",
+        "share of each input in the variance of ln(friction), by exact derivatives; they sum to one",
     ]
     method: Annotated[str, '``"atlas"`` or ``"solver"``: where the states of the samples come from']
     notes: Annotated[

@@ -1,11 +1,8 @@
-r"""States of many samples of the groups: read off the atlas, or off seven solved states around the middle.
+"""States of many samples of the inputs of a contact: read off the atlas, or between solved ones with their derivatives.
 
-Where the atlas ends, a quadratic along each principal axis of the samples takes its place,
-
-.. math:: y = y_0 + b_k t_k + c_k t_k^2, \qquad t_k = \pm 3^{1/2} \text{ solved},
-
-for the logarithms of films and viscous friction and the log odds of the load share.  The numbers of a fluid or a solid in
-Hertz units change with the inputs, so that the three groups do not describe such a state: the axes are then the inputs.
+Read are logarithms of films and viscous friction and log odds of the load share, which are nearly linear in the logarithms of
+the inputs.  Of the base model the three groups describe a state: the variables are then the combinations of the inputs that
+move them.  The numbers of a fluid or a solid in Hertz units change with the inputs, which are then the variables themselves.
 """
 
 from __future__ import annotations
@@ -13,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,23 +22,23 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.with_parts import models_at_both_sides
+from stribeck.numerics.dual import Dual
+from stribeck.numerics.scattered import Scattered, lengths_of
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["FILM_NAMES", "SampledStates", "films_of"]
+__all__ = ["FILM_NAMES", "LOG_STEP", "SampledStates", "State", "films_of"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
-NODE_DEVIATION = 3**0.5  # Where the quadratic is solved, in standard deviations: the outer nodes of Gauss and Hermite
-
-MAX_DEVIATION = 3.5  # Standard deviations beyond which a quadratic is held constant
+LOG_STEP = 1e-3  # Of inputs in differences that find powers of power laws, and derivatives of films at rest
 
 MIN_LOG_DEVIATION = 1e-9  # Standard deviation of a logarithm below which a direction counts as known
-
-VISCOUS_INDEX = 1  # Place of the viscous friction in the values of a state
 
 # Part of its width within which the ends of the 95 % interval of friction are right: what the pages promise
 INTERVAL_END_RTOL = 0.05
@@ -52,10 +49,19 @@ SEED = 20_261_126  # Of the choice of samples that are solved
 
 MIN_SHARE = 1e-290  # Value in place of a share that underflows
 
+VISCOUS = 1  # Place of the viscous friction among the observables of a state
+
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:
     """Return the films that states of a geometry have, of :data:`FILM_NAMES`."""
     return tuple(name for name in FILM_NAMES if name in OUTPUT_TABLES[geometry].names)
+
+
+class State(NamedTuple):
+    """Log odds of the load share, viscous friction and logarithms of the films of a state."""
+
+    values: Array
+    slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,115 +69,136 @@ class SampledStates:
     """States of samples around a contact: their load share, viscous friction and films."""
 
     contact: Contact  # The middle of the samples
+    moves: Sequence[tuple[str, ...]]  # For each uncertain input, what moves together with it
+    of_groups: Array  # Powers with which they enter the three groups
     definition: Definition  # Of friction
     rtol: float  # Relative tolerance of solved states
-    friction: Callable[[dict[str, Array]], Array]  # States of the samples -> friction coefficients
+    neighbours: Neighbours = field(init=False)
 
-    def by_groups(self, offsets: Array) -> tuple[dict[str, Array], str, tuple[str, ...]]:
-        """Return states of samples of the groups, off the atlas where it has them, the method, and notes."""
+    def __post_init__(self) -> None:
+        """Take Neighbours, as yet without states."""
+        object.__setattr__(self, "neighbours", Neighbours(self.rtol))
+
+    def off_atlas(self, offsets: Array) -> dict[str, Array] | None:
+        """Return states at logarithms of the inputs off the atlas, None if it does not have them all."""
         groups = self.contact.groups
-        table = atlas.for_groups(groups)
-        if table is not None:
-            samples = _scale_groups(groups, offsets)
-            if bool(np.all(atlas.covers(samples))):
-                inputs = RULES[groups.geometry].of_contact(self.contact)
-                films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
-                found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
-                share, viscous = atlas.friction_terms(samples, inputs, self.definition)
-                found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
-                if all(np.isfinite(values).all() for values in found.values()):
-                    return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas", ()
-        states, notes = self.by_solved_groups(offsets)
-        return states, "solver", notes
+        table = atlas.for_groups(groups) if groups.model == BASE_MODEL else None
+        if table is None:
+            return None
+        samples = _scale_groups(groups, offsets @ self.of_groups)
+        if not np.all(atlas.covers(samples)):
+            return None
+        inputs = RULES[groups.geometry].of_contact(self.contact)
+        films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
+        found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
+        share, viscous = atlas.friction_terms(samples, inputs, self.definition)
+        found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
+        if not all(np.isfinite(values).all() for values in found.values()):
+            return None
+        return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}
 
-    def by_solved_groups(self, offsets: Array) -> tuple[dict[str, Array], tuple[str, ...]]:
-        """Return states of samples of the groups, by quadratics along their principal axes, and notes."""
-        groups, neighbours, middle = self.contact.groups, Neighbours(self.rtol), offsets.mean(axis=0)
-        variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
-
-        def values(distance: Array) -> Array:
-            state = neighbours.solution(_scale_groups(groups, middle + distance))
-            return _values(state, self.definition, self.contact)
-
-        axes = []
-        for variance, direction in zip(variances, directions.T, strict=True):
-            width = float(np.sqrt(max(variance, 0.0)))
-            if width >= MIN_LOG_DEVIATION:
-                node = NODE_DEVIATION * width * direction
-                axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
-        found = _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
-        if not axes:
-            return found.values(), ()
-        places = np.stack([place for place, *_ in axes], axis=1)
-        return _correct_by_solved_states(found, places, lambda i: values(offsets[i] - middle), self.friction)
-
-    def by_inputs(
-        self, moves: Sequence[tuple[str, ...]], sigmas: Array, draws: Array
+    def solved(
+        self, draws: Array, sigmas: Array, friction: Callable[[dict[str, Array]], Array]
     ) -> tuple[dict[str, Array], tuple[str, ...]]:
-        """Return states of samples of the inputs, by quadratics along each, and notes; inputs of one move move together."""
-        contact, neighbours = self.contact, Neighbours(self.rtol)
+        """Return states of standard normal samples of the inputs, read between solved ones, and notes."""
+        directions = self._directions(sigmas)
+        lengths = np.linalg.norm(directions * sigmas, axis=1)
+        units = directions * sigmas / lengths[:, None]
+        places = draws @ directions.T * lengths
 
-        def at(distances: Mapping[str, float]) -> Array:
-            moved = contact.replace(**{name: getattr(contact, name) * math.exp(each) for name, each in distances.items()})
-            return _values(neighbours.solution(moved.groups, moved), self.definition, contact)
+        def solved(place: Array) -> State:
+            values, slopes = self.at(place @ units)
+            return State(values, units @ slopes)
 
-        def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
-            return at(dict.fromkeys(inputs, distance))
+        return _sampled_until_confirmed(places, solved, friction, self.contact.groups.geometry)
 
-        def sample(i: int) -> Array:
-            distances: dict[str, float] = {}
-            for inputs, distance in zip(moves, (draws[i] * sigmas).tolist(), strict=True):
-                for name in inputs:
-                    distances[name] = distances.get(name, 0.0) + distance
-            return at(distances)
+    def _directions(self, sigmas: Array) -> Array:
+        """Return the combinations of standard normal inputs that move the state, as orthonormal rows."""
+        if self.contact.groups.model == BASE_MODEL:
+            combined, deviations, _ = np.linalg.svd(sigmas[:, None] * self.of_groups, full_matrices=False)
+            return np.asarray(combined.T[deviations > MIN_LOG_DEVIATION])
+        changed = [any(models_at_both_sides(self.contact, name) is not None for name in move) for move in self.moves]
+        return np.asarray(np.eye(len(sigmas))[np.any(self.of_groups != 0, axis=1) | changed])
 
-        start = values()
-        axes = [
-            (draws[:, i], values(inputs, NODE_DEVIATION * sigma), values(inputs, -NODE_DEVIATION * sigma))
-            for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
+    def at(self, logs: Array) -> State:
+        """Return the state at logarithms of the inputs over those of the middle."""
+        contact = self._moved(logs)
+        groups = contact.groups
+        if not groups.speed > 0:
+            return self._at_rest(logs)
+        rule = RULES[groups.geometry]
+        inputs, names = rule.of_contact(self.contact), rule.parts(self.definition)
+        changed = [
+            (k, change)
+            for k, move in enumerate(self.moves if groups.model != BASE_MODEL else ())
+            for change in (models_at_both_sides(contact, name) for name in move)
+            if change is not None
         ]
-        found = _quadratic(start, axes, contact.groups.geometry, len(draws))
-        return _correct_by_solved_states(found, draws, sample, self.friction)
+        films = films_of(groups.geometry)
+        shares = ("contact_load_share", "fluid_load_share")
+        observed = self.neighbours.observed(
+            groups, (*shares, *films, *names), [change for _, change in changed], inputs=inputs
+        )
+        by = dict(zip((*shares, *films, *names), map(Dual, observed.values, observed.slopes), strict=True))
+        rows = np.eye(3 + len(changed))
+        speed, load = (
+            Dual(float(value), float(value) * row) for value, row in zip((groups.speed, groups.load), rows, strict=False)
+        )
+
+        def viscous_of(parts: Mapping[str, Any], speed: Any, load: Any, model: Model) -> Any:
+            return rule.viscous(parts, speed, load, {**inputs, "far": far_film(model)}, self.definition)
+
+        viscous = viscous_of({name: by[name] for name in names}, speed, load, groups.model)
+        parts = {name: by[name].value for name in names}
+        through = np.zeros(3 + len(changed))  # the film far away
+        for i, (_, (below, above, width)) in enumerate(changed, 3):
+            ends = [float(viscous_of(parts, groups.speed, groups.load, each)) for each in (below, above)]
+            through[i] = (ends[1] - ends[0]) / width
+        odds = _log(by[shares[0]]) - _log(by[shares[1]])
+        found = [odds, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in films)]
+        slopes = np.array([each.slope for each in found]).T
+        by_inputs = self.of_groups @ slopes[:3]
+        for row, (k, _) in zip(slopes[3:], changed, strict=True):
+            by_inputs[k] += row
+        return State(np.array([float(each.value) for each in found]), by_inputs)
+
+    def _at_rest(self, logs: Array) -> State:
+        """Return the state of a contact at rest, whose films alone move with the inputs."""
+
+        def values(logs: Array) -> Array:
+            contact = self._moved(logs)
+            state = self.neighbours.solution(contact.groups, contact)
+            films = [max(float(getattr(state, name)), MIN_SHARE) for name in films_of(contact.groups.geometry)]
+            return np.array([-math.log(MIN_SHARE), 0.0, *np.log(films)])
+
+        steps = LOG_STEP * np.eye(len(logs))
+        return State(values(logs), np.array([(values(logs + step) - values(logs - step)) / (2 * LOG_STEP) for step in steps]))
+
+    def _moved(self, logs: Array) -> Contact:
+        """Return the contact with its inputs moved; inputs that several move take the product."""
+        factors: dict[str, float] = {}
+        for inputs, log in zip(self.moves, logs.tolist(), strict=True):
+            for name in inputs:
+                factors[name] = factors.get(name, 1.0) * math.exp(log)
+        return self.contact.replace(**{name: getattr(self.contact, name) * each for name, each in factors.items()})
 
 
-class _Samples(NamedTuple):
-    """Logarithms and log odds of states, which are nearly quadratic in the inputs."""
-
-    y: Array
-    sign: float
-    is_power: bool
-    geometry: Geometry
-
-    def of_state(self, values: Array) -> Array:
-        """Return the row of a solved state."""
-        row = values.copy()
-        if self.is_power:
-            row[VISCOUS_INDEX] = np.log(max(self.sign * row[VISCOUS_INDEX], MIN_SHARE))
-        return row
-
-    def values(self) -> dict[str, Array]:
-        """Return load share, viscous friction and films."""
-        odds, viscous, *films = self.y.T
-        return {
-            "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
-            "viscous": self.sign * np.exp(viscous) if self.is_power else viscous,
-            **{name: np.exp(film) for name, film in zip(films_of(self.geometry), films, strict=True)},
-        }
-
-
-def _correct_by_solved_states(
-    base: _Samples, places: Array, solved: Callable[[int], Array], friction: Callable[[dict[str, Array]], Array]
+def _sampled_until_confirmed(
+    places: Array, solved: Callable[[Array], State], friction: Callable[[dict[str, Array]], Array], geometry: Geometry
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return samples corrected until solved states confirm the ends of the interval of friction, and notes where none do."""
-    # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs. A sample that
-    # is not as predicted joins the states through which a smooth function corrects the quadratics.
-    from scipy.interpolate import RBFInterpolator
-
-    found, known, random = base, dict[int, Array](), np.random.default_rng(SEED)
-    some = places.shape[1] + 1
+    """Return samples that are read between states, as many as confirm the ends of the interval of friction, and notes."""
+    # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs, compares them with
+    # what was read there, and reads anew.
+    middle = np.zeros(places.shape[1])
+    start, some = solved(middle), len(middle) + 1
+    lengths = _lengths(start)
+    known, random = [(middle, start)], np.random.default_rng(SEED)
     tried = np.zeros(len(places), dtype=bool)
     while True:
-        predicted = friction(found.values())
+        found = _read(known, places, lengths, geometry)
+        predicted = friction(found)
+        if not len(middle):
+            return found, ()
         low, high = np.quantile(predicted, [0.025, 0.975])
         width, wrong = high - low, 0.0
         near = [np.abs(predicted - end) <= INTERVAL_END_RTOL * width for end in (low, high)]
@@ -179,23 +206,52 @@ def _correct_by_solved_states(
             left = np.flatnonzero(pool & ~tried)
             chosen = random.choice(left, min(some, len(left)), False).tolist()
             tried[chosen] = True
-            new: dict[int, Array] = {}
+            new: dict[int, State] = {}
             for i in chosen:
-                with suppress(InputError, SolveError):  # one that cannot be solved tells nothing
-                    new[i] = base.of_state(solved(i))
-            exact = found.y.copy()
-            exact[list(new)] = np.array(list(new.values())).reshape(-1, exact.shape[1])
-            differences = np.abs(friction(found._replace(y=exact).values()) - predicted)[list(new)]
+                with suppress(InputError, SolveError, ArithmeticError):  # one that cannot be solved tells nothing
+                    new[i] = solved(places[i])
+            exact = {name: values.copy() for name, values in found.items()}
+            for i, state in new.items():
+                for name, values in _by_name(state.values[None], 0.0, geometry).items():
+                    exact[name][i] = values[0]
+            differences = np.abs(friction(exact) - predicted)[list(new)]
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
-            known |= new
+            known += [(places[i], state) for i, state in new.items()]
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            return found.values(), _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known))
-        rows = list(known)
-        rest = np.array([known[i] - base.y[i] for i in rows]).reshape(-1, base.y.shape[1])
-        # The middle is known too; the smooth function leaves it where it is.
-        centres = np.vstack([np.zeros(places.shape[1]), places[rows]])
-        smooth = RBFInterpolator(centres, np.vstack([np.zeros(rest.shape[1]), rest]), kernel="linear", degree=0)
-        found = base._replace(y=base.y + smooth(places))
+            found = _read(known, places, lengths, geometry)
+            return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
+
+
+def _lengths(state: State) -> Array:
+    """Return how far inputs move until a state changes by its own size, at most one."""
+    size = np.ones_like(state.values)
+    size[0] = 4 * math.cosh(state.values[0] / 2) ** 2  # of log odds over that of the share
+    size[VISCOUS] = abs(state.values[VISCOUS]) or 1.0
+    return lengths_of(state.slopes / size)
+
+
+def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, geometry: Geometry) -> dict[str, Array]:
+    """Return states at places, read between known ones."""
+    signs = {float(np.sign(state.values[VISCOUS])) for _, state in known}
+    sign = signs.pop() if len(signs) == 1 else 0.0  # a drag that changes its sign has no logarithm
+    scattered = Scattered(lengths)
+    for place, (values, slopes) in known:
+        y, by = values.copy(), slopes.copy()
+        if sign:
+            y[VISCOUS] = math.log(abs(values[VISCOUS]))
+            by[:, VISCOUS] /= values[VISCOUS]
+        scattered.add(place, y, by)
+    return _by_name(scattered.values(places), sign, geometry)
+
+
+def _by_name(y: Array, sign: float, geometry: Geometry) -> dict[str, Array]:
+    """Return load share, viscous friction and films of what is read."""
+    odds, viscous, *films = y.T
+    return {
+        "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
+        "viscous": sign * np.exp(viscous) if sign else viscous,
+        **{name: np.exp(film) for name, film in zip(films_of(geometry), films, strict=True)},
+    }
 
 
 def _interval_notes(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
@@ -216,35 +272,15 @@ def _interval_notes(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> _Samples:
-    """Return the quadratics through the middle and two states on each axis, at the places of samples along the axes."""
-    every = [start, *(each for _, *pair in axes for each in pair)]
-    sign = np.sign(start[VISCOUS_INDEX])
-    is_power = all(sign * each[VISCOUS_INDEX] > 0 for each in every)  # a drag that changes its sign is none
-    for each in every if is_power else []:
-        each[VISCOUS_INDEX] = np.log(sign * each[VISCOUS_INDEX])
-    y = np.tile(start, (number, 1))
-    for places, ahead, behind in axes:
-        t = np.clip(places, -MAX_DEVIATION, MAX_DEVIATION)[:, None]
-        y += (ahead - behind) / (2 * NODE_DEVIATION) * t + (ahead + behind - 2 * start) / (2 * NODE_DEVIATION**2) * t**2
-    return _Samples(y, float(sign), is_power, geometry)
-
-
-def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
-    """Return the log odds of the load share, the viscous friction and the logarithms of films of a solved state."""
-    contact, fluid = max(state.contact_load_share, MIN_SHARE), max(state.fluid_load_share, MIN_SHARE)
-    rule = RULES[state.groups.geometry]
-    inputs = rule.of_contact(of)
-    parts = {name: float(getattr(state, name)) for name in rule.parts(definition)}
-    given = {**inputs, "far": far_film(state.groups.model)}
-    viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, given, definition)) / inputs["beta"]
-    films = [float(getattr(state, name)) for name in films_of(state.groups.geometry)]
-    return np.array([np.log(contact / fluid), viscous, *np.log([max(value, MIN_SHARE) for value in films])])
-
-
 def _scale_groups(groups: Groups, offsets: Array) -> Groups:
-    factors = np.exp(offsets)
-    speed, load, roughness = (np.asarray(getattr(groups, name)) * factors[..., i] for i, name in enumerate(GROUPS))
-    if np.ndim(factors) == 1:
-        return replace(groups, speed=float(speed), load=float(load), roughness=float(roughness))
+    speed, load, roughness = (np.asarray(getattr(groups, name)) * np.exp(offsets[:, i]) for i, name in enumerate(GROUPS))
     return replace(groups, speed=speed, load=load, roughness=roughness)
+
+
+def _log(value: Dual) -> Dual:
+    """Return the logarithm of a positive number, constant where it underflows."""
+    return (
+        Dual(math.log(value.value), value.slope / value.value)
+        if value.value > MIN_SHARE
+        else Dual(math.log(MIN_SHARE), 0.0 * value.slope)
+    )

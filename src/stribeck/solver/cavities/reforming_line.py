@@ -19,6 +19,7 @@ from stribeck._types import Array
 from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import ROW
 from stribeck.equations.prediction import SeenFrom
+from stribeck.equations.sensitivity import with_ending_of
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
@@ -42,7 +43,6 @@ from stribeck.solver.path.line_path import (
     READ_COLUMNS,
     SERIES_COLUMNS,
     LineProblem,
-    with_ending_of,
 )
 from stribeck.solver.path.path import Expansion
 from stribeck.solver.refinement import RefinedState, converge

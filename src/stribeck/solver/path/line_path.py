@@ -15,6 +15,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_ROWS, FineOperators
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales
+from stribeck.equations.sensitivity import with_ending_of
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -394,11 +395,3 @@ def same_unknowns(*near: Expansion) -> bool:
 def _unknowns_of(model: Model) -> tuple[bool, Cavitation]:
     """Return whether the fluid pressure is an unknown, and the cavitation, which adds the places of its boundaries."""
     return model.film.uses_pressure, model.cavitation
-
-
-def with_ending_of(state: State, model: Model) -> Model:
-    """Return a model with the cavitation of a state."""
-    cavitation = state.groups.model.cavitation
-    if model.cavitation is cavitation:
-        return model
-    return replace(model, cavitation=cavitation, cavity_pressure=0.0)
