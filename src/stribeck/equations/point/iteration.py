@@ -29,7 +29,6 @@ from stribeck.numerics.settings import (
     MAX_KRYLOV,
     MAX_STEPS,
     NEGLIGIBLE,
-    REBUILD_AT,
     SAFETY,
 )
 from stribeck.quantities.outcome import Outcome
@@ -105,8 +104,6 @@ def iterate(
             left = SAFETY * bending * size * size + solved.missed
             if left <= tolerance:
                 return ended(Outcome.CONVERGED)
-            if solved.steps > REBUILD_AT:
-                preconditioner = None
         return ended(Outcome.STEP_LIMIT)
 
 
