@@ -59,7 +59,7 @@ def viscous_friction(equations: Equations, u: Fields, load: Numbers, on: FilmOnM
     """Return the viscous friction for beta = 1: published, balanced and upper; also traced by the logarithm of a group."""
     film, integral, mesh, known = equations.film, on.integral, on.integral.mesh, u.pressure is not None
     speed, traced = equations.speed_of(by), equations.traced_speed(by)
-    d = equations.stretch_of(u)
+    d = u.cavity_stretch
     stretch, x_c = (1.0 if d is None else d), (0.0 if u.exit is None else u.exit)
     x, beyond, _ = mesh.beyond
     middle = len(x) // 2

@@ -43,7 +43,7 @@ from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import Volterra
 from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.numerics.trace import Matrix, Term, Trace, act, mapped, matrix_of, pointwise, value_of
+from stribeck.numerics.trace import Matrix, Term, Trace, act, mapped, matrix_of, pointwise
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Coupled", "Eliminated", "Equations", "Operators"]
@@ -104,16 +104,8 @@ class Equations:
 
     def cavity_stretch(self, y: Array) -> Array | None:
         """Return stretch of the cavity, a column of stacked states; None where the film does not re-form."""
-        found: Array | None = value_of(self.stretch_of(self.fields(y)))
+        found: Array | None = self.fields(y).cavity_stretch
         return found
-
-    def stretch_of(self, u: Fields) -> Any:
-        """Return the stretch of the cavity; None where the film does not re-form."""
-        return u.cavity_stretch
-
-    def cavity_pressure_of(self, u: Fields) -> Any:
-        """Return the pressure of the cavity [p_Hz]."""
-        return np.full_like(value_of(u.cavity_stretch), self.operators.model.cavity_pressure)
 
     def positions(self, y: Array) -> Array:
         """Return x at the nodes [a]."""
@@ -124,7 +116,7 @@ class Equations:
 
     def far_gap(self, u: Fields) -> Callable[[Array], Any]:
         """Return the far gap as a function of the coordinate, up to a smooth function of the inverse coordinate."""
-        solid, d = self.operators.model.solid, self.stretch_of(u)
+        solid, d = self.operators.model.solid, u.cavity_stretch
 
         def far(xi: Array) -> Any:
             if u.exit is None:
@@ -201,9 +193,9 @@ class Equations:
 
     def fluid_of_gradient(self, u: Fields, g: Any, by: str | None = None) -> Any:
         """Return the pressure of the fluid that follows from its gradient."""
-        op, d = self.operators, self.stretch_of(u)
+        op, d = self.operators, u.cavity_stretch
         fluid = act(op.integral, self.speed_of(by) * g)
-        return fluid if d is None else d * fluid + op.in_cavity * self.cavity_pressure_of(u)
+        return fluid if d is None else d * fluid + op.in_cavity * op.model.cavity_pressure
 
     def balances_of(self, u: Fields, fluid: Any, g: Any, by: str | None = None) -> Fields:
         """Return the rows of shape, load and ends under a pressure of the fluid; ``g`` is the gradient in the film."""
@@ -214,7 +206,7 @@ class Equations:
 
     def balances(self, u: Fields, pressure: Any, g: Any, at_end: Any, by: str | None = None) -> Fields:
         """Return the rows of shape, load and ends under a pressure; ``at_end`` is the gradient that vanishes at the exit."""
-        op, d, scale = self.operators, self.stretch_of(u), self.flux_scale
+        op, d, scale = self.operators, u.cavity_stretch, self.flux_scale
         x = op.mesh.nodes if d is None else d * op.mesh.nodes
         shape = u.gap - u.offset - (op.parabola if d is None else 0.5 * x * x) - op.deflected(pressure, d)
         load = act(op.load, pressure)
@@ -223,7 +215,7 @@ class Equations:
             shape = shape - u.exit * (x + 0.5 * u.exit)
             exit = scale * act(op.exit_value, at_end)
         if d is not None:
-            in_cavity = self.cavity_pressure_of(u) / self.speed_of(by)
+            in_cavity = op.model.cavity_pressure / self.speed_of(by)
             load, flux = d * load, d * flux - in_cavity
             stretch = scale * (d * act(op.net_beyond, g) + in_cavity)
         return Fields(shape, None, load - LOAD, scale * flux, exit, stretch)

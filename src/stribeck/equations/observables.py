@@ -102,7 +102,7 @@ def central_gaps(equations: Equations, u: Fields) -> Array:
 
 def measured(equations: Equations, u: Fields, load: Numbers, by: str | None = None) -> dict[str, Any]:
     """Return what follows from fields by integrals, of values in rows or of traces; also traced by ln of one group."""
-    op, d = equations.operators, equations.stretch_of(u)
+    op, d = equations.operators, u.cavity_stretch
     stretch = 1.0 if d is None else d
     contact = equations.contact(u.gap, by)
     found = {"contact_load_share": stretch * act(op.panel_load, contact) / LOAD}

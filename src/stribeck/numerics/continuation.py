@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stribeck._types import Array
-from stribeck.numerics.settings import STEP_GROWTH
+from stribeck.numerics.settings import MAX_PATH_STATES, STEP_GROWTH
 from stribeck.quantities.outcome import Outcome
 
 
@@ -89,7 +89,10 @@ def march(
             failure = state
             return path(Outcome.PATH_LOST if state is None else state.outcome)
         points.append((start, state))
-    while (here := points[-1][0]) != stop:
+    for _ in range(MAX_PATH_STATES):
+        here = points[-1][0]
+        if here == stop:
+            return path(Outcome.CONVERGED)
         left = abs(stop - here)
         step = left if left <= length else min(length, 0.5 * left)
         s = stop if step == left else here + sign * step
@@ -107,7 +110,7 @@ def march(
         elif may_grow:
             length = min(steps.longest, factor * step)
         may_grow = True
-    return path(Outcome.CONVERGED)
+    return path(Outcome.PATH_LOST)
 
 
 def extrapolation_weights(coordinates: npt.ArrayLike, s: float) -> Array:

@@ -1,55 +1,92 @@
-r"""Cold start: a first state for any groups, by loading the contact from where the elastic body hardly deforms.
+r"""Cold start: a first state for any groups, from a rigid cylinder by one path.
 
-Lifting the load of a sliding cylinder by a factor s multiplies the speed group by :math:`s^2`, divides the load group by s
-and keeps the roughness group.  Far enough up this path the gap is the parabola :math:`h_0 + x^2/2`, with the small
-deflection under the pressure of a rigid film; :math:`h_0` follows from one scalar equation.  From there the path comes down.
-The formulas here only start Newton's iteration: no result depends on them.
+A fast enough film, or high enough asperities, hold the cylinder so far off that it hardly deforms: its gap is the parabola
+:math:`h_0 + x^2/2`, and :math:`h_0` follows from one scalar equation.  From there the speed comes down, of a contact at rest
+the roughness, with the solid and the exit of the model.  Then the fluid of the model replaces the Newtonian one along
+
+.. math::
+
+    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} .
+
+The formulas here only start Newton's iteration: no result depends on them.  Films that re-form come after these, see
+:mod:`stribeck.solver.cavities.cavity_length`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.model import Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.equations.state import MIN_GAP, State, mesh_for, solve_state
+from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
+from stribeck.numerics.newton import root_between
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
-from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, COARSE_STEP
-from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
-from stribeck.solver.cavities.cavity_length import paths_to_cavity
-from stribeck.solver.homotopy import paths_to_model
+from stribeck.numerics.settings import (
+    COARSE_ORDER,
+    COARSE_RTOL,
+    COARSE_STEP,
+    HALF_DIGITS,
+    MAX_LOG_STEP,
+    MIN_LOG_STEP,
+    NEGLIGIBLE,
+)
 
-MIN_RIGID = 30.0  # Speed group or relative roughness above which the rigid cylinder starts Newton's iteration safely
-MAX_RIGID_LOG_FACTOR = 0.7  # Logarithm of the factor of the load within which the rigid film or contact is tried too
-# Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading at low
-# speed would cross the sudden hand-over from asperities to film.
-MIN_SATURATED_LOAD = 0.5
-MAX_LOG_HEIGHT = 400.0  # Logarithm of the largest height of a rigid film, and of 1 over the smallest, in double precision
-MAX_NEWTON_STEPS = 600  # Newton steps after which a path is given up; none of 200 random states takes more than 300
+__all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
+
+MIN_RIGID = 30.0  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
+MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
+STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE * MIN_LOG_STEP, aim=3.0)
+"""Steps along ln of a group or of the suction of a cavity, and in the part of a fluid."""
 
 
 @dataclass(frozen=True)
 class RigidGuess:
-    """The gap of a rigid cylinder with the deflection under its rigid-film pressure."""
+    """The gap of a rigid cylinder, with the deflection under the pressure of a film that does not end."""
 
     speed: float  # Speed group [-]
-    offset: float  # Height of the cylinder [u_Hz]
-    flux_gap: float  # Flux gap of the rigid parabola, 4/3 of its height [u_Hz]
-    minimum_position: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
-    exit: float = 0.0  # Those of a full film: a rigid film is the guess of no other [a]
-    cavity_stretch: float = 1.0  # Those of a full film: a rigid film is the guess of no other [a]
-    reformation: float = math.inf  # Those of a full film: a rigid film is the guess of no other [a]
+    height: float  # Height of the cylinder [u_Hz]
+    ends: bool  # Whether the film ends
+    cavity_stretch: float = 1.0  # That of a film which does not re-form
+    reformation: float = math.inf  # That of a film which does not re-form
+
+    @property
+    def offset(self) -> float:
+        """Offset of the cylinder."""
+        return self.height
+
+    @property
+    def width(self) -> float:
+        """Distance over which the gap doubles."""
+        return math.sqrt(2 * self.height)
+
+    @property
+    def exit(self) -> float:
+        """Where the pressure and its gradient vanish behind a rigid cylinder; zero of a film without an end."""
+        return rigid_exit() * self.width if self.ends else 0.0
+
+    @property
+    def flux_gap(self) -> float:
+        """The gap where the pressure gradient vanishes."""
+        return self.height * (1 + rigid_exit() ** 2 if self.ends else 4 / 3)
+
+    @property
+    def minimum_position(self) -> float:
+        """Middle of the cylinder, seen from the exit."""
+        return -self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -57,102 +94,103 @@ class RigidGuess:
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
-        b = math.sqrt(2 * self.offset)
-        deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
-        parabola = self.offset + x * x / 2
+        x, b = x + self.exit, self.width
+        parabola = self.height + x * x / 2
+        deflection = 0.0 if self.ends else -2 * self.speed / 3 * x / b / (x * x + b * b)
         # Where asperities carry nearly all of a heavy load, the film's deflection may exceed the height.
-        return np.asarray(np.log(np.maximum(parabola + deflection, 0.1 * parabola))[None, :])
+        return np.asarray(np.log(np.maximum(parabola + deflection, NEGLIGIBLE * parabola))[None, :])
 
 
-def unloaded(groups: Groups, log_factor: float) -> Groups:
-    """Return the groups with the load divided by ``exp(log_factor)``, all else fixed."""
-    factor = math.exp(log_factor)
-    return replace(groups, speed=groups.speed * factor * factor, load=groups.load / factor)
+@cache
+def rigid_exit() -> float:
+    """Return the exit behind a rigid cylinder over the distance at which its gap doubles."""
+    # With x = tan(angle) the pressure at the exit is the difference of two integrals of powers of the cosine.
 
+    def pressure(angle: float) -> float:
+        square = 0.5 * (angle + 0.5 * math.pi) + 0.25 * math.sin(2 * angle)
+        fourth = 0.75 * square + 0.25 * math.sin(angle) * math.cos(angle) ** 3
+        return square - fourth / math.cos(angle) ** 2
 
-def faster(groups: Groups, log_factor: float) -> Groups:
-    """Return the groups with the speed times ``exp(2 log_factor)``, all else fixed."""
-    return replace(groups, speed=groups.speed * math.exp(2 * log_factor))
+    angle = root_between(pressure, 0.0, 0.25 * math.pi, HALF_DIGITS)
+    assert angle is not None
+    return math.tan(angle)
 
 
 def rigid_guess(groups: Groups) -> RigidGuess | None:
     r"""Return the rigid parabola whose film and contact carry the load; None if it is outside double precision.
 
-    .. math:: \frac{\pi}{48} \frac{\lambda^2}{h_0^3}
-              + \int p_c(h_0 + x^2/2) \, dx = \frac{\pi}{2}
+    .. math:: \frac{\pi}{48} \frac{\lambda^2}{h_0^3} \quad \text{or, of a film that ends,} \quad
+              \frac{\lambda}{2 h^*} , \qquad \text{and} \quad \int p_c(h_0 + x^2/2) \, dx \quad \text{add up to}
+              \quad \frac{\pi}{2}
     """
-    speed, law = float(groups.speed), contact_law(groups)
+    speed, law, ends = float(groups.speed), contact_law(groups), groups.model.cavitation is not Cavitation.NONE
     x, dx = np.linspace(-6, 6, 241, retstep=True)
     x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
+    flux_ratio = 1 + rigid_exit() ** 2
 
-    low, high = -MAX_LOG_HEIGHT, MAX_LOG_HEIGHT
-    while high - low > 1e-6:  # the load falls with the height, and scipy.optimize takes longer to import than a solve
-        middle = 0.5 * (low + high)
-        height = math.exp(middle)
-        with np.errstate(over="ignore"):
+    def log_excess(log_height: float) -> float:
+        height = math.exp(log_height)
+        film = speed / (height * math.sqrt(height))
+        with np.errstate(all="ignore"):
             contact = float(law.pressure(height + x * x / 2).sum() * dx)
-        film = min(speed / (height * math.sqrt(height)), 1e6)
-        low, high = (middle, high) if math.pi / 48 * film * film + contact > LOAD else (low, middle)
-    if low == -MAX_LOG_HEIGHT or high == MAX_LOG_HEIGHT:
+            carried = speed / (2 * flux_ratio * height) if ends else math.pi / 48 * film * film
+            return float(np.log((carried + contact) / LOAD))
+
+    log_height = root_between(log_excess, -MAX_LOG_HEIGHT, MAX_LOG_HEIGHT, NEGLIGIBLE * COARSE_RTOL)
+    return None if log_height is None else RigidGuess(speed, math.exp(log_height), ends)
+
+
+def coarse_state(groups: Groups, guess: Guess) -> State | None:
+    """Return the state on a coarse mesh that resolves it, from a guess; None where there is no such mesh."""
+    state = _on_mesh_of_guess(groups, guess)
+    if state is None or not state.outcome.ok or state.prediction_error <= 1.0:
+        return state
+    # The gap has more than doubled somewhere: the mesh, which is that of the guess, may have led to a false state.
+    found = _on_mesh_of_guess(groups, state)
+    if found is None or not found.prediction_error <= 1.0:
         return None
-    height = math.exp(0.5 * (low + high))
-    return RigidGuess(speed, height, 4 * height / 3)
+    return replace(found, prediction_error=state.prediction_error)
+
+
+def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
+    """Return the state on a mesh that resolves its guess; None where that needs too many panels."""
+    try:
+        mesh = mesh_for(guess, groups, contact_law(groups), COARSE_ORDER, COARSE_RTOL, anew=False)
+    except MeshTooLargeError:
+        return None
+    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP)
 
 
 def cold_start(groups: Groups) -> Path[State]:
-    """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution."""
-    kappa = float(groups.relative_roughness)
-    by_speed = groups.speed > 0 and groups.load > MIN_SATURATED_LOAD and kappa < MIN_RIGID
-    along = faster if by_speed else unloaded
-    factors = []
-    if groups.speed > 0:
-        factors.append(0.5 * math.log(MIN_RIGID / groups.speed))
-    if kappa > 0 and not by_speed:
-        factors.append(math.log(MIN_RIGID / kappa))
-    top = max(0.0, min(factors))
-    steps = 0
+    """Return the path from the rigid cylinder to the coarse state of a Newtonian fluid."""
+    ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
+    model = Model(cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid)
+    groups = replace(groups, model=model)
+    name = "speed" if groups.speed > 0 else "roughness"
+    top = max(0.0, math.log(MIN_RIGID / float(groups.speed if groups.speed > 0 else groups.relative_roughness)))
 
     def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
-        nonlocal steps
-        if steps > MAX_NEWTON_STEPS:
-            return None
-        try:
-            here = along(groups, log_factor)
-        except InputError:  # lifted out of the range of groups
-            return None
-        rigid = top - log_factor < MAX_RIGID_LOG_FACTOR and len(history) < 3
-        guess: Guess | None = rigid_guess(here) if rigid else extrapolate(history, log_factor)
-        if guess is None:
-            return None
-        try:
-            mesh = mesh_for(guess, here, contact_law(here), COARSE_ORDER, COARSE_RTOL)
-        except MeshTooLargeError:
-            return None
-        state = solve_state(here, Operators(mesh, here.model), guess, COARSE_STEP)
-        steps += state.root.steps
-        return state
+        here = replace(groups, **{name: math.exp(log_factor) * getattr(groups, name)})
+        guess = extrapolate(history, log_factor) if history else rigid_guess(here)
+        return None if guess is None else coarse_state(here, guess)
 
-    if 0.0 < top < MAX_RIGID_LOG_FACTOR:
-        direct = correct(0.0, ())
-        if direct is not None and direct.outcome.ok:
-            return Path((0.0,), (direct,), Outcome.CONVERGED, None)
-    first = correct(top, ())
-    known = [] if first is None or not first.outcome.ok else [(top, first)]
-    return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3), history=known)
+    return march(correct, top, 0.0, STEPS)
 
 
 def first_path(groups: Groups) -> Path[State]:
-    """Return the first path from cold that arrives at ``groups``, or the last that does not."""
-    for path in first_paths(groups):
-        if path.outcome.ok:
-            break
-    return path
+    """Return the path from cold to a coarse state of ``groups``, whose film does not re-form."""
+    path = cold_start(groups)
+    if not path.outcome.ok or groups.model.film == Newtonian():
+        return path
+    start = path.states[-1]
+
+    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
+        here = replace(groups, model=replace(start.groups.model, film=blend(groups.model.film, part)))
+        return coarse_state(here, extrapolate(history, part))
+
+    return march(correct, 0.0, 1.0, STEPS, history=[(0.0, start)])
 
 
-def first_paths(groups: Groups) -> Iterator[Path[State]]:
-    """Yield paths from cold to ``groups``: with the model of the article one, with others by several ways."""
-    if groups.model != BASE_MODEL:
-        ways = paths_to_cavity if groups.model.cavitation is Cavitation.REFORM else paths_to_model
-        yield from ways(groups, cold_start)
-    else:
-        yield cold_start(groups)
+def is_lost_to_rounding(path: Path[State]) -> bool:
+    """Return whether a path ends before its end, at a film of which rounding leaves few digits."""
+    return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < MIN_GAP

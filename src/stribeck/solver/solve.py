@@ -23,18 +23,17 @@ from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.continuation import Path
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import MAX_RTOL, MIN_RTOL, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.cavities.cavity_length import cavitated_start
-from stribeck.solver.cold_start import first_paths
-from stribeck.solver.homotopy import is_lost_to_rounding
+from stribeck.solver.cavities.cavity_length import path_to_cavity
+from stribeck.solver.cold_start import first_path, is_lost_to_rounding
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError, describe
@@ -43,10 +42,6 @@ if TYPE_CHECKING:
     from stribeck.contacts.geometries import LineContact, PointContact
     from stribeck.solver.point.solution import PointSolution
 
-# A cavity too short for a mesh changes observables in proportion to what it takes from the largest suction: that fraction over
-# those of longer cavities, from which the change is extrapolated.
-CAVITY_SUCTION_RATIOS = (0.25, 0.1, 0.03, 0.01)
-NEWTON_FAILURES = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
 TOO_THIN = (
     "Double precision does not hold this state: on the way to it the film falls below {:.1e} of the Hertz indentation, and "
     "gaps are known to about 4e-15 of that. No value was reached; ask for a larger speed or roughness."
@@ -184,31 +179,18 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}{far}") from None
         if base.model.cavitation is Cavitation.REFORM:
             return _solve_reforming(base, rtol)
-        return _solve_by_paths(base, groups, rtol, far)
+        return _solve_by_path(first_path(base), groups, rtol)
 
 
-def _solve_by_paths(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
-    """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
-    point, outcome, thinnest = None, Outcome.PATH_LOST, math.inf
-    for path in first_paths(base):
-        if not path.outcome.ok:
-            outcome = path.outcome
-            if is_lost_to_rounding(path):
-                thinnest = min(thinnest, float(path.states[-1].gap.min()))
-            continue
-        point = _refined(path.states[-1], groups, rtol)
-        if not _newton_failed(point):
-            return point
-    if point is None and thinnest < math.inf:
+def _solve_by_path(path: Path[State], groups: Groups, rtol: float) -> RefinedState:
+    """Return the refined state of ``groups`` from the end of a path from cold; raise if it does not arrive."""
+    if path.outcome.ok:
+        return _refined(path.states[-1], groups, rtol)
+    far = untested_note(groups)
+    if is_lost_to_rounding(path):
+        thinnest = float(path.states[-1].gap.min())
         raise SolveError(Outcome.ROUNDING, None, f"{describe(groups)}: {TOO_THIN.format(thinnest)}{far}")
-    if point is None:
-        raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spike_note(groups)}{far}")
-    return point
-
-
-def _newton_failed(point: RefinedState) -> bool:
-    """Return whether Newton's iteration failed on the required mesh, where a coarser one may have a solution."""
-    return point.state is None or point.outcome in NEWTON_FAILURES
+    raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{spike_note(groups)}{far}")
 
 
 def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
@@ -219,52 +201,18 @@ def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
 def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
     """Return the full film if its pressure stays above the cavity pressure, else the film with a cavity."""
     # A cavity at ambient pressure reaches to infinity.
-    model, far = groups.model, untested_note(groups)
+    model = groups.model
     if model.cavity_pressure == 0.0:
         ending = replace(groups, model=replace(model, cavitation=Cavitation.EXIT))
-        return replace(_solve_by_paths(ending, ending, rtol, far), groups=groups)
+        return replace(_solve_by_path(first_path(ending), ending, rtol), groups=groups)
     full = replace(groups, model=replace(model, cavitation=Cavitation.NONE, cavity_pressure=0.0))
-    point = _solve_by_paths(full, full, rtol, far)
-    if point.state is None:
-        return replace(point, groups=groups)
-    if point.state.lowest_pressure >= model.cavity_pressure:
-        return replace(point, groups=groups)
-    found = _solve_with_cavity(groups, point.state, rtol)
-    if found is None or not found.outcome.ok:
-        found = _extrapolate_short_cavity(groups, point, rtol)
-    return _solve_by_paths(groups, groups, rtol, far) if found is None else found
-
-
-def _solve_with_cavity(groups: Groups, full: State, rtol: float) -> RefinedState | None:
-    """Return the state of a film with a cavity, from its full film; None without a coarse one."""
-    guess = cavitated_start(groups, full)
-    return None if guess is None else _refined(guess, groups, rtol)
-
-
-def _extrapolate_short_cavity(groups: Groups, full: RefinedState, rtol: float) -> RefinedState | None:
-    """Return the full film with observables extrapolated to a cavity too short for a mesh, or None."""
-    if full.state is None or full.values is None or full.estimate is None:
-        return None
-    deepest = full.state.lowest_pressure
-    taken = 1.0 - groups.model.cavity_pressure / deepest
-    here, changes, errors = full.values.array(), list[Array](), full.estimate.discretisation
-    for part in CAVITY_SUCTION_RATIOS:
-        if taken >= part:
-            break
-        longer = replace(groups, model=replace(groups.model, cavity_pressure=deepest * (1.0 - taken / part)))
-        known = _solve_with_cavity(longer, full.state, rtol)
-        if known is None or known.values is None or known.estimate is None or not known.outcome.ok:
-            continue
-        changes.append(part * (known.values.array() - here))
-        if len(changes) == 2:
-            changed = here + changes[0]
-            missed = SAFETY * np.abs(changes[1] - changes[0])
-            estimate = replace(full.estimate, discretisation=errors + missed)
-            if not estimate.total <= rtol:
-                return None
-            values = replace(full.values, **dict(zip(ALL_NAMES, changed.tolist(), strict=True)))
-            return replace(full, groups=groups, values=values, estimate=estimate)
-    return None
+    path, deepest = first_path(full), -math.inf
+    if path.outcome.ok:
+        point = _refined(path.states[-1], full, rtol)
+        deepest = deepest if point.state is None else point.state.lowest_pressure
+        if deepest >= model.cavity_pressure:
+            return replace(point, groups=groups)
+    return _solve_by_path(path_to_cavity(groups, deepest), groups, rtol)
 
 
 def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups | Contact:

@@ -16,8 +16,6 @@ from stribeck.solver.point.refinement import follow, is_cavitated, refine
 
 __all__ = ["follow_reforming", "full_model", "refine_reforming"]
 
-FULL_FILM_SUCTION_RATIO = 1.1  # Suction of a coarse full film over the cavity's below which the full film is tried first
-
 
 def full_model(model: Model) -> Model:
     """Return a model without cavitation."""
@@ -31,7 +29,7 @@ def refine_reforming(
     full = guess.relabelled(full_model(model))
     if known is not None and not isinstance(known.fine.equations, CavitatedSystem):
         return _refine_full_film(speed, law, full, rtol, model, known) or refine(speed, law, guess, rtol, model)
-    if known is None and guess.unknowns.fluid.min() >= FULL_FILM_SUCTION_RATIO * model.cavity_pressure:
+    if known is None and guess.unknowns.fluid.min() >= model.cavity_pressure:
         found = _refine_full_film(speed, law, full, rtol, model)
         if found is not None:
             return found
