@@ -28,7 +28,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import MIN_GAP, State, mesh_for, solve_state
+from stribeck.equations.state import MIN_GAP, State, is_rough, mesh_for, solve_state
 from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -44,12 +44,15 @@ from stribeck.numerics.settings import (
     MIN_LOG_STEP,
     NEGLIGIBLE,
 )
+from stribeck.quantities.units import InputError
 
 __all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
 
 MIN_RIGID = 30.0  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
-STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE * MIN_LOG_STEP, aim=3.0)
+MAX_STEPS_ON_PATH = 20  # Newton steps after which a step of the path is halved: longer iterations mostly fail
+MAX_UNLOADED = 0.5  # Load group above which the path comes down in speed: loading would cross the hand-over to the film
+STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE * MIN_LOG_STEP)
 """Steps along ln of a group or of the suction of a cavity, and in the part of a fluid."""
 
 
@@ -158,19 +161,30 @@ def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
         mesh = mesh_for(guess, groups, contact_law(groups), COARSE_ORDER, COARSE_RTOL, anew=False)
     except MeshTooLargeError:
         return None
-    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP)
+    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP, MAX_STEPS_ON_PATH)
 
 
 def cold_start(groups: Groups) -> Path[State]:
     """Return the path from the rigid cylinder to the coarse state of a Newtonian fluid."""
     ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
     model = Model(cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid)
+    if is_rough(groups.model.film):
+        model = replace(model, film=groups.model.film)
     groups = replace(groups, model=model)
     name = "speed" if groups.speed > 0 else "roughness"
     top = max(0.0, math.log(MIN_RIGID / float(groups.speed if groups.speed > 0 else groups.relative_roughness)))
+    kappa = float(groups.relative_roughness)
+    unloads = groups.speed > 0 and groups.load <= MAX_UNLOADED and kappa > 0
+    if unloads:
+        top = max(0.0, min(0.5 * top, math.log(MIN_RIGID / kappa)))
 
     def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, **{name: math.exp(log_factor) * getattr(groups, name)})
+        factor = math.exp(log_factor)
+        changed = {"speed": groups.speed * factor**2, "load": groups.load / factor}
+        try:
+            here = replace(groups, **(changed if unloads else {name: factor * getattr(groups, name)}))
+        except InputError:  # lifted out of the range of groups
+            return None
         guess = extrapolate(history, log_factor) if history else rigid_guess(here)
         return None if guess is None else coarse_state(here, guess)
 
@@ -180,7 +194,7 @@ def cold_start(groups: Groups) -> Path[State]:
 def first_path(groups: Groups) -> Path[State]:
     """Return the path from cold to a coarse state of ``groups``, whose film does not re-form."""
     path = cold_start(groups)
-    if not path.outcome.ok or groups.model.film == Newtonian():
+    if not path.outcome.ok or groups.model.film == Newtonian() or is_rough(groups.model.film):
         return path
     start = path.states[-1]
 
@@ -188,7 +202,7 @@ def first_path(groups: Groups) -> Path[State]:
         here = replace(groups, model=replace(start.groups.model, film=blend(groups.model.film, part)))
         return coarse_state(here, extrapolate(history, part))
 
-    return march(correct, 0.0, 1.0, STEPS, history=[(0.0, start)])
+    return march(correct, 0.0, 1.0, replace(STEPS, first=1.0), history=[(0.0, start)])
 
 
 def is_lost_to_rounding(path: Path[State]) -> bool:
