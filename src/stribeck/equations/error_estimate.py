@@ -182,7 +182,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
 
 def _rounding(equations: Equations, u: Fields, shape: Array, slopes: Array) -> Fields:
     """Return by how much rounding may change the rows: a few units in the last place of the largest terms."""
-    op, scale, d = equations.operators, equations.flux_scale, equations.stretch_of(u)
+    op, scale, d = equations.operators, equations.flux_scale, u.cavity_stretch
     x = op.mesh.nodes if d is None else d * op.mesh.nodes
     parabola = 0.5 * (x if u.exit is None else x + u.exit) ** 2
     deflection = u.gap - u.offset - parabola - shape
