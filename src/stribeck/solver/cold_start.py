@@ -50,9 +50,9 @@ __all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
 
 MIN_RIGID = 30.0  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
-MAX_STEPS_ON_PATH = 20  # Newton steps after which a step of the path is halved: longer iterations mostly fail
+MAX_STEPS_ON_PATH = 15  # Newton steps after which a step of the path is halved: longer iterations mostly fail
 MAX_UNLOADED = 0.5  # Load group above which the path comes down in speed: loading would cross the hand-over to the film
-STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE * MIN_LOG_STEP)
+STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE**2 * MIN_LOG_STEP)
 """Steps along ln of a group or of the suction of a cavity, and in the part of a fluid."""
 
 

@@ -17,7 +17,7 @@ from stribeck.equations.prediction import SeenFrom, extrapolate
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path, march
-from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE
+from stribeck.numerics.settings import COARSE_ORDER, MAX_REFINEMENTS, NEGLIGIBLE
 from stribeck.solver.cold_start import STEPS, coarse_state, first_path
 
 __all__ = ["path_to_cavity"]
@@ -49,11 +49,18 @@ def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> Path[State]:
 
 def _behind_exit(state: State, suction: float) -> SeenFrom:
     """Return the guess of a cavity so long that the film with an exit, at its flux, reforms there with a suction."""
-    behind = state.mesh.nodes > 0
-    x, gap = state.mesh.nodes[behind], state.gap[behind]
-    x, gap = x[np.argsort(x)], gap[np.argsort(x)]
-    film = state.equations.film
+    nodes, film = state.mesh.nodes, state.equations.film
+    x = np.geomspace(nodes[nodes > 0].min(), nodes.max(), COARSE_ORDER * state.mesh.size)
+    gap = np.exp(state.fields(x)[0])
     slopes = film.gradient(gap, np.zeros_like(gap) if film.uses_pressure else None, state.flux_gap)
     cells = 0.5 * float(state.groups.speed) * (slopes[1:] + slopes[:-1]) * np.diff(x)
-    needed = np.cumsum(cells[::-1])[::-1]
-    return SeenFrom(state, state.exit, float(x[np.flatnonzero(needed >= min(suction, needed.max()))[-1]]), -suction)
+    # Far out the gradient falls with a power of the distance, and so does the suction that is needed from there on.
+    power = math.log(slopes[-2] / slopes[-1]) / math.log(x[-1] / x[-2]) - 1
+    beyond = float(state.groups.speed) * slopes[-1] * x[-1] / power
+    needed = beyond + np.append(np.cumsum(cells[::-1])[::-1], 0.0)
+    if suction < beyond:
+        length = x[-1] * (beyond / suction) ** (1 / power)
+    else:
+        falls = np.argmax(needed)
+        length = float(np.interp(-suction, -needed[falls:], x[falls:]))
+    return SeenFrom(state, state.exit, length, -suction)
