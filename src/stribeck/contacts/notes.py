@@ -189,12 +189,12 @@ LINE_CAVITATION_NOTE = (
 
 
 def cavitation_notes(
-    contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_CAVITATION_NOTE
+    contact: Contact | None, lowest_pressure: float, consequence: str = LINE_CAVITATION_NOTE
 ) -> tuple[str, ...]:
     """Return the note on a suction of more than an atmosphere behind the contact."""
     if contact is None:
         return ()
-    suction = -float(fluid_pressure.min()) * contact.hertz.pressure
+    suction = -lowest_pressure * contact.hertz.pressure
     if not suction > ATMOSPHERE:
         return ()
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.

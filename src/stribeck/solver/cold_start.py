@@ -46,7 +46,7 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.units import InputError
 
-__all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
+__all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding", "next_state"]
 
 MIN_RIGID = 30.0  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
@@ -155,6 +155,14 @@ def coarse_state(groups: Groups, guess: Guess) -> State | None:
     return replace(found, prediction_error=state.prediction_error)
 
 
+def next_state(groups: Groups, history: Sequence[tuple[float, State]], place: float) -> State | None:
+    """Return the coarse state of groups at a place of a path: predicted from the states before it, else from the last two."""
+    found = coarse_state(groups, extrapolate(history, place))
+    if len(history) > 2 and (found is None or not found.outcome.ok):  # a polynomial through many amplifies their errors
+        found = coarse_state(groups, extrapolate(history[-2:], place))
+    return found
+
+
 def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
     """Return the state on a mesh that resolves its guess; None where that needs too many panels."""
     try:
@@ -185,7 +193,9 @@ def cold_start(groups: Groups) -> Path[State]:
             here = replace(groups, **(changed if unloads else {name: factor * getattr(groups, name)}))
         except InputError:  # lifted out of the range of groups
             return None
-        guess = extrapolate(history, log_factor) if history else rigid_guess(here)
+        if history:
+            return next_state(here, history, log_factor)
+        guess = rigid_guess(here)
         return None if guess is None else coarse_state(here, guess)
 
     return march(correct, top, 0.0, STEPS)
@@ -200,7 +210,7 @@ def first_path(groups: Groups) -> Path[State]:
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
         here = replace(groups, model=replace(start.groups.model, film=blend(groups.model.film, part)))
-        return coarse_state(here, extrapolate(history, part))
+        return next_state(here, history, part)
 
     return march(correct, 0.0, 1.0, replace(STEPS, first=1.0), history=[(0.0, start)])
 

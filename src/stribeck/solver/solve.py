@@ -330,7 +330,7 @@ def state_notes(
     if groups.speed > 0 and (contact is not None or groups.model != BASE_MODEL):
         solved = state()
         fluid = solved.equations.pressures(solved.y)[1]
-        notes += [] if contact is None else cavitation_notes(contact, fluid)
+        notes += [] if contact is None else cavitation_notes(contact, solved.lowest_pressure)
         if not solved.equations.operators.is_base_model:
             notes += fluid_notes(solved.equations.film, solved.gap, fluid, solved.flux_gap)
     if math.isnan(values.flux_gap):

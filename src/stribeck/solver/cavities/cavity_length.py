@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck.contacts.groups import Groups
-from stribeck.equations.prediction import SeenFrom, extrapolate
+from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import Path, march
 from stribeck.numerics.settings import COARSE_ORDER, MAX_REFINEMENTS, NEGLIGIBLE
-from stribeck.solver.cold_start import STEPS, coarse_state, first_path
+from stribeck.solver.cold_start import STEPS, coarse_state, first_path, next_state
 
 __all__ = ["path_to_cavity"]
 
@@ -37,7 +37,9 @@ def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> Path[State]:
 
     def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
         here = replace(groups, model=replace(groups.model, cavity_pressure=-1 / (math.exp(-s) - 1 / deepest)))
-        return coarse_state(here, extrapolate(history, s) if history else _behind_exit(ending, suction))
+        if len(history) > 1:  # the frame moves with the cavity: one state alone does not start another
+            return next_state(here, history, s)
+        return coarse_state(here, _behind_exit(ending, -here.model.cavity_pressure))
 
     for _ in range(MAX_REFINEMENTS):  # a longer cavity disturbs the film less
         found = march(correct, place(-suction), place(groups.model.cavity_pressure), STEPS)

@@ -359,7 +359,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,
-            np.array([state.lowest_pressure]),
+            state.lowest_pressure,
             "Where it breaks at ambient pressure asperities carry 7 to 15 % of the load less in mixed lubrication.",
         )
     if groups.speed > 0:
