@@ -111,14 +111,6 @@ def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
     assert solution.exit_position < plain.exit_position - 0.2
 
 
-def test_an_exit_on_which_coarse_meshes_disagree_is_that_of_finer_ones():
-    """The mesh for the second state moved the exit by 2.5e-3.  Most of three seconds: the path."""
-    groups = sb.Groups(3.2864459231650893e-12, 6.0577509390298845, 0.0010272258570624502)
-    assert sb.solve(groups, cavitation="exit", rtol=1e-4).exit_position == pytest.approx(
-        0.913199, abs=2e-5
-    )  # that of rtol = 1e-6
-
-
 def test_a_film_that_ends_is_found_from_full_ones_before_suction_cut_their_path():
     """The path of the full film was lost at 1.05 of the speed asked for, where it had no use any more."""
     groups = sb.Groups(1.026949284796445e-12, 1.6285676358360341, 0.03818644482)
