@@ -38,7 +38,7 @@ def test_a_result_shows_itself_in_a_screen(result):
     lines = repr(result).splitlines()
     assert 5 < len(lines) < 25 and len(repr(result)) < 2500
     assert lines[0].startswith(f"{type(result).__name__}: ")
-    assert f"{result.error_estimate:.1e} (rtol 1e-06)" in repr(result)
+    assert f"estimated error: {result.error_estimate:.1e}" in repr(result) and "(rtol 1e-06)" in repr(result)
 
 
 def test_the_state_says_its_regime_friction_and_film(state):
