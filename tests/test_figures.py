@@ -362,7 +362,7 @@ def test_work_reports_each_solve_and_keeps_the_largest_error():
 def test_no_state_is_given_that_did_not_converge(monkeypatch):
     work = FigureJob(lambda *step: None, steps=3, rtol=1e-11)
     with pytest.raises(sb.SolveError):
-        work.solve(1e-6, 0.1, 1e-7)
+        work.solve(1e-8, 0.1, 1e-7)
     whole = sb.stribeck_curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
     few = dataclasses.replace(whole, values=whole.values[1:])
     for curve, outcome in ((whole, sb.Outcome.PATH_LOST), (few, whole.outcome)):

@@ -24,7 +24,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import Model
+from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
@@ -61,35 +61,13 @@ class RigidGuess:
     """The gap of a rigid cylinder, with the deflection under the pressure of a film that does not end."""
 
     speed: float  # Speed group [-]
-    height: float  # Height of the cylinder [u_Hz]
-    ends: bool  # Whether the film ends
+    offset: float  # Height of the cylinder [u_Hz]
+    width: float  # Distance over which the gap doubles
+    exit: float  # Where the pressure and its gradient vanish; zero of a film without an end
+    flux_gap: float  # The gap where the pressure gradient vanishes [u_Hz]
+    minimum_position: float  # Middle of the cylinder, seen from the exit
     cavity_stretch: float = 1.0  # That of a film which does not re-form
     reformation: float = math.inf  # That of a film which does not re-form
-
-    @property
-    def offset(self) -> float:
-        """Offset of the cylinder."""
-        return self.height
-
-    @property
-    def width(self) -> float:
-        """Distance over which the gap doubles."""
-        return math.sqrt(2 * self.height)
-
-    @property
-    def exit(self) -> float:
-        """Where the pressure and its gradient vanish behind a rigid cylinder; zero of a film without an end."""
-        return rigid_exit() * self.width if self.ends else 0.0
-
-    @property
-    def flux_gap(self) -> float:
-        """The gap where the pressure gradient vanishes."""
-        return self.height * (1 + rigid_exit() ** 2 if self.ends else 4 / 3)
-
-    @property
-    def minimum_position(self) -> float:
-        """Middle of the cylinder, seen from the exit."""
-        return -self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -98,8 +76,8 @@ class RigidGuess:
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
         x, b = x + self.exit, self.width
-        parabola = self.height + x * x / 2
-        deflection = 0.0 if self.ends else -2 * self.speed / 3 * x / b / (x * x + b * b)
+        parabola = self.offset + x * x / 2
+        deflection = 0.0 if self.exit else -2 * self.speed / 3 * x / b / (x * x + b * b)
         # Where asperities carry nearly all of a heavy load, the film's deflection may exceed the height.
         return np.asarray(np.log(np.maximum(parabola + deflection, NEGLIGIBLE * parabola))[None, :])
 
@@ -140,7 +118,12 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
             return float(np.log((carried + contact) / LOAD))
 
     log_height = root_between(log_excess, -MAX_LOG_HEIGHT, MAX_LOG_HEIGHT, NEGLIGIBLE * COARSE_RTOL)
-    return None if log_height is None else RigidGuess(speed, math.exp(log_height), ends)
+    if log_height is None:
+        return None
+    height = math.exp(log_height)
+    width = math.sqrt(2 * height)
+    exit = rigid_exit() * width if ends else 0.0
+    return RigidGuess(speed, height, width, exit, height * (flux_ratio if ends else 4 / 3), -exit)
 
 
 def coarse_state(groups: Groups, guess: Guess) -> State | None:
@@ -174,11 +157,10 @@ def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
 
 def cold_start(groups: Groups) -> Path[State]:
     """Return the path from the rigid cylinder to the coarse state of a Newtonian fluid."""
-    ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
-    model = Model(cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid)
-    if is_rough(groups.model.film):
-        model = replace(model, film=groups.model.film)
-    groups = replace(groups, model=model)
+    if groups.model != BASE_MODEL:
+        ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
+        model = Model(cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid)
+        groups = replace(groups, model=replace(model, film=groups.model.film) if is_rough(groups.model.film) else model)
     name = "speed" if groups.speed > 0 else "roughness"
     top = max(0.0, math.log(MIN_RIGID / float(groups.speed if groups.speed > 0 else groups.relative_roughness)))
     kappa = float(groups.relative_roughness)
@@ -188,9 +170,11 @@ def cold_start(groups: Groups) -> Path[State]:
 
     def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
         factor = math.exp(log_factor)
-        changed = {"speed": groups.speed * factor**2, "load": groups.load / factor}
         try:
-            here = replace(groups, **(changed if unloads else {name: factor * getattr(groups, name)}))
+            if unloads:
+                here = replace(groups, speed=groups.speed * factor**2, load=groups.load / factor)
+            else:
+                here = replace(groups, **{name: factor * getattr(groups, name)})
         except InputError:  # lifted out of the range of groups
             return None
         if history:
