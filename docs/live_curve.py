@@ -99,7 +99,7 @@ def inputs() -> dict[str, list[dict]]:
         kind = DIMENSIONS[row.dimension]
         low, high = SLIDERS.get(name, row.usual)
         steps = {str(power): unit for power, unit in kind.steps.items()}
-        value = LINE.checked(name, given[name])
+        value = LINE.rows[name].checked(given[name])
         si.append({"name": name, "label": row.label, "steps": steps, "low": low, "high": high, "value": value})
     by_name = {row["name"]: row for row in si}
     beta, mu0 = by_name["beta"], by_name["boundary_friction"]
