@@ -238,9 +238,9 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         rows += [("contact law", self.law), *([("model", model)] if model else [])]
         groups = ", ".join(f"{name} {value:.4g}" for name, value in constant_groups(self.groups).items())
         error = self.friction.relative_error
-        all_alike = f"{error:.1e}" == f"{self.error_estimate:.1e}"
-        of_friction = f", of the friction {error:.1e}" if error > self.error_estimate and not all_alike else ""
-        rows += [("groups", groups), ("estimated error", f"{self.error_estimate:.1e}{of_friction} (rtol {self.rtol:g})")]
+        shown, of_all = f"{error:.1e}", f"{self.error_estimate:.1e}"
+        of_friction = f", of the friction {shown}" if error > self.error_estimate and shown != of_all else ""
+        rows += [("groups", groups), ("estimated error", f"{of_all}{of_friction} (rtol {self.rtol:g})")]
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 

@@ -2,7 +2,8 @@ r"""Cold start: a first state for any groups, from a rigid cylinder by one path.
 
 A fast enough film, or high enough asperities, hold the cylinder so far off that it hardly deforms: its gap is the parabola
 :math:`h_0 + x^2/2`, and :math:`h_0` follows from one scalar equation.  From there the speed comes down, of a contact at rest
-the roughness, with the solid and the exit of the model.  Then the fluid of the model replaces the Newtonian one along
+the roughness, with the solid and the exit of the model; of a rough contact under a light load, load and speed together, so
+that asperities and film keep their balance.  Then the fluid of the model replaces the Newtonian one along
 
 .. math::
 
