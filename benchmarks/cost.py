@@ -20,7 +20,8 @@ from scipy.linalg import lapack
 import stribeck as sb
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Operators
-from stribeck.equations.state import mesh_for, solve_state
+from stribeck.equations.mesh_choice import mesh_for
+from stribeck.equations.state import solve_state
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import mesh_tolerances_for, order_for, values_of, verify

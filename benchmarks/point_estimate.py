@@ -30,10 +30,10 @@ from point_parts import finer_mesh as finer_full_mesh
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.system import CavitatedSystem
+from stribeck.equations.film import closed_gap
 from stribeck.equations.point.mesh_choice import Resolution
 from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import SMOOTH, observables
-from stribeck.equations.state import closed_gap
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.settings import (
     KINKED_FLOOR,

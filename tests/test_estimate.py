@@ -10,7 +10,8 @@ import stribeck as sb
 from stribeck import Outcome
 from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Operators
-from stribeck.equations.state import mesh_for, solve_state
+from stribeck.equations.mesh_choice import mesh_for
+from stribeck.equations.state import solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver import refinement

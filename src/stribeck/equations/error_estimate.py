@@ -23,6 +23,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.enriched import EnrichedOperators, FineOperators
+from stribeck.equations.film import is_rough, is_thinning, jump_of
 from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.equations.observables import (
     DRAG_ROWS,
@@ -32,7 +33,7 @@ from stribeck.equations.observables import (
     drag_scales,
 )
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
+from stribeck.equations.state import StackedStates
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error
 from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, FLOOR, NEGLIGIBLE, SAFETY, SIGN_PATTERNS
 from stribeck.numerics.trace import Trace, act

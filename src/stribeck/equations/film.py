@@ -1,4 +1,4 @@
-"""The film at the nodes of a mesh: functions of the gap where it is full, zero in the cavity."""
+"""The film at the nodes of a mesh: functions of the gap where it is full, zero in the cavity; and what kind of film it is."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from stribeck._types import Flags, Indices
-from stribeck.fluids.fluid import Film
+from stribeck._types import Array, Flags, Indices
+from stribeck.fluids.fluid import Decay, Film
 from stribeck.numerics.jets import Jet
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.trace import Trace, pointwise, value_of
 
-__all__ = ["NODAL", "Nodes", "at_nodes", "gradient_in_film"]
+__all__ = ["NODAL", "Nodes", "at_nodes", "closed_gap", "decay_of", "gradient_in_film", "is_rough", "is_thinning", "jump_of"]
 
 NODAL = ("gap", "pressure")  # Unknowns that have a value at every node
 
@@ -65,3 +65,29 @@ def scattered(values: Any, where: Nodes, like: Any) -> Any:
     found = np.zeros((*values.shape[:-1], like.shape[-1]), values.dtype)
     found[..., where] = values
     return found
+
+
+def decay_of(film: Film, speed: float) -> Decay:
+    """Return how the pressure of a film falls off at a speed group: as an even power unless the film says otherwise."""
+    told = getattr(film, "decay", None)
+    return Decay() if told is None else told(speed)
+
+
+def is_thinning(film: Film) -> bool:
+    """Return whether the viscosity falls with the rate: the pressure gradient may then turn sharply where the flow does."""
+    return hasattr(film, "decay")
+
+
+def is_rough(film: Film) -> bool:
+    """Return whether roughness hinders the flow: the pressure gradient then turns where the last paths of the flow close."""
+    return not getattr(film, "is_smooth", True)
+
+
+def closed_gap(film: Film) -> float | None:
+    """Return the mean gap at which roughness closes the last path of the flow; None if it never does."""
+    return None if getattr(film, "is_plain", False) else getattr(film, "closed_at", None)
+
+
+def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
+    """Return the function of the jump of the pressure gradient between each node and the next; None for smooth films."""
+    return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)

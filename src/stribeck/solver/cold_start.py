@@ -26,10 +26,12 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.equations.film import is_rough
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.mesh_choice import mesh_for
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import MIN_GAP, State, is_rough, mesh_for, solve_state
+from stribeck.equations.state import MIN_GAP, State, solve_state
 from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian

@@ -46,7 +46,7 @@ class Corrector:
         )
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
-        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
+        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.mesh_choice.mesh_for`."""
         if not _cavity_may_vanish(groups):
             return self._solve(guess, groups, spread)
         re_forms = guess.reformation < math.inf

@@ -9,9 +9,9 @@ import numpy as np
 
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
+from stribeck.equations.film import closed_gap
 from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import MINIMA, identity_error, observables
-from stribeck.equations.state import closed_gap
 from stribeck.numerics.settings import (
     NEAR_MINIMUM,
     NEGLIGIBLE,
