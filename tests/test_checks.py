@@ -160,6 +160,18 @@ def test_the_film_is_checked_against_supply_molecules_and_thinning():
     assert [verdict("film against molecules", molecular_size=minimum / f) for f in (11, 9, 2)] == ORDER
 
 
+def test_a_short_stroke_is_no_row_of_steady_states():
+    def found(half_widths):
+        return checks_of(Subject(TRUE, {"stroke": half_widths * TRUE.hertz.half_width}), "contact")["stroke over a"]
+
+    assert [found(length).verdict for length in (1001, 999, 99)] == ORDER
+    assert "is not its friction" in found(40).sentence
+    assert found(40).value == pytest.approx(40)
+    assert "stroke over a" not in verdicts(TRUE)  # unknown: the speed may be steady
+    with pytest.raises(sb.InputError, match="stroke"):
+        sb.check(TRUE, stroke="-5 mm")
+
+
 def test_negative_gaps_are_outside_and_gaps_beyond_the_law_doubtful():
     heavy = checks_of(Subject(TRUE.replace(load=600.0, speed="1 um/s")), "state")["contact law at the centre"]
     assert heavy.verdict == "outside" and heavy.value < 0.1 and heavy.limit == 0.4

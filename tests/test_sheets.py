@@ -14,6 +14,7 @@ from stribeck.fluids import presets
 FACTS = (
     *("pressure_coefficient", "layer_thickness", "loss_tangent", "supply_film", "thinning_rate", "molecular_size"),
     *("thermal_conductivity", "thermal_thinning", "density", "work_of_adhesion", "diffusivity", "permeability", "rms_slope"),
+    "stroke",
 )
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 

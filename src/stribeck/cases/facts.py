@@ -19,6 +19,7 @@ from stribeck.quantities.units import InputError, show
 ROWS = (
     ("loss_tangent", "loss tangent at the frequency U/a", "number", "0.1", "filled rubber"),
     ("supply_film", "film that arrives at the inlet", "length", "10 um", "a wiped rod"),
+    ("stroke", "length of the stroke, from stop to stop", "length", "50 mm", "a seal or a tribometer that moves to and fro"),
     ("thinning_rate", "shear rate at which the fluid begins to thin", "rate", "1e6 1/s", "multigrade oil"),
     ("molecular_size", "size of the fluid's molecules", "length", "1 nm", "oil; water 0.3 nm, polymer coils 10 to 100 nm"),
     ("thermal_conductivity", "thermal conductivity of the fluid", "conductivity", "0.15 W/m/K", "oil; water 0.6"),

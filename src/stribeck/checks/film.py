@@ -1,4 +1,4 @@
-"""Checks of the film: suction, shear rate, supply, molecules, heating, inertia."""
+"""Checks of the film: suction, shear rate, supply, stroke, molecules, heating, inertia."""
 
 from __future__ import annotations
 
@@ -30,6 +30,13 @@ THINNING_OUTSIDE_RATIO = 10.0
 
 SUPPLY_FINE = 0.5  # Film that passes, h*/2, over the film that arrives, up to which the inlet is flooded
 SUPPLY_OUTSIDE = 1.0  # Film that passes over the film that arrives, above which the contact is starved
+
+# Length of a stroke over the half-width from which friction follows the speed as if it were steady: within 4 % at half of the
+# top speed and 14 % at a fifth, but 30 % at a twentieth.
+STROKE_FINE = 1000.0
+# Length of a stroke over the half-width below which the film of the fast phase stays at the ends: on 40 half-widths friction
+# there is a sixth of that at a steady speed.
+STROKE_OUTSIDE = 100.0
 
 OIL_MOLECULE_SIZE = 1e-9  # Size of the molecules of oils [m]
 WATER_MOLECULE_SIZE = 3e-10  # Size of the molecules of water [m]
@@ -142,6 +149,22 @@ def supply(subject: Subject) -> Check | None:
     }
     begin = f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: "
     return check_against_limits("supply h*/(2 supply)", ratio, SUPPLY_FINE, SUPPLY_OUTSIDE, begin, meanings)
+
+
+def stroke(subject: Subject) -> Check | None:
+    """Return the check of the stroke against the contact width; None where the speed is steady, or no stroke is known."""
+    length = subject.fact("stroke")
+    if length is None:
+        return None
+    ratio = length / subject.contact.hertz.half_width
+    verdict: Verdict = "fine" if ratio >= STROKE_FINE else "doubtful" if ratio >= STROKE_OUTSIDE else "outside"
+    meaning = {
+        "fine": "the film follows the speed, but for the ends of the stroke.",
+        "doubtful": "near its ends the film lags behind the speed, and friction is off by tens of per cent.",
+        "outside": "the film of the fast phase stays at its ends. A curve at steady speeds is not its friction.",
+    }[verdict]
+    about = f"The stroke is {ratio:.2g} times the {subject.contact.WIDTH}: "
+    return Check("stroke over a", ratio, STROKE_FINE, verdict, about + meaning, at_least=True)
 
 
 def molecules(subject: Subject) -> Check:

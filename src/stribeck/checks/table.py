@@ -46,6 +46,7 @@ ROWS = (
     Row("layer", body.layer, "contact", "layer_thickness"),
     Row("loss tangent", body.loss, "contact", "loss_tangent"),
     Row("rms slope", law.roughness_slope, "contact", "rms_slope"),
+    Row("stroke", film.stroke, "contact", "stroke"),
     Row("viscous heating", film.heating, "contact"),
     Row("contact law at the centre", law.range_at_centre, "state"),
     Row("suction", film.suction, "state"),
@@ -73,8 +74,8 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
         Definition of the viscous friction, on which the minimum depends.
     **facts : str or float
         Further facts about the contact: ``pressure_coefficient``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
-        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``, ``rms_slope``,
-        ``work_of_adhesion``, ``diffusivity``, ``permeability``;
+        ``stroke``, ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``,
+        ``rms_slope``, ``work_of_adhesion``, ``diffusivity``, ``permeability``;
         text with units, or numbers in SI units.
 
     Returns

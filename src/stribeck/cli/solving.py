@@ -184,7 +184,7 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
     Example: stribeck check examples/rod_seal.toml
 
     Facts that only checks use go into the table [check] of the case: pressure_coefficient, layer_thickness, loss_tangent,
-    supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
+    supply_film, stroke, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
 
     The exit code is 0 whatever the verdict.
     """
