@@ -16,9 +16,11 @@ import scipy
 from stribeck._types import Array
 from stribeck.numerics.settings import HALF_DIGITS
 
-# Product of the ln(r/s) and the degrees by which Miller's start lies above the highest one wanted: its error is then below
-# rounding.
-HALF_DECAY_LOG = -np.log(HALF_DIGITS)
+# Decay of the functions over which the recurrence upward in the degree loses a quarter of the digits.
+UPWARD_LOG = -0.25 * np.log(HALF_DIGITS)
+# Decay from the highest degree wanted to Miller's start: with the error of the start, of second order in 1/degree, the error
+# left is below rounding.
+START_LOG = 3.0 * UPWARD_LOG
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
@@ -36,14 +38,14 @@ def ring_functions(radius: Array, source: Array, difference: Array, count: int) 
     if count == 1:
         return found
     by_distance = np.argsort(xi)
-    upward = int(np.searchsorted(xi[by_distance], 1.0 / count))  # beyond, this recurrence loses digits
+    upward = int(np.searchsorted(xi[by_distance], UPWARD_LOG / count))
     near = by_distance[:upward]
     found[:, near] = _upward(chi[near], first[near], second[near], count)
     start = upward
     while start < xi.size:  # groups in which the start of the downward recurrence differs by a factor of two at most
         stop = int(np.searchsorted(xi[by_distance], 2.0 * xi[by_distance[start]], side="right"))
         group = by_distance[start:stop]
-        found[:, group] = _downward(chi[group], first[group], count, int(HALF_DECAY_LOG / xi[group[0]]) + 2)
+        found[:, group] = _downward(chi[group], first[group], count, int(START_LOG / xi[group[0]]) + 2)
         start = stop
     return found
 

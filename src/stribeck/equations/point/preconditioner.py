@@ -145,6 +145,13 @@ class Coupling:
         return np.asarray(radial + np.stack([self._of_gap(m, 0) for m in modes]))
 
 
+def _without_tiny(blocks: Single) -> Single:
+    """Return blocks without what is too small to be multiplied by its like in single precision."""
+    # High modes act on far rings by less than the smallest normal number, and products with such take ten times as long.
+    blocks[np.abs(blocks) < np.sqrt(np.finfo(np.float32).tiny)] = 0.0
+    return blocks
+
+
 class BlockLU:
     """Block LU factors of a banded block matrix in single precision, pivoted within the diagonal blocks."""
 
@@ -174,12 +181,13 @@ class BlockLU:
             self._eliminate(window, k, last, size)
 
     def _eliminate(self, window: dict[tuple[int, int], Single], k: int, last: int, size: int) -> None:
-        lu, pivots, _ = lapack.sgetrf(window.pop((k, k)))
+        lu, pivots, _ = lapack.sgetrf(_without_tiny(window.pop((k, k))))
         self.pivots.append((lu, pivots))
         if last == k + 1:
             return
-        right = lapack.sgetrs(lu, pivots, np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))[0]
-        below: Single = np.vstack([window.pop((i, k)) for i in range(k + 1, last)])
+        beyond = _without_tiny(np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))
+        right = _without_tiny(lapack.sgetrs(lu, pivots, beyond)[0])
+        below = _without_tiny(np.vstack([window.pop((i, k)) for i in range(k + 1, last)]))
         for i in range(k + 1, last):  # row by row: all at once would need as much memory as the window
             update = below[(i - k - 1) * size : (i - k) * size] @ right
             for j in range(k + 1, last):
