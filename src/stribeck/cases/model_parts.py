@@ -14,7 +14,8 @@ from stribeck.cases.tables import AS_GIVEN, noted, one_of, read_tables
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS, Kind
 from stribeck.fluids.description import Fluid
-from stribeck.fluids.presets import PRESETS, Liquid
+from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
 from stribeck.quantities.units import InputError, show
@@ -22,7 +23,7 @@ from stribeck.quantities.units import InputError, show
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
 
-CONDITIONS = ("weight_fraction", "temperature", "grade")
+CONDITIONS = tuple(dict.fromkeys(name for preset in PRESETS.values() for name in preset.conditions))
 
 
 def _keys(*kinds: Kind) -> tuple[str, ...]:

@@ -3,7 +3,9 @@
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
-from stribeck.fluids.presets import PRESETS, Liquid, glycerol_water, water
+from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.oils import iso_vg, oil
+from stribeck.fluids.presets import PRESETS, glycerol_water, water
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
@@ -24,5 +26,7 @@ __all__ = [
     "PowerLaw",
     "Roelands",
     "glycerol_water",
+    "iso_vg",
+    "oil",
     "water",
 ]

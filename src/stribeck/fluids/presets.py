@@ -22,66 +22,22 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 from stribeck.fluids.description import Fluid
+from stribeck.fluids.liquids import Liquid, celsius, check_temperature
+from stribeck.fluids.oils import OIL_EYRING_STRESS, SOURCE, iso_vg, oil
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
-from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["PRESETS", "Liquid", "Preset", "celsius", "glycerol_water", "water"]
-
-_TEMPERATURE = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]*)?)\s*(degC|°C|deg C|C|K)\s*")
+__all__ = ["PRESETS", "Preset", "glycerol_water", "water"]
 
 WATER_EYRING_STRESS = 1e8  # Stress kT per molecule of water, rounded down [Pa].
 GLYCEROL_EYRING_STRESS = 3e7  # Stress kT per molecule of glycerol, rounded down [Pa].
-OIL_EYRING_STRESS = 3e6  # Stress kT per molecule of PAO 10 (0.63 kg/mol), rounded down [Pa].
-
-
-@dataclass(frozen=True)
-class Liquid:
-    """A liquid under given conditions.
-
-    Attributes
-    ----------
-    name : str
-        What it is, with its conditions.
-    viscosity : float
-        Viscosity at ambient pressure and low rate [Pa s].
-    fluid : Fluid
-        How it depends on pressure and shear rate.
-    source : str
-        Where the numbers are from.
-    thinning_rate : float or None
-        Shear rate at which it begins to thin, where that is known of a liquid that has no law of thinning [1/s].
-
-    Examples
-    --------
-    >>> import stribeck as sb
-    >>> liquid = sb.fluids.glycerol_water(0.5, temperature="20 degC")
-    >>> round(1e3 * liquid.viscosity, 1)  # mPa s
-    6.0
-    """
-
-    name: str
-    viscosity: float
-    fluid: Fluid
-    source: str
-    thinning_rate: float | None = None
-
-    @property
-    def inputs(self) -> dict[str, Any]:
-        """The arguments ``viscosity`` and ``fluid`` of a contact."""
-        return {"viscosity": self.viscosity, "fluid": self.fluid}
-
-    def __str__(self) -> str:
-        """Return name, viscosity, laws and source in one line."""
-        return f"{self.name}: {format_si(self.viscosity, 'viscosity')}, {self.fluid.name} ({self.source})"
 
 
 @dataclass(frozen=True)
@@ -121,16 +77,6 @@ class Preset:
         return self.make(**{**self.conditions, **conditions})
 
 
-def celsius(temperature: str | float) -> float:
-    """Return a temperature in degrees Celsius, given so as a number or as text in degC or K."""
-    if isinstance(temperature, str):
-        found = _TEMPERATURE.fullmatch(temperature.replace("\N{MINUS SIGN}", "-"))
-        if found is None:
-            raise InputError(f"temperature = {show(temperature)}; write it as '25 degC' or '298 K'.")
-        return float(found[1]) - (273.15 if found[2] == "K" else 0.0)
-    return to_si(temperature, "number", "temperature", "25")
-
-
 def water(temperature: str | float = 25.0) -> Liquid:
     """Return water at a temperature between 0 and 100 degrees Celsius.
 
@@ -149,7 +95,7 @@ def water(temperature: str | float = 25.0) -> Liquid:
     InputError
         Where the temperature is impossible.
     """
-    T = _check_temperature(celsius(temperature), 0, 100)
+    T = check_temperature(celsius(temperature), 0, 100)
     viscosity = _water(T)
     return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_EYRING_STRESS / viscosity)
 
@@ -174,7 +120,7 @@ def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0
     InputError
         Where fraction or temperature are impossible.
     """
-    C, T = to_si(weight_fraction, "number", "weight_fraction"), _check_temperature(celsius(temperature), 0, 100)
+    C, T = to_si(weight_fraction, "number", "weight_fraction"), check_temperature(celsius(temperature), 0, 100)
     if not 0 <= C <= 1:
         raise InputError(f"weight_fraction = {show(weight_fraction)} must lie between 0 and 1: the glycerol in the weight.")
     eta_g = 12.1 * math.exp((-1233 + T) * T / (9900 + 70 * T))
@@ -189,20 +135,21 @@ def _water(T: float) -> float:
     return 1.790e-3 * math.exp((-1230 - T) * T / (36100 + 360 * T))
 
 
-def _check_temperature(T: float, low: float, high: float) -> float:
-    if not low <= T <= high:
-        raise InputError(f"temperature = {T:g} degC must lie between {low:g} and {high:g} degC, where the formula holds.")
-    return T
-
-
-def _silicone(grade: str | float) -> Liquid:
+def _silicone(grade: str | float, temperature: str | float = 25.0) -> Liquid:
     """Return a silicone oil (PDMS) of a grade: a number in cSt, or text with a unit."""
     given, is_text = grade, isinstance(grade, str)
     grade = 1e6 * to_si(given, "kinematic", "grade", "100 cSt") if is_text else to_si(given, "number", "grade", "100")
     if not 5 <= grade <= 1000:
         raise InputError(f"grade = {show(given)} must lie between 5 and 1000 cSt; thicker silicone oils thin under shear.")
-    density = 917 + 56 * (1 - math.exp(-math.log(grade / 5) / 1.6))
-    return Liquid(f"silicone oil {grade:g} cSt at 25 degC", 1e-6 * grade * density, Fluid(), _SILICONE)
+    T = check_temperature(celsius(temperature), -25, 150)
+    if T != 25 and grade < 50:
+        raise InputError(
+            f"temperature = {show(temperature)} and grade = {show(given)}: below 50 cSt the viscosity is "
+            "not known within 10 % at other temperatures than 25 degC; give the viscosity."
+        )
+    density = (917 + 56 * (1 - math.exp(-math.log(grade / 5) / 1.6))) * (1 - 9.6e-4 * (T - 25))
+    kinematic = grade * 10 ** (763.1 * (1 / (T + 273.15) - 1 / 298.15))
+    return Liquid(f"silicone oil {grade:g} cSt at {T:g} degC", 1e-6 * kinematic * density, Fluid(), _SILICONE)
 
 
 def _make_liquid(name: str, viscosity: float, fluid: Fluid, source: str, stress: float | None = None) -> Callable[[], Liquid]:
@@ -210,7 +157,10 @@ def _make_liquid(name: str, viscosity: float, fluid: Fluid, source: str, stress:
     return lambda: liquid
 
 
-_SILICONE = "the grade is the kinematic viscosity at 25 degC; density of makers' data sheets within 1 %, 964 kg/m3 at 100 cSt"
+_SILICONE = (
+    "the grade is the kinematic viscosity at 25 degC, which changes as 10^(763.1 K/T); density of makers' data sheets within "
+    "1 %, 964 kg/m3 at 100 cSt"
+)
 _OIL = (
     "61.0 cSt at 40 degC and 9.64 cSt at 100 degC by the data sheet of Synfluid PAO 10 cSt (Chevron Phillips, 2022); density "
     "821 kg/m3 within 2 %; pressure coefficient about 15 % uncertain"
@@ -239,7 +189,27 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
                 "Cheng 2008",
                 "0 to 100 degC, all fractions",
             ),
-            "silicone-oil": Preset("silicone oil", {"grade": 100.0}, _silicone, _SILICONE, "5 to 1000 cSt at 25 degC"),
+            "silicone-oil": Preset(
+                "silicone oil",
+                {"grade": 100.0, "temperature": 25.0},
+                _silicone,
+                _SILICONE,
+                "5 to 1000 cSt; at -25 to 150 degC from 50 cSt",
+            ),
+            "iso-vg": Preset(
+                "mineral oil, ISO VG",
+                {"grade": 46.0, "temperature": 40.0, "viscosity_index": 100.0, "density_15": 870.0},
+                iso_vg,
+                SOURCE,
+                "5 to 3200 cSt at 40 degC, -20 to 150 degC",
+            ),
+            "oil": Preset(
+                "oil of two viscosities",
+                {"viscosity_40": 46.0, "viscosity_100": 6.8, "temperature": 40.0, "density_15": 870.0},
+                oil,
+                SOURCE,
+                "-20 to 150 degC",
+            ),
             "pao-10": Preset(
                 "PAO 10 at 40 degC",
                 {},
