@@ -300,6 +300,39 @@ def test_an_impossible_argument_is_refused(subtests):
                 analyse(synthetic_topography(ROLLED, (64, 64), STEP, 1), **options)
 
 
+def test_an_array_of_heights_with_its_spacing_is_a_scan(subtests):
+    scan = synthetic_topography(ROLLED, (64, 64), STEP, 1)
+    for spacing in (STEP, f"{1e6 * STEP} um", (STEP, STEP)):
+        assert analyse(scan.heights, spacing=spacing).to_dict()["alpha"] == analyse(scan).to_dict()["alpha"]
+    assert Topography(scan.heights, STEP).size == pytest.approx(scan.size)
+    for made, words in [
+        (lambda: analyse(scan.heights), "spacing is missing"),
+        (lambda: analyse("scan.csv"), "read_topography"),
+        (lambda: analyse(scan, spacing=1e-6), "leave spacing out"),
+        (lambda: analyse(scan.heights, spacing="5 kg"), "a length"),
+        (lambda: analyse(scan.heights, spacing=-1e-6), "spacing = "),
+        (lambda: analyse(scan.heights, spacing=(1e-6, 1e-6, 1e-6)), "3 spacings"),
+    ]:
+        with subtests.test(words=words), pytest.raises(sb.InputError, match=words):
+            made()
+
+
+def test_parameters_of_heights_are_those_of_the_standards():
+    x = np.arange(256) * STEP
+    wave = 256 * STEP / 16
+    sine = np.sin(2 * np.pi * x / wave)
+    line = analyse(Topography(1e-6 * sine, STEP), trend="mean").to_dict()
+    assert line["mean_deviation"] == pytest.approx(2e-6 / np.pi, rel=0.02)
+    assert line["kurtosis"] == pytest.approx(1.5, rel=1e-3)
+    assert line["scan_rms_slope"] == pytest.approx(1e-6 * 2 * np.pi / wave / np.sqrt(2), rel=0.02)
+    grooves = analyse(Topography(np.tile(1e-6 * sine, (256, 1)), STEP), trend="mean").to_dict()
+    assert grooves["scan_rms_slope"] == pytest.approx(line["scan_rms_slope"], rel=0.01)
+    for seed in (600, 601):  # of 160 such surfaces the scores scatter by 0.9
+        found = analyse(synthetic_topography(ROLLED, (64, 64), STEP, seed)).to_dict()
+        assert 0 < found["kurtosis_error"] < 0.5 and abs(found["kurtosis"] - 3) < 3 * found["kurtosis_error"]
+        assert found["mean_deviation"] / found["scan_rms_height"] == pytest.approx((2 / np.pi) ** 0.5, rel=0.05)
+
+
 def test_a_plane_has_no_roughness():
     plane = np.arange(64.0)[:, None] + np.zeros(64)
     with pytest.raises(sb.InputError, match="nothing is left after removing the tilt"):
@@ -333,7 +366,8 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
     for text in (
         "radius of the convex body",
         "Hurst exponent",
-        "skewness of the heights",
+        "skewness Ssk of the heights",
+        "kurtosis Sku",
         "aspect ratio of features",
         "(95 %)",
     ):

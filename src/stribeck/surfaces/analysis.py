@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.datasets import number_columns
@@ -25,6 +26,7 @@ from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures
 from stribeck.surfaces.detrend import Form, Trend, detrended
 from stribeck.surfaces.fit_result import SelfAffineFit
+from stribeck.surfaces.height_parameters import height_numbers
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
 from stribeck.surfaces.notes import fit_notes, spike_notes
 from stribeck.surfaces.self_affine_fit import fit_self_affine
@@ -115,7 +117,7 @@ class Surface(Exported, Told):
     def numbers(self) -> tuple[Number, ...]:
         """Every number of the surface with its unit, meaning and error, in the order of reports."""
         r, fitted, spectrum = self.roughness, self.fit.errors, self.roughness.spectrum
-        texture, spikes = self.departures, self.spikes
+        texture, spikes, letter = self.departures, self.spikes, "R" if self.topography.is_line else "S"
         radius, radius_error = self.shape.radius, self.shape.radius_error(r, self.topography)
         convex = "convex" if self.shape.curvatures and self.shape.curvatures[0] < 0 else "concave"
         alpha, beta = self.fit.exponential_limit(self.gamma)
@@ -127,10 +129,12 @@ class Surface(Exported, Told):
         wider = "angle to the first axis of the direction in which features are longer"
         return (
             _length("body_radius", body, "radius of the body", radius, radius_error),
-            _length("scan_rms_height", "rms height of the scan", "rms height of the scan about its trend", self.rms_height),
+            _length("scan_rms_height", f"rms height {letter}q of the scan", "rms height of the scan about its trend",
+                    self.rms_height),
             _length("scan_rms_height_with_spikes", with_spikes, "the same with its spikes", self.height_with_spikes),
-            Number("skewness", "skewness of the heights", "skewness of the heights; 0 if Gaussian", texture.skewness,
-                   texture.skewness_error),
+            Number("skewness", f"skewness {letter}sk of the heights", "skewness of the heights; 0 if Gaussian",
+                   texture.skewness, texture.skewness_error),
+            *height_numbers(self.topography),
             Number("aspect_ratio", _if_there("aspect ratio of features", texture.aspect_ratio), "aspect ratio of features",
                    _number(texture.aspect_ratio)),
             Number("texture_direction", _if_there("their direction", texture.direction),
@@ -215,8 +219,9 @@ def _if_there(label: str, value: float | None) -> str:
 
 
 def analyse(
-    topography: Topography,
+    topography: Topography | Array,
     *,
+    spacing: str | float | tuple[str | float, ...] | None = None,
     trend: Trend = "curvature",
     window: Window = "hann",
     resolution: str | float | None = None,
@@ -227,8 +232,10 @@ def analyse(
 
     Parameters
     ----------
-    topography : Topography
-        Measured heights, as of :func:`read_topography`.
+    topography : Topography or ndarray
+        Measured heights, as of :func:`read_topography`; or an array of them, of shape (n,) or (nx, ny) [m].
+    spacing : str, float or tuple, optional
+        Of an array, the distance between neighbouring points, one for all axes or one for each [m].
     trend : {"none", "mean", "tilt", "curvature"}
         Shape of the body that is taken away.
     window : {"hann", "none"}
@@ -251,7 +258,9 @@ def analyse(
         Where an argument is impossible or the scan too poor for a spectrum.
     """
     if not isinstance(topography, Topography):
-        raise InputError(f"topography = {show(topography)}; it must be a Topography, as of read_topography(path).")
+        topography = _of_array(topography, spacing)
+    elif spacing is not None:
+        raise InputError(f"spacing = {show(spacing)}, but the topography has its own; leave spacing out.")
     gamma = GAMMA_INPUT.checked(gamma)
     shortest = None
     if resolution is not None:
@@ -275,6 +284,19 @@ def analyse(
         *fit_notes(flat, shape, measured, fit),
     )
     return Surface(flat, shape, measured, fit, gamma, found, spikes, spiked, window, notes)
+
+
+def _of_array(heights: Any, spacing: Any) -> Topography:
+    """Return the topography of an array."""
+    if not isinstance(heights, np.ndarray | list):
+        raise InputError(
+            f"topography = {show(heights)}; it must be a Topography, as of read_topography(path), or an array of heights in m "
+            "with spacing = ..."
+        )
+    if spacing is None:
+        raise InputError("spacing is missing; give the distance between neighbouring points of the array, such as '0.5 um'.")
+    steps = spacing if isinstance(spacing, tuple | list) else (spacing,) * np.ndim(heights)
+    return Topography(np.asarray(heights), tuple(to_si(step, "length", "spacing", "0.5 um") for step in steps))
 
 
 def _rms(topography: Topography) -> float:

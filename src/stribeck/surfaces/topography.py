@@ -37,8 +37,8 @@ class Topography:
     ----------
     heights : ndarray
         Heights, of shape (n,) or (nx, ny); NaN where nothing was measured [m].
-    spacing : tuple of float
-        Distance between neighbouring points, along each axis [m].
+    spacing : float or tuple of float
+        Distance between neighbouring points, for all axes or one for each [m].
     source : str
         Where it comes from: file, format and channel.
     resolution : float, optional
@@ -65,9 +65,8 @@ class Topography:
             z = np.array(self.heights, dtype=float)
         except (TypeError, ValueError, OverflowError):
             raise InputError(f"{where}heights = {show(self.heights)} is no array of numbers.") from None
-        if not isinstance(self.spacing, tuple | list):
-            raise InputError(f"{where}spacing = {show(self.spacing)} must be a tuple: a distance along each axis, in m.")
-        object.__setattr__(self, "spacing", tuple(positive("spacing", step) for step in self.spacing))
+        steps = self.spacing if isinstance(self.spacing, tuple | list) else (self.spacing,) * z.ndim
+        object.__setattr__(self, "spacing", tuple(positive("spacing", step) for step in steps))
         if z.ndim not in (1, 2) or len(self.spacing) != z.ndim:
             raise InputError(
                 f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
