@@ -77,7 +77,9 @@ class Integral:
         erf, share = scipy.special.erf(t), 3 * (1 - self.gamma)
         rate = self.gamma + share * erf * erf
         bend = 4 / math.sqrt(math.pi) * share * erf * t * np.exp(-t * t) - 2 * t * t * rate
-        s = np.sum(_scaled_J(t, self.gamma) * fade, axis=1)
+        scaled, counts = np.zeros_like(t), fade > 0  # Most nodes lie where the pressure has faded to nothing.
+        scaled[counts] = _scaled_J(t[counts], self.gamma)
+        s = np.sum(scaled * fade, axis=1)
         first, second = -np.sum(rate * fade, axis=1) / s, -np.sum(bend * fade, axis=1) / s
         return np.stack((np.log(self.alpha * s) - lowest, first, second - first * first))
 
@@ -113,12 +115,12 @@ def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:
 
 def _scaled_J(t: Array, gamma: float) -> Array:  # noqa: N802
     """Return exp(t^2) J(t)."""
-    square = t * t
-    large = square > ERF_SATURATION
-    near = np.where(large, 1.0, t)
-    factor, nodes = np.exp(near * near), np.where(large, square, ERF_SATURATION)
-    exponential = np.where(large, _laguerre(nodes), factor * scipy.special.exp1(near * near))
-    erf_part = np.where(large, 0.5 * exponential, _erf_part()[0](near))
+    # Each branch only where it holds: the sums of many terms are most of what a table costs.
+    large = t * t > ERF_SATURATION
+    near, square = t[~large], t[large] ** 2
+    exponential, erf_part = np.empty_like(t), np.empty_like(t)
+    exponential[~large], exponential[large] = np.exp(near * near) * scipy.special.exp1(near * near), _laguerre(square)
+    erf_part[~large], erf_part[large] = _erf_part()[0](near), 0.5 * exponential[large]
     return np.asarray(0.5 * gamma * exponential + 3 * (1 - gamma) * erf_part)
 
 
