@@ -362,8 +362,8 @@ def test_too_few_rows_are_refused(subtests):
                 sb.fit(measured(speeds[:rows], friction[:rows]), TRUE, free=free)
 
 
-def test_bad_arguments_are_one_sentence(tmp_path):
-    data = noisy(1)
+def test_bad_arguments_are_one_sentence(tmp_path, fitted):
+    data = fitted.data
     for case, free, sentence in (
         (3, None, "case = 3"),
         (TRUE, [], "free is empty"),
@@ -375,7 +375,7 @@ def test_bad_arguments_are_one_sentence(tmp_path):
             sb.fit(data, case, free=free)
         assert sentence in str(caught.value)
     with pytest.raises(KeyError, match="fitted are"):
-        sb.fit(data, TRUE, intervals=False)["colour"]
+        fitted["colour"]
 
 
 # --- posterior and outputs ---

@@ -13,7 +13,6 @@ import stribeck as sb
 from stribeck.cli.arguments import Quantities, Whole, check_outputs
 from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
 from stribeck.cli.progress import interruptible
-from stribeck.files.writing import need_extra
 
 
 def fit_command(
@@ -40,11 +39,11 @@ def fit_command(
 
     loaded = load_fit_case(data, case)
     check_outputs(force, plot, out)
-    if posterior is not None:
-        need_extra("a posterior", "fit", "emcee")
     from stribeck.fits.fit import names_to_fit
-    from stribeck.fits.posterior import draw_posterior
+    from stribeck.fits.posterior import check_posterior, draw_posterior
 
+    if posterior is not None:
+        check_posterior(posterior, robust or loaded.fit.robust)
     if out is not None:
         check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)
     with interruptible() as progress:

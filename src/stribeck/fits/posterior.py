@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.writing import MissingExtraError
+from stribeck.files.writing import need_extra
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit, FittedInput, format_value
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
-__all__ = ["Posterior", "draw_posterior"]
+__all__ = ["Posterior", "check_posterior", "draw_posterior"]
 
 SEED = 20_261_121
 MIN_TIMES = 50  # Autocorrelation times after which emcee's documentation calls a chain long enough
@@ -75,17 +75,13 @@ class Posterior:
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
     """Draw from the posterior of a fit whose contact the atlas covers."""
-    try:
-        import emcee
-    except ImportError:
-        raise MissingExtraError("a posterior", "fit", "emcee") from None
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
-        raise InputError(f"steps = {steps!r}; a chain has at least 100.")
+    check_posterior(steps, fit.robust)
+    import emcee
+
     at: Minimum = fit._minimum
-    missing = not at.objective.states.uses_atlas
-    if not fit.converged or fit.robust or missing:
-        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
-        raise InputError(f"no posterior is drawn. {why or f'The atlas has no table for the law {fit.law} of this contact.'}")
+    if not fit.converged or not at.objective.states.uses_atlas:
+        why = f"The atlas has no table for the law {fit.law} of this contact." if fit.converged else fit.outcome.value
+        raise InputError(f"no posterior is drawn. {why}")
     p = len(at.theta)
     walkers = max(16, 4 * p)
     rng = np.random.RandomState(SEED)
@@ -117,6 +113,15 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
         f"{100 * acceptance:.2g} % accepted).",
         inputs=fit.inputs,
     )
+
+
+def check_posterior(steps: int, robust: bool) -> None:
+    """Refuse a posterior that cannot be drawn whatever the fit gives."""
+    need_extra("a posterior", "fit", "emcee")
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
+        raise InputError(f"steps = {steps!r}; a chain has at least 100.")
+    if robust:
+        raise InputError("no posterior is drawn. A robust loss is not a likelihood.")
 
 
 def _log_density(fit: Fit) -> Callable[[Array], Array]:
