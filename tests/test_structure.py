@@ -40,7 +40,7 @@ LAYERS = (
     ("solver", "surfaces"),
     ("equations", "atlas", "asymptotics", "cases"),
     ("contacts",),
-    ("solids", "contact_laws"),
+    ("solids", "contact_laws", "profiles"),
     ("fluids", "files"),
     ("numerics",),
     ("quantities",),

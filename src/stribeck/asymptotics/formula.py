@@ -20,6 +20,7 @@ from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
 from stribeck.asymptotics.documentation import completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
+from stribeck.contacts.contact import model_words
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.quantities.arrays import real_array
@@ -280,7 +281,7 @@ class Formula(Generic[Arguments]):
         if groups.model != BASE_MODEL:
             raise InputError(
                 f"{self.name} holds for a Newtonian fluid that does not cavitate, on a half-space, and these groups have "
-                "another model; use solve."
+                f"another model ({model_words(groups, None)}); use solve."
             )
 
     def check_law(self, groups: Groups) -> None:

@@ -407,6 +407,8 @@ OTHER_ARGUMENTS = {
     What roughness does to the flow.""",
     "solid": """solid of sb.solids, optional
     The soft body; a half-space without it.""",
+    "profile": """profile of sb.profiles, optional
+    The shape of the rigid body; a cylinder without it.""",
     **{name: f"str or float, optional\n    {row.description}" for name, row in numbers_of(Parts).items()},
 }
 
@@ -437,7 +439,7 @@ def input_texts(contact: Contact | None, *without: str | None) -> list[str]:
 
 
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
-    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's."""
+    """Return fluid, cavitation, solid, profile and motion with their numbers, for outputs; nothing of the article's."""
     model = groups.model
     if model == BASE_MODEL:
         return {}
@@ -447,6 +449,7 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
     else:
         laws = {"fluid": contact.fluid, "flow_factors": contact.flow_factors, "solid": contact.solid}
         slide_to_roll, cavity_pressure = contact.slide_to_roll, contact.cavity_pressure
+    laws["profile"] = None if model.profile.is_parabola else model.profile
     found: dict[str, float | str] = {}
     for what, law in laws.items():
         if law is not None:
@@ -464,7 +467,7 @@ def model_words(groups: Groups, contact: Contact | None) -> str:
     for name, value in part_attributes(groups, contact).items():
         if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
             continue
-        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
+        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid", "profile") if name.startswith(f"{what}_")), "")
         found[name.removeprefix(owner)] = value
     return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
 

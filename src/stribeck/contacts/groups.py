@@ -166,6 +166,8 @@ class Groups:
             check_geometry(self.geometry)
         if not isinstance(self.model, Model):
             raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")
+        if self.geometry != "line" and not self.model.profile.is_parabola:
+            raise InputError(f"profile = {self.model.profile.name}: profiles are those of a line contact; a ball is round.")
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
             object.__setattr__(self, name, _group(name, getattr(self, name), positive))
         try:

@@ -17,6 +17,8 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw
+from stribeck.profiles.check_profile import as_profile
+from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, numbers_of
@@ -33,7 +35,7 @@ MIN_SUCTION = 1e-20
 
 @dataclass(frozen=True, init=False, kw_only=True)
 class Parts:
-    r"""Fluid, cavitation, flow factors, solid and motion of a contact."""
+    r"""Fluid, cavitation, flow factors, solid, profile and motion of a contact."""
 
     fluid: Fluid  # The fluid; Newtonian, of constant viscosity and density, without it
     cavitation: Cavitation  # How the film ends behind the contact
@@ -50,6 +52,7 @@ class Parts:
     )
     flow_factors: FlowFactors | None  # What roughness does to the flow
     solid: Solid | None  # The soft body; a half-space without it
+    profile: Profile | None  # The shape of the rigid body; a cylinder without it
     slide_to_roll: Input = Input(
         label="slide-to-roll ratio",
         symbol="$S$",
@@ -73,6 +76,7 @@ class Parts:
         cavity_pressure: str | float | None = 0.0,
         flow_factors: Any = None,
         solid: Solid | None = None,
+        profile: Profile | None = None,
         slide_to_roll: float | None = PURE_SLIDING,
     ) -> None:
         values = {
@@ -81,6 +85,7 @@ class Parts:
             "cavity_pressure": cavity_pressure,
             "flow_factors": as_flow_factors(flow_factors),
             "solid": None if solid is None else as_solid("solid", solid),
+            "profile": None if profile is None else as_profile(profile),
             "slide_to_roll": slide_to_roll,
         }
         for name, value in values.items():
@@ -124,7 +129,8 @@ class Parts:
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed
         solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, of_substrate)
-        return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
+        profile: Undeformed = Parabola() if self.profile is None else Departure(self.profile, 0.0, length, units.gap)
+        return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure, profile)
 
 
 def part_parameters(without: Collection[str]) -> list[inspect.Parameter]:

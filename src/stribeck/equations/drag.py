@@ -80,6 +80,9 @@ def viscous_friction(equations: Equations, u: Fields, load: Numbers, on: FilmOnM
     whole = act(on.load, on.pressure)
     moment = stretch * (stretch * (act(mesh.arm, on.pressure) + stretch * (speed * act(leverage, g))) + x_c * whole)
     pressed = stretch * act(mesh.arm, on.contact) + x_c * act(mesh.inner_weights, on.contact)
+    profile = equations.operators.model.profile
+    moment = moment + profile.moment(mesh, x_c, on.pressure)
+    pressed = pressed + profile.moment(mesh, x_c, on.contact)
     balance = -(stretch * (speed * through + pressed))
     # Both sides are the same but for their errors, so that the share has no derivative.
     moment = moment + _share_balanced(equations, value_of(stretch * whole)) * (balance - moment)

@@ -122,6 +122,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
     smooth = u.gap[:, own] - far_gap(coarse.nodes[own])
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
+    # On panels with a kink, or too wide for the shape, the gap between the nodes is not that of their polynomials.
+    gap = np.maximum(gap + op.model.profile.missed(coarse, mesh, u.exit), NEGLIGIBLE * gap)
     fluid = None if u.pressure is None else coarse.to_order(u.pressure * coarse.stretch, mesh.order) / mesh.stretch
     flat = np.asarray((np.abs(u.gap - u.flux_gap) < NEGLIGIBLE * u.gap).reshape(len(y), coarse.panels, -1).all(axis=2))
     clip = _clip_to_coarse_error(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
@@ -185,11 +187,11 @@ def _rounding(equations: Equations, u: Fields, shape: Array, slopes: Array) -> F
     """Return by how much rounding may change the rows: a few units in the last place of the largest terms."""
     op, scale, d = equations.operators, equations.flux_scale, u.cavity_stretch
     x = op.mesh.nodes if d is None else d * op.mesh.nodes
-    parabola = 0.5 * (x if u.exit is None else x + u.exit) ** 2
-    deflection = u.gap - u.offset - parabola - shape
+    undeformed = 0.5 * (x if u.exit is None else x + u.exit) ** 2 + op.model.profile.departure(op.mesh, u.exit)
+    deflection = u.gap - u.offset - undeformed - shape
     size = SAFETY * EPSILON
     found = Fields(
-        gap=size * (np.abs(u.offset) + parabola + np.abs(deflection)),
+        gap=size * (np.abs(u.offset) + np.abs(undeformed) + np.abs(deflection)),
         offset=np.full_like(u.offset, size * LOAD),
         flux_gap=size * scale * act(op.net, np.abs(slopes)),
     )

@@ -13,8 +13,9 @@ s is a fixed length that makes the last row of order one.  If the gradient G dep
 is an unknown too, with the rows ``p_f - lambda A G``; Newton's step eliminates it.
 
 With a free exit the film ends at x_c, and x is measured from there: D, A and w do not depend on x_c, which enters by the
-parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there; where the
-fluid thins, G at low rates, which vanishes with it: G itself may be a small power of the gap, which no polynomial follows.
+undeformed gap alone, of a cylinder ``(x + x_c)**2/2``.  The integrals of G end at the exit, and one more row asks that G
+vanish there; where the fluid thins, G at low rates, which vanishes with it: G itself may be a small power of the gap, which
+no polynomial follows.
 A film that ends at the pressure p_cav of the cavity and re-forms behind it has one more unknown still, the length of the
 cavity, which stretches the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and
 minus that.
@@ -209,6 +210,7 @@ class Equations:
         op, d, scale = self.operators, u.cavity_stretch, self.flux_scale
         x = op.mesh.nodes if d is None else d * op.mesh.nodes
         shape = u.gap - u.offset - (op.parabola if d is None else 0.5 * x * x) - op.deflected(pressure, d)
+        shape = shape - op.model.profile.departure(op.mesh, u.exit)
         load = act(op.load, pressure)
         flux, exit, stretch = act(op.net, g), None, None
         if u.exit is not None:

@@ -16,7 +16,7 @@ from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import root_between
-from stribeck.numerics.panels import NO_PLACES, Mesh, adapt, base_edges, graded, highest_degree
+from stribeck.numerics.panels import Mesh, adapt, base_edges, graded, highest_degree
 from stribeck.numerics.settings import (
     COARSE_RTOL,
     COARSE_STEP,
@@ -192,12 +192,14 @@ def mesh_for(
     if ends and start is not None:
         edges = start.edges if start.coarse_edges is None else start.coarse_edges
         start = replace(start, edges=edges / to_guess)
-    kinks = NO_PLACES
+    kinks = centre + groups.model.profile.places
+    reach = max([reach, *np.abs(kinks).tolist()])
     if (fractional or closed_at is not None) and tolerance < COARSE_RTOL:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
         x = x[(x < 0) | (x > reformation)] if ends else x
-        kinks = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
+        of_film = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
+        kinks = np.append(kinks, of_film)
     # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
     known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
     shortest = None if known_on is None else lambda x: NEGLIGIBLE * known_on(x * to_guess) / to_guess
@@ -206,7 +208,7 @@ def mesh_for(
         return mesh
     # Panels that do not halve leave the ends with the error of a coarse state.
     levels = halvings + max(0, round(halvings_for(COARSE_STEP / error)))
-    return replace(graded(mesh, places, levels), reformation=reformation)
+    return replace(graded(mesh, places, levels), reformation=reformation, origin=-centre)
 
 
 def _cavity_on_mesh(guess: Guess) -> float:

@@ -47,10 +47,12 @@ class Extrapolation:
     @cached_property
     def _in_place(self) -> bool:
         """Whether gaps are extrapolated at fixed places of the contact."""
-        # The edge of a contact of asperities stays where it is while the exit moves through it.
+        # The edge of a contact of asperities, and a kink of the shape, stay where they are while the exit moves through them.
         before, last = self.states[-2:]
         if not last.equations.operators.has_exit:
             return False
+        if last.equations.operators.model.profile.places.size:
+            return True
         x = last.mesh.nodes
         in_frame, in_place = (
             np.abs(before.fields(at)[0] - last.log_gap(last.mesh)).max()

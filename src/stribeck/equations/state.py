@@ -107,11 +107,14 @@ class State:
 
     @cached_property
     def _sucks(self) -> bool:
-        """Whether a film that ends at ambient pressure sucks before."""
+        """Whether a film that ends at ambient pressure sucks before, and no pressure rises again between suction and end."""
         operators = self.equations.operators
         if not operators.has_exit or operators.has_reformation:
             return False
-        return bool(-SAFETY * self.fluid_pressure.min() > self.fluid_pressure.max())  # of a full film both are alike
+        # Of a full film both are alike.  A film between two constrictions may suck: no air gets there.
+        pressure = self.fluid_pressure[: -self.mesh.order]
+        suction, behind = -SAFETY * pressure.min(), pressure[np.argmin(pressure) :].max()
+        return bool(suction > pressure.max() and behind < NEGLIGIBLE * suction)
 
     def corrected(self) -> State:
         """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
@@ -174,20 +177,29 @@ class State:
         if mesh is self.mesh:
             return self._log_gap
         if mesh not in self._on_other_mesh:
-            shape = self.mesh.interpolate(self.shape, mesh.nodes)
+            shape = self.mesh.interpolate(self.shape, self._on_panels(mesh.nodes))
             self._on_other_mesh.clear()
             self._on_other_mesh[mesh] = shape + np.log(self.mesh.scale**2 + mesh.nodes**2)
         return self._on_other_mesh[mesh]
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
-        found = self.mesh.interpolate(self._nodal, x)
+        found = self.mesh.interpolate(self._nodal, self._on_panels(x))
         found[0] += np.log(self.mesh.scale**2 + x * x)
         return found
 
     def known_on(self, x: Array) -> Array:
         """Return the lengths of the panels at ``x``, by whose polynomials the state is known there."""
-        return self.mesh.lengths_at(x)
+        return self.mesh.lengths_at(self._on_panels(x))
+
+    def _on_panels(self, x: Array) -> Array:
+        """Return the coordinates at which the panels have what is at ``x``: they have kinks of the shape where they end."""
+        places, origin = self.equations.operators.model.profile.places, self.mesh.origin
+        passed = (places - origin) * (places - self.exit) <= 0  # by the exit
+        known = np.append(places[~passed], self.exit)
+        at = np.argsort(known)
+        moved = np.append(np.full(len(known) - 1, self.exit - origin), 0.0)
+        return np.asarray(x + np.interp(x, known[at] - self.exit, moved[at]))
 
 
 def unknowns_of(equations: Equations, guess: Guess) -> Array:

@@ -113,6 +113,7 @@ class Mesh:
     scale: float = 1.0  # Length on which the fields vary in the middle; gaps are interpolated over `scale**2 + x**2`
     reformation: float = math.inf  # Edge beyond zero where a field that ends at zero re-forms; infinite where it does not
     coarse_edges: Array | None = None  # Edges before panels were halved towards places; None where they were not
+    origin: float = 0.0  # Where its zero lay as it was made, among the places that are edges of panels
 
     @property
     def panels(self) -> int:
@@ -128,6 +129,11 @@ class Mesh:
     def centres(self) -> Array:
         """Centres of the panels, each in its own coordinate."""
         return np.append(0.5 * (self.edges[1:] + self.edges[:-1]), 0.0)
+
+    @property
+    def middles(self) -> Array:
+        """Positions in ``x`` inside each panel."""
+        return np.append(self.centres[:-1], 2 * self.edges[-1])
 
     @cached_property
     def half_widths(self) -> Array:
@@ -222,7 +228,7 @@ class Mesh:
 
     def refined(self, order: int) -> Mesh:
         """Return the same panels with ``order`` nodes each."""
-        return Mesh(self.edges, order, self.scale, self.reformation)
+        return Mesh(self.edges, order, self.scale, self.reformation, origin=self.origin)
 
     def to_order(self, values: Array, order: int) -> Array:
         """Return nodal values on :meth:`refined` from nodal ``values`` of this mesh."""

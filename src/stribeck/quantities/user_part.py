@@ -15,7 +15,7 @@ GUIDE = "See Add a fluid in for_developers.md."
 
 def refusal(kind: str, part: Any, sentence: str) -> InputError:
     """Return the error that refuses a part of that kind, with its name."""
-    return InputError(f"the {kind} {part.name or type(part).__name__!r}: {sentence} {GUIDE}")
+    return InputError(f"the {kind} {getattr(part, 'name', None) or type(part).__name__!r}: {sentence} {GUIDE}")
 
 
 def check_user_part(kind: str, part: Any, check: Callable[[Any], None]) -> None:

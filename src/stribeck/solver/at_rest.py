@@ -45,7 +45,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     if groups.speed > 0:
         return groups, 0.0
     if groups.model != BASE_MODEL:  # at rest neither the fluid nor the end of its film matters
-        groups = replace(groups, model=Model(solid=groups.model.solid))
+        groups = replace(groups, model=Model(solid=groups.model.solid, profile=groups.model.profile))
     shape = groups.law
     if shape is None or is_exponential(shape):
         exponents = groups.scaling

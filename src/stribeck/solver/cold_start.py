@@ -3,11 +3,12 @@ r"""Cold start: a first state for any groups, from a rigid cylinder by one path.
 A fast enough film, or high enough asperities, hold the cylinder so far off that it hardly deforms: its gap is the parabola
 :math:`h_0 + x^2/2`, and :math:`h_0` follows from one scalar equation.  From there the speed comes down, of a contact at rest
 the roughness, with the solid and the exit of the model; of a rough contact under a light load, load and speed together, so
-that asperities and film keep their balance.  Then the fluid of the model replaces the Newtonian one along
+that asperities and film keep their balance.  Where the path begins, the shape of the model replaces the cylinder, and where
+it ends the fluid of the model the Newtonian one, along
 
 .. math::
 
-    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} .
+    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film} , \qquad h_0 = (1 - t) \, x^2/2 + t \, g .
 
 The formulas here only start Newton's iteration: no result depends on them.  Films that re-form come after these, see
 :mod:`stribeck.solver.cavities.cavity_length`.
@@ -17,9 +18,10 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -83,6 +85,10 @@ class RigidGuess:
         deflection = 0.0 if self.exit else -2 * self.speed / 3 * x / b / (x * x + b * b)
         # Where asperities carry nearly all of a heavy load, the film's deflection may exceed the height.
         return np.asarray(np.log(np.maximum(parabola + deflection, NEGLIGIBLE * parabola))[None, :])
+
+
+def _with_model(groups: Groups, **changes: Any) -> Groups:
+    return replace(groups, model=replace(groups.model, **changes))
 
 
 @cache
@@ -162,7 +168,9 @@ def cold_start(groups: Groups) -> Path[State]:
     """Return the path from the rigid cylinder to the coarse state of a Newtonian fluid."""
     if groups.model != BASE_MODEL:
         ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
-        model = Model(cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid)
+        model = Model(
+            cavitation=Cavitation.EXIT if ends else Cavitation.NONE, solid=groups.model.solid, profile=groups.model.profile
+        )
         groups = replace(groups, model=replace(model, film=groups.model.film) if is_rough(groups.model.film) else model)
     name = "speed" if groups.speed > 0 else "roughness"
     top = max(0.0, math.log(MIN_RIGID / float(groups.speed if groups.speed > 0 else groups.relative_roughness)))
@@ -183,21 +191,35 @@ def cold_start(groups: Groups) -> Path[State]:
         if history:
             return next_state(here, history, log_factor)
         guess = rigid_guess(here)
-        return None if guess is None else coarse_state(here, guess)
+        return None if guess is None else _under_profile(here, guess)
 
     return march(correct, top, 0.0, STEPS)
 
 
 def first_path(groups: Groups) -> Path[State]:
     """Return the path from cold to a coarse state of ``groups``, whose film does not re-form."""
-    path = cold_start(groups)
-    if not path.outcome.ok or groups.model.film == Newtonian() or is_rough(groups.model.film):
+    path, film = cold_start(groups), groups.model.film
+    if not path.outcome.ok or film == Newtonian() or is_rough(film):
         return path
     start = path.states[-1]
+    return _homotopy(start, lambda part: _with_model(start.groups, film=blend(film, part)))
+
+
+def _under_profile(groups: Groups, guess: Guess) -> State | None:
+    """Return the state of groups from that under the parabola, which a guess leads to."""
+    profile = groups.model.profile
+    start = coarse_state(_with_model(groups, profile=profile.part(0.0)), guess)
+    if profile.is_parabola or start is None or not start.outcome.ok:
+        return start
+    path = _homotopy(start, lambda part: _with_model(groups, profile=profile.part(part)))
+    return path.states[-1] if path.outcome.ok else None
+
+
+def _homotopy(start: State, groups_at: Callable[[float], Groups]) -> Path[State]:
+    """Return the path from a state of groups at zero to that at one."""
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, model=replace(start.groups.model, film=blend(groups.model.film, part)))
-        return next_state(here, history, part)
+        return next_state(groups_at(part), history, part)
 
     return march(correct, 0.0, 1.0, replace(STEPS, first=1.0), history=[(0.0, start)])
 

@@ -241,7 +241,9 @@ class Solution(BaseSolution):
             return 0.0
         if self.groups.model.film.parameters.get("friction_factors") != "true":
             x = exit + cavity_stretch * self.mesh.nodes
-            moment = cavity_stretch * (x * (self._pressures[0] + self._pressures[1])) @ self.mesh.weights
+            pressure = self._pressures[0] + self._pressures[1]
+            moment = cavity_stretch * (x * pressure) @ self.mesh.weights
+            moment = moment + np.sum(self.groups.model.profile.moment(self.mesh, exit, pressure))
             drags = self.observables.viscous_balanced - self.observables.viscous_upper
             return float(-drags / (2 * math.sqrt(float(self.groups.load))) - 2 / math.pi * moment)
         from stribeck.solids.viscoelastic import hysteresis_friction

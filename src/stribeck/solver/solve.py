@@ -146,10 +146,12 @@ def solve(
 def _solve_line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> Solution:
     """Return the state of a line contact."""
     if groups.is_hertzian:
-        if not isinstance(groups.model.solid, HalfPlane):
+        solid, profile = groups.model.solid, groups.model.profile
+        if not (isinstance(solid, HalfPlane) and profile.is_parabola):
+            under = "" if profile.is_parabola else f" under {profile.name}"
             raise InputError(
-                f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of smooth surfaces is known in "
-                "closed form on the half-plane alone; give a small speed or roughness."
+                f"speed and roughness are zero on a {solid.name}{under}: the dry contact of smooth surfaces is known in "
+                "closed form of a cylinder on the half-plane alone; give a small speed or roughness."
             )
         return hertz_solution(groups, contact, rtol)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)

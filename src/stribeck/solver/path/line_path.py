@@ -380,6 +380,7 @@ def has_formulas(model: Model) -> bool:
     film = model.film
     return (
         model.cavitation is not Cavitation.REFORM
+        and (model.profile.is_parabola or model.cavitation is Cavitation.NONE)
         and isinstance(film, Newtonian)
         and film.is_smooth
         and isinstance(film.viscosity, Constant | Barus | Roelands)

@@ -1,0 +1,195 @@
+r"""The shape of the rigid body as the equations see it: what its gap has beyond the parabola :math:`x^2/2` of a cylinder.
+
+A shape is anything with four members, see :class:`Profile`.  In units of a length L and a height u_0 its gap is
+
+.. math:: g(x) = \frac{h_0(x_0 + L x)}{u_0}
+
+with :math:`x_0` the origin of x.  The gap of a lip or a land grows as ``|x|``, which films do not feel but viscous drag far
+away does: beyond 6 L every shape goes over into the parabola, and from 14 L on it is the parabola.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh
+from stribeck.numerics.settings import HALF_DIGITS
+from stribeck.numerics.trace import act, pointwise
+
+__all__ = ["Departure", "Parabola", "Profile", "Undeformed"]
+
+PROFILE_UP_TO = 6.0  # Distance up to which the gap is that of the shape [L]
+PARABOLA_FROM = 14.0  # Distance from which it is the parabola [L]
+
+
+class Profile(Protocol):
+    """A shape as users give it: frozen, hashable; lengths in SI with a contact, in L and u_0 with groups."""
+
+    @property
+    def places(self) -> Sequence[float]:
+        """Where the slope or the curvature of the gap has a kink."""
+
+    @property
+    def parameters(self) -> Mapping[str, float | str]:
+        """What distinguishes this shape from others of its name, for outputs."""
+
+    def gap(self, x: Array) -> Array:
+        """Return the undeformed gap at positions along the contact."""
+
+    def slope(self, x: Array) -> Array:
+        """Return the derivative of the gap."""
+
+
+class Undeformed(Protocol):
+    """The undeformed gap in Hertz units."""
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+
+    @property
+    def parameters(self) -> Mapping[str, float | str]:
+        """What distinguishes it from others of its name, for outputs."""
+
+    @property
+    def places(self) -> Array:
+        """Where panels of a mesh must end [a]."""
+
+    @property
+    def is_parabola(self) -> bool:
+        """Whether it is that of a cylinder."""
+
+    def part(self, part: float) -> Undeformed:
+        """Return the gap at a place of the path from the parabola, 0, to this one, 1."""
+
+    def departure(self, mesh: Mesh, exit: Any) -> Any:
+        """Return the gap beyond the parabola [u_Hz] at the nodes of a mesh, whose zero is the exit where there is one."""
+
+    def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
+        """Return the departure at the nodes of a finer mesh on the same panels, less the polynomials of the coarse one."""
+
+    def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
+        """Return the integral of the departure's slope times nodal pressure over the panels in x."""
+
+
+@dataclass(frozen=True)
+class Parabola:
+    """The cylinder, from whose gap nothing departs."""
+
+    name: str = "cylinder"
+
+    @property
+    def parameters(self) -> Mapping[str, float | str]:
+        """None."""
+        return {}
+
+    @property
+    def places(self) -> Array:
+        """None."""
+        return np.empty(0)
+
+    @property
+    def is_parabola(self) -> bool:
+        """It is."""
+        return True
+
+    def part(self, part: float) -> Parabola:
+        """Return the parabola itself."""
+        return self
+
+    def departure(self, mesh: Mesh, exit: Any) -> Any:
+        """Return zero."""
+        return 0.0
+
+    def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
+        """Return zero."""
+        return 0.0
+
+    def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
+        """Return zero."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A shape in Hertz units."""
+
+    shape: Profile
+    origin: float = 0.0  # x_0 [m], or [L] with groups
+    length: float = 1.0  # L [m]
+    height: float = 1.0  # u_0 [m]
+    of_shape: float = 1.0  # Its part along the path from the parabola
+
+    @property
+    def name(self) -> str:
+        """The name of the shape."""
+        return str(getattr(self.shape, "name", type(self.shape).__name__))
+
+    @property
+    def parameters(self) -> Mapping[str, float | str]:
+        """Those of the shape."""
+        return self.shape.parameters
+
+    @property
+    def is_parabola(self) -> bool:
+        """It is not."""
+        return False
+
+    @property
+    def direction(self) -> float:
+        """Minus one of a shape that is reversed, which then is seen from behind."""
+        return -1.0 if getattr(self.shape, "reversed", False) else 1.0
+
+    @property
+    def places(self) -> Array:
+        """Kinks of the shape, and where it begins and ends to go over into the parabola."""
+        own = (self.direction * np.asarray(self.shape.places, dtype=float) - self.origin) / self.length
+        ends = np.array([-PARABOLA_FROM, -PROFILE_UP_TO, PROFILE_UP_TO, PARABOLA_FROM])
+        return np.sort(np.append(own[np.abs(own) < PARABOLA_FROM], ends))
+
+    def part(self, part: float) -> Departure:
+        """Return the gap at a place of the path from the parabola, 0, to this one, 1."""
+        return replace(self, of_shape=part)
+
+    def departure(self, mesh: Mesh, exit: Any) -> Any:
+        """Return the gap beyond the parabola: on each panel that between the kinks amid which it was made."""
+        return pointwise(lambda x: self._on_panels(mesh, x)[:2], mesh.nodes if exit is None else mesh.nodes + exit)
+
+    def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
+        """Return the departure between the nodes less their polynomials."""
+        found = self._gap_and_slope(mesh.nodes if exit is None else mesh.nodes + exit)[0]
+        return found - coarse.to_order(self.departure(coarse, exit), mesh.order)
+
+    def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
+        """Return the integral of the departure's slope times pressure."""
+        slope = pointwise(lambda x: self._on_panels(mesh, x)[1:], exit + mesh.nodes)
+        return act(mesh.inner_weights, slope * pressure)
+
+    def _on_panels(self, mesh: Mesh, x: Any) -> tuple[Any, Any, Any]:
+        """Return the departure, its slope and its curvature at the nodes of a mesh, which now lie at ``x``."""
+        # A kink moves through the panels with the exit: each goes on, as a parabola, with what it has up to the kink, so that
+        # Newton's iteration meets none, and the next mesh has the kink between panels.
+        places = np.concatenate([[-np.inf], self.places, [np.inf]])
+        after = np.repeat(np.searchsorted(places, mesh.origin + mesh.middles), mesh.order)
+        at = np.clip(x, places[after - 1] + HALF_DIGITS, places[after] - HALF_DIGITS)
+        inwards = np.where(x > at, -HALF_DIGITS, HALF_DIGITS)
+        gap, slope = self._gap_and_slope(at)
+        curvature = (self._gap_and_slope(at + inwards)[1] - slope) / inwards  # no more exact than half of the digits
+        beyond = x - at
+        return gap + beyond * (slope + 0.5 * curvature * beyond), slope + curvature * beyond, curvature
+
+    def _gap_and_slope(self, x: Any) -> tuple[Any, Any]:
+        """Return the departure and its slope at positions in the contact."""
+        x = np.clip(np.asarray(x), -PARABOLA_FROM, PARABOLA_FROM)
+        t = np.clip((np.abs(x) - PROFILE_UP_TO) / (PARABOLA_FROM - PROFILE_UP_TO), 0.0, 1.0)
+        left = 1 - t**4 * (35 - 84 * t + 70 * t**2 - 20 * t**3)
+        falls = -140 * (t * (1 - t)) ** 3 * np.sign(x) / (PARABOLA_FROM - PROFILE_UP_TO)
+        place = self.direction * (self.origin + self.length * x)
+        gap = self.shape.gap(place) / self.height - 0.5 * x**2
+        slope = self.direction * self.shape.slope(place) * (self.length / self.height) - x
+        return self.of_shape * left * gap, self.of_shape * (left * slope + falls * gap)
