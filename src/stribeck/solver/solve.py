@@ -112,7 +112,7 @@ def solve(
     on_failure : {"raise", "return"}
         What to do if the tolerance is not reached: raise :class:`SolveError`, or return the state with its outcome.
     **parts
-        ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
+        ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid``, ``profile`` and ``slide_to_roll`` as in
         :class:`stribeck.LineContact`, instead of those of the problem; with groups in Hertz units, see fluids.md.
 
     Returns
