@@ -24,7 +24,7 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import ROW, observables
+from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales, observables
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
@@ -71,6 +71,7 @@ def true_error(s: sb.results.Solution) -> float:
     scales[ROW["offset"]] = max(scales[ROW["offset"]], 1e-3)
     if g.speed == 0:
         scales[gaps] = np.maximum(scales[gaps], 1e-3 * g.relative_roughness)
+    scales[DRAG_ROWS] = drag_scales(exact[None])[0]  # what cancels is right to the parts, as states say of themselves
     scales[scales == 0] = 1.0
     values = s.observables.array()
     return float(np.nanmax(np.abs(values - exact) / scales))
