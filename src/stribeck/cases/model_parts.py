@@ -5,9 +5,11 @@ Each becomes one or two arguments of the contact; what a number may be is checke
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from stribeck.cases.tables import AS_GIVEN, noted, one_of, read_tables
@@ -15,6 +17,7 @@ from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS, Kind
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.measured_viscosity import FlowCurve, read_flow_curve
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
@@ -24,6 +27,9 @@ from stribeck.quantities.units import InputError, show
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
 
 CONDITIONS = tuple(dict.fromkeys(name for preset in PRESETS.values() for name in preset.conditions))
+
+# Keys of [fluid] that bring the viscosity of the contact along -> the keys that go with them.
+SOURCES_OF_VISCOSITY = {"preset": CONDITIONS, "flow_curve": ("model",)}
 
 
 def _keys(*kinds: Kind) -> tuple[str, ...]:
@@ -36,7 +42,8 @@ class PartTable(NamedTuple):
     """A table of a case that describes a part of a contact."""
 
     keys: tuple[str, ...]
-    read: Callable[[dict[str, Any], Any], dict[str, Any]]  # Arguments of a contact from the table and that of the contact
+    # Arguments of a contact from the table, that of the contact, and the folder of files; None where files are not known
+    read: Callable[[dict[str, Any], Any, Path | None], dict[str, Any]]
     missing: str = ""  # What to say where the first of its keys is missing; empty if none is needed
 
 
@@ -51,8 +58,8 @@ def in_file(problem: str, table: str) -> str:
     return f"[{next(own, table)}] {problem}"
 
 
-def take_parts(tables: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
-    """Return the tables without those of the model, what these say, and what is wrong with them."""
+def take_parts(tables: dict[str, Any], folder: Path | None = None) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
+    """Return the tables without those of the model, what these say, and what is wrong with them; files are in a folder."""
     rest = {name: value for name, value in tables.items() if name not in PART_TABLES}
     if isinstance(rest.get("contact"), dict):
         rest["contact"] = dict(rest["contact"])
@@ -67,7 +74,7 @@ def take_parts(tables: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any], 
             with noted(wrong, name):
                 if part.missing and part.keys[0] not in read[name]:
                     raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
-                parts |= part.read(read[name], rest.get("contact"))
+                parts |= part.read(read[name], rest.get("contact"), folder)
         problems += wrong
     return rest, parts, problems
 
@@ -79,10 +86,11 @@ def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) ->
             raise InputError(f"{key} = {show(table[key])} is given, but {of} has no such key; remove it.")
 
 
-def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    if "preset" in table:
-        return _preset(table, contact)
-    _refuse_other_keys(table, (*_keys(*FLUID_KINDS.values()), "preset"), "a fluid without preset")
+def _fluid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
+    source = next((key for key in SOURCES_OF_VISCOSITY if key in table), None)
+    if source is not None:
+        return _with_viscosity(table, contact, source, folder)
+    _refuse_other_keys(table, _keys(*FLUID_KINDS.values()), "a fluid without preset")
     given = {"viscosity_law": "barus"} | table if "pressure_coefficient" in table else table
     return {"fluid": Fluid(**{name: _law(given, kind) for name, kind in FLUID_KINDS.items()})}
 
@@ -94,45 +102,70 @@ def _law(table: dict[str, Any], kind: Kind) -> Any:
     return made_of(kind.laws[name], f"{kind.key} = {name!r}", given)
 
 
-def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+def _with_viscosity(table: dict[str, Any], contact: Any, source: str, folder: Path | None) -> dict[str, Any]:
+    """Return a fluid that has a viscosity, which becomes that of the contact."""
     doubled = isinstance(contact, dict) and "viscosity" in contact
     if isinstance(contact, dict) and not doubled:
         contact["viscosity"] = 1.0  # stands for that of the liquid, so that a wrong condition is no lack of a viscosity
-    name = one_of(*PRESETS)("preset", table["preset"])
-    _refuse_other_keys(table, ("preset", *CONDITIONS), "a preset")
-    liquid = _liquid(table)
+    if source == "preset":
+        one_of(*PRESETS)("preset", table["preset"])
+    _refuse_other_keys(table, (source, *SOURCES_OF_VISCOSITY[source]), f"a {source.replace('_', ' ')}")
+    liquid = _liquid(table, folder)
     if doubled:
         raise InputError(
-            f"preset = {name!r} and viscosity = {show(contact['viscosity'])} in [contact] are both given; remove one of them."
+            f"{source} = {show(table[source])} and viscosity = {show(contact['viscosity'])} in [contact] are both given; "
+            "remove one of them."
         )
     if isinstance(contact, dict):
         contact["viscosity"] = liquid.viscosity
     return {"fluid": liquid.fluid}
 
 
-def _liquid(table: dict[str, Any]) -> Liquid:
-    return PRESETS[table["preset"]](**{key: table[key] for key in CONDITIONS if key in table})
+def _liquid(table: dict[str, Any], folder: Path | None) -> Liquid | FlowCurve:
+    if "preset" in table:
+        return PRESETS[table["preset"]](**{key: table[key] for key in CONDITIONS if key in table})
+    file, law = table["flow_curve"], table.get("model")
+    if folder is None:
+        raise InputError(f"flow_curve = {show(file)} stands in [fluid] of a case; give the viscosity and the law here.")
+    if not isinstance(file, str):
+        raise InputError(f"flow_curve = {show(file)} must be text in quotes, the name of a file.")
+    path = folder / file
+    return _flow_curve(path, path.stat().st_mtime_ns if path.is_file() else 0, law)
+
+
+# A fit takes a quarter of a second, and a case reads its fluid for the contact and for what it says of it.
+@functools.lru_cache(maxsize=16)
+def _flow_curve(path: Path, changed: int, law: str | None) -> FlowCurve:
+    return read_flow_curve(path, law=law)
 
 
 def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
     """Return the facts for checks that a preset holds, in SI units."""
     table = tables.get("fluid")
-    rate = _liquid(table).thinning_rate if isinstance(table, dict) and "preset" in table else None
+    rate = getattr(_liquid(table, None), "thinning_rate", None) if isinstance(table, dict) and "preset" in table else None
     return {} if rate is None else {"thinning_rate": rate}
 
 
-def preset_source_text(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:
-    """Return where the viscosity of a preset is from, in a sentence; nothing where no liquid is named."""
+def viscosity_source_text(tables: dict[str, Any], viscosity: float, folder: Path) -> tuple[str, ...]:
+    """Return where the viscosity of a fluid is from, in a sentence; nothing where the case gives it."""
     table = tables.get("fluid")
-    if not isinstance(table, dict) or "preset" not in table:
+    if not isinstance(table, dict):
         return ()
-    preset = PRESETS[table["preset"]]
+    source = next((key for key in SOURCES_OF_VISCOSITY if key in table), None)
+    if source is None:
+        return ()
+    text = f"viscosity = {format_si(viscosity, 'viscosity', 4)} from "
+    if source == "flow_curve":
+        found = _liquid(table, folder)
+        assert isinstance(found, FlowCurve)
+        return (f"{text}flow_curve = {show(table[source])}: {' '.join([found.headline, *found.notes])}",)
+    preset = PRESETS[table[source]]
     conditions = {**preset.conditions, **{key: table[key] for key in CONDITIONS if key in table}}
-    given = " and ".join(f"{name} = {show(value)}" for name, value in {"preset": table["preset"], **conditions}.items())
-    return (f"viscosity = {format_si(viscosity, 'viscosity', 4)} from {given}: {preset.source} ({preset.range}).",)
+    given = " and ".join(f"{name} = {show(value)}" for name, value in {source: table[source], **conditions}.items())
+    return (f"{text}{given}: {preset.source} ({preset.range}).",)
 
 
-def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
     """Return the body of a table: a layer, a memory, or a layer that has one; its numbers say which."""
     kind = KINDS["solid"]
     laws = {name: law for name, law in kind.laws.items() if law is not None}
@@ -164,15 +197,15 @@ def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
 
 
 PART_TABLES = {
-    "fluid": PartTable((*_keys(*FLUID_KINDS.values()), "preset", *CONDITIONS), _fluid),
+    "fluid": PartTable((*_keys(*FLUID_KINDS.values()), *SOURCES_OF_VISCOSITY, *CONDITIONS), _fluid),
     "cavitation": PartTable(
         ("model", "cavity_pressure"),
-        lambda table, contact: {"cavitation" if key == "model" else key: value for key, value in table.items()},
+        lambda table, contact, folder: {"cavitation" if key == "model" else key: value for key, value in table.items()},
         'add model = "exit", "reform" or "none"',
     ),
     "flow_factors": PartTable(
         _keys(KINDS["flow_factors"]),
-        lambda table, contact: {"flow_factors": _law(table, KINDS["flow_factors"])},
+        lambda table, contact, folder: {"flow_factors": _law(table, KINDS["flow_factors"])},
         f"add model = {' or '.join(map(json.dumps, KINDS['flow_factors'].laws))}",
     ),
     "solid": PartTable(_keys(KINDS["solid"]), _solid),

@@ -13,7 +13,7 @@ from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettin
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
-from stribeck.cases.model_parts import in_file, preset_facts, preset_source_text, take_parts
+from stribeck.cases.model_parts import in_file, preset_facts, take_parts, viscosity_source_text
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.friction import DEFINITIONS
@@ -64,7 +64,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         geometry, table = geometry_of(tables)
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
-    table, parts, wrong = take_parts(table)
+    table, parts, wrong = take_parts(table, path.parent)
     problems += wrong
     fit = FitSettings(geometry=geometry)
     with noted(problems):
@@ -105,7 +105,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         ),
         facts={**preset_facts(tables), **facts},
         errors={**found.errors, **errors},
-        conversions=(*found.sentences, *preset_source_text(tables, contact.viscosity)),
+        conversions=(*found.sentences, *viscosity_source_text(tables, contact.viscosity, path.parent)),
         tables=tables,
         **checked["solver"],
     )

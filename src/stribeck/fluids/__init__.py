@@ -6,6 +6,7 @@ _HOMES = {
     "description": ("Fluid",),
     "effective_medium": ("EffectiveMedium",),
     "flow_factors": ("PatirCheng",),
+    "measured_viscosity": ("FlowCurve", "flow_curve", "read_flow_curve"),
     "liquids": ("Liquid",),
     "oils": ("iso_vg", "oil"),
     "presets": ("PRESETS", "glycerol_water", "water"),

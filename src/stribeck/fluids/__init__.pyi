@@ -4,6 +4,7 @@ from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.measured_viscosity import FlowCurve, flow_curve, read_flow_curve
 from stribeck.fluids.oils import iso_vg, oil
 from stribeck.fluids.presets import PRESETS, glycerol_water, water
 from stribeck.fluids.rheology.eyring import Eyring
@@ -19,14 +20,17 @@ __all__ = [
     "DowsonHigginson",
     "EffectiveMedium",
     "Eyring",
+    "FlowCurve",
     "Fluid",
     "Incompressible",
     "Liquid",
     "PatirCheng",
     "PowerLaw",
     "Roelands",
+    "flow_curve",
     "glycerol_water",
     "iso_vg",
     "oil",
+    "read_flow_curve",
     "water",
 ]

@@ -19,7 +19,7 @@ from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import INPUTS_OF_SURFACES, SOURCES, self_contained
-from stribeck.cases.model_parts import FLUID_KINDS, preset_facts
+from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, preset_facts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
@@ -229,7 +229,7 @@ def from_case(case: Case) -> Inputs:
     if "surface" in tables:
         rough = {} if "wavenumber" in tables["surface"] else {"h_rms": exact_text(case.contact.roughness, "length", "um")}
         tables["surface"] = rough | tables["surface"] | {"shape_only": True}
-    if "preset" in tables.get("fluid", {}):
+    if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
         tables["fluid"] = fluid_table(case.contact.fluid)
         tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
         own.append("viscosity")

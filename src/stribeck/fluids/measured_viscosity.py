@@ -1,0 +1,362 @@
+r"""From a measured viscosity over shear rate to the law of a fluid.
+
+Each law is fitted to the logarithm of the viscosity by least squares, from many first values.  Bayes' criterion of a law is
+
+.. math:: \mathrm{BIC} = N \ln \frac{S}{N} + k \ln N
+
+with S the sum of the squares, N the number of values and k that of the parameters.  Of the laws whose criterion is within 6
+of the least, beyond which the evidence against a law is strong (Kass and Raftery 1995), the one with the fewest parameters is
+taken.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.fluids.description import Fluid
+from stribeck.fluids.laws import RateLaw
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
+from stribeck.numerics.settings import EPSILON
+from stribeck.quantities.formats import format_percent, format_si
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.results import Card, Told
+from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.units import InputError, show, to_si
+
+__all__ = ["FlowCurve", "flow_curve", "read_flow_curve"]
+
+MIN_VALUES = 5  # Values from which a law is fitted: with fewer, two parameters and the scatter leave nothing to judge
+LAWS: Mapping[str, type[Any] | None] = {"newtonian": None, "power-law": PowerLaw, "cross": Cross, "carreau": Carreau}
+STARTS = 6  # First values of the relaxation time, between one over the largest and one over the smallest rate
+STRONG_EVIDENCE = 6.0  # Difference of the criteria from which the values speak against a law
+MAX_RISE = 3.0  # Standard errors of a rise of the viscosity with the rate from which no law of thinning applies
+NO_SCATTER = 1e-6  # Relative scatter below which values are as good as computed: no law wins by rounding
+POOR_FIT = 0.1  # Rms deviation of the viscosity above which a note says that no law follows it
+UNKNOWN = 0.5  # Standard error of the logarithm of a number above which a note says that the rates do not show it
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """One law through the values."""
+
+    name: str  # The law
+    viscosity: float  # Of the contact [Pa s]
+    law: RateLaw | None  # In SI units
+    errors: dict[str, float]  # Standard errors
+    misfit: float  # Rms of the logarithms
+    parameters: int  # How many were fitted
+    criterion: float  # BIC
+
+
+@dataclass(frozen=True, repr=False)
+class FlowCurve(Told):
+    """A viscosity measured over the shear rate, and the law through it.
+
+    Attributes
+    ----------
+    rate : ndarray
+        Shear rates [1/s].
+    measured : ndarray
+        Viscosities there [Pa s].
+    viscosity : float
+        Viscosity of the law, that at low rates; of a power law that at one over its time [Pa s].
+    law : RateLaw or None
+        The law of :mod:`stribeck.fluids`, in SI units; None where the liquid does not thin.
+    errors : dict of str to float
+        Standard errors of ``viscosity`` and of the numbers of the law.
+    misfit : float
+        Root mean square of the relative deviation of the values from the law [-].
+    misfits : dict of str to float
+        That of each law that was tried.
+    notes : tuple of str
+        What must be known before the law is used.
+    """
+
+    rate: Array
+    measured: Array
+    viscosity: float
+    law: RateLaw | None
+    errors: dict[str, float]
+    misfit: float
+    misfits: dict[str, float]
+    notes: tuple[str, ...] = field(default=())
+
+    @cached_property
+    def fluid(self) -> Fluid:
+        """The fluid of a contact."""
+        return Fluid(self.law)
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """The arguments ``viscosity`` and ``fluid`` of a contact."""
+        return {"viscosity": self.viscosity, "fluid": self.fluid}
+
+    def at(self, rate: Any) -> Array:
+        """Return the viscosity of the law at shear rates.
+
+        Parameters
+        ----------
+        rate : array_like
+            Shear rates [1/s].
+
+        Returns
+        -------
+        ndarray
+            Viscosities [Pa s].
+        """
+        x = np.asarray(rate, dtype=float)
+        if self.law is None:
+            return np.full(x.shape, self.viscosity)
+        given = {name: getattr(self.law, name) for name in numbers_of(type(self.law))}
+        if "infinite_viscosity" in given:
+            given["infinite_viscosity"] /= self.viscosity
+        x = x * self.law.time
+        return np.asarray(self.viscosity * type(self.law)(**given).stress(x) / x)
+
+    @property
+    def headline(self) -> str:
+        """What was fitted to what, and how well."""
+        low, high = (format_si(value, "rate") for value in (self.rate.min(), self.rate.max()))
+        name = "Newtonian" if self.law is None else self.law.name.capitalize()
+        return f"{name} through {self.rate.size} values from {low} to {high}, {format_percent(self.misfit)} off in the mean."
+
+    def _card(self) -> Card:
+        rows = [("viscosity", format_si(self.viscosity, "viscosity"), format_si(self.errors["viscosity"], "viscosity"))]
+        for each, row in ({} if self.law is None else numbers_of(type(self.law))).items():
+            texts = [format_si(value, row.dimension) for value in (getattr(self.law, each), self.errors.get(each, 0.0))]
+            rows.append((row.label, texts[0], texts[1] if each in self.errors else ""))
+        others = ", ".join(f"{law} {format_percent(misfit)}" for law, misfit in self.misfits.items())
+        return Card(
+            self.headline,
+            table=[("quantity", "value", "standard error"), *rows],
+            sentences=[f"Mean deviation of all laws: {others}.", *self.notes],
+        )
+
+
+def flow_curve(rate: Any, viscosity: Any, *, law: str | None = None) -> FlowCurve:
+    """Fit a law of shear thinning to a viscosity measured over the shear rate.
+
+    Parameters
+    ----------
+    rate : array_like, shape (n,)
+        Shear rates, positive, at least five that differ [1/s].
+    viscosity : array_like, shape (n,)
+        Viscosities there, positive [Pa s].
+    law : {"newtonian", "power-law", "cross", "carreau"}, optional
+        The law; by default the one that the values speak for.
+
+    Returns
+    -------
+    FlowCurve
+        The law with the errors of its numbers, how far the values lie from it, and what must be known of it.
+
+    Raises
+    ------
+    InputError
+        Where values are impossible, too few, or the liquid thickens with the rate.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stribeck as sb
+    >>> rate = np.geomspace(0.1, 1000, 13)
+    >>> found = sb.fluids.flow_curve(rate, 2.0 * (1 + (5 * rate) ** 2) ** -0.3)
+    >>> found.law.name, round(found.law.exponent, 3)
+    ('carreau', 0.4)
+    """
+    rates, values = _checked(rate, viscosity)
+    if law is not None and law not in LAWS:
+        raise InputError(f"law = {show(law)} is not known; there are {', '.join(LAWS)}.")
+    fits = [fit for name, kind in LAWS.items() if law in (None, name) for fit in _fits(name, kind, rates, values)]
+    if not fits:
+        raise InputError(f"{rates.size} values are too few for law = {show(law)}; measure at more rates.")
+    least = min(fit.criterion for fit in fits)
+    likely = [fit for fit in fits if fit.criterion <= least + STRONG_EVIDENCE]
+    best = min(likely, key=lambda fit: (fit.parameters, fit.criterion))
+    misfits = {name: min(each.misfit for each in fits if each.name == name) for name in dict.fromkeys(f.name for f in fits)}
+    notes = tuple(_notes(best, rates))
+    return FlowCurve(rates, values, best.viscosity, best.law, best.errors, best.misfit, misfits, notes)
+
+
+def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> FlowCurve:
+    """Read a viscosity over shear rate from a table and fit a law of shear thinning.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A text file or spreadsheet with a column of shear rates and one of viscosities, with units, such as
+        ``shear rate [1/s]; viscosity [mPa*s]``; other columns are left out.
+    law : {"newtonian", "power-law", "cross", "carreau"}, optional
+        The law; by default the one that the values speak for.
+
+    Returns
+    -------
+    FlowCurve
+        See :func:`flow_curve`.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read or has no such columns, or its values allow no fit.
+    """
+    from stribeck.files.cells import is_named  # slow to import, and most fluids have no file
+    from stribeck.files.text_table import read_table, values_of
+
+    file = Path(path)
+    advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]', with the units of the file"
+    columns = {
+        "rate": r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d",
+        "viscosity": r"(shear |dynamic |apparent )?viscosity|eta|viskosität",
+    }
+    table = read_table(file, expected=advice, knows=lambda name: any(is_named(name, each) for each in columns.values()))
+    found: list[Array] = []
+    for kind, pattern in columns.items():
+        names = [name for name in table.header if is_named(name, pattern)]
+        if len(names) != 1:
+            which = f"columns {', '.join(map(show, names))} all" if names else f"none of {', '.join(map(show, table.header))}"
+            raise InputError(f"{file}: {which} may be the {kind}; {advice}.")
+        unit = table.unit(names[0])
+        if not unit:
+            raise InputError(f"{file}: the column {show(names[0])} has no unit; {advice}.")
+        rows = [(cell,) for cell in table.column(names[0])]
+        values = values_of(file, rows, table.numbers, comma=table.decimal_comma(names))[:, 0]
+        found.append(
+            values * to_si(f"1 {unit.replace('·', '*').replace('s^-1', '1/s').replace('s⁻¹', '1/s')}", kind, names[0])
+        )
+    known = ~np.isnan(found[0]) & ~np.isnan(found[1])
+    try:
+        return flow_curve(found[0][known], found[1][known], law=law)
+    except InputError as problem:
+        raise InputError(f"{file}: {problem}") from None
+
+
+def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:
+    """Return rates, rising, and viscosities."""
+    try:
+        x, y = np.array(rate, dtype=float), np.array(viscosity, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("rate and viscosity must be arrays of numbers, in 1/s and Pa s.") from None
+    if x.ndim != 1 or x.shape != y.shape:
+        raise InputError(f"rate of shape {x.shape} and viscosity of shape {y.shape}; give two rows of as many numbers.")
+    for name, values in (("rate", x), ("viscosity", y)):
+        wrong = values[~(np.isfinite(values) & (values > 0))]
+        if wrong.size:
+            raise InputError(f"{name} holds {wrong[0]:g}; all values must be finite and above zero.")
+    if np.unique(x).size < MIN_VALUES:
+        raise InputError(f"viscosity at {np.unique(x).size} different rates; a law needs {MIN_VALUES} or more.")
+    order = np.argsort(x)
+    x, y = x[order], y[order]
+    (slope, _), covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
+    if slope > MAX_RISE * math.sqrt(covariance[0, 0]) and slope > NO_SCATTER:
+        raise InputError(
+            f"viscosity rises with the rate, from {y[0]:.3g} to {y[-1]:.3g} Pa s; fluids that thicken under shear are not "
+            "modelled. Leave out rates at which the flow in the rheometer is no longer laminar."
+        )
+    return x, y
+
+
+def _fits(name: str, kind: type[Any] | None, x: Array, y: Array) -> list[_Fit]:
+    """Return the fits of a law, of one with two plateaus also with the second at zero."""
+    log_y, middle = np.log(y), float(np.exp(np.log(x).mean()))
+    if kind is None:
+        mean = float(log_y.mean())
+        error = float(log_y.std()) / math.sqrt(x.size)
+        return [_judged(name, None, mean, {}, np.array([error]), log_y - mean)]
+    slope = -float(np.polyfit(np.log(x), log_y, 1)[0])
+    if kind is PowerLaw:
+        return _searched(name, kind, x, log_y, [np.array([log_y.mean(), 1 - slope])], lambda p: {"exponent": p[1]}, 1 / middle)
+    lowest, highest = numbers_of(kind)["exponent"].lowest, numbers_of(kind)["exponent"].highest
+    exponents = (0.3, 0.7)
+    times = np.geomspace(1 / x[-1], 1 / x[0], STARTS)
+    starts = [np.array([log_y.max(), math.log(t), n]) for t in times for n in exponents if lowest < n < highest]
+
+    def numbers(p: Array) -> dict[str, float]:
+        found = {"relaxation_time": math.exp(p[1]), "exponent": p[2]}
+        return found | ({"infinite_viscosity": math.exp(p[3])} if len(p) > 3 else {})
+
+    ratio = math.log(0.5 * y.min() / y.max())
+    with_plateau = [np.append(start, ratio) for start in starts]
+    return [*_searched(name, kind, x, log_y, starts, numbers), *_searched(name, kind, x, log_y, with_plateau, numbers)]
+
+
+def _searched(
+    name: str,
+    kind: type[Any],
+    x: Array,
+    log_y: Array,
+    starts: list[Array],
+    numbers: Callable[[Array], dict[str, float]],
+    time: float | None = None,
+) -> list[_Fit]:
+    """Return the best fit from several first values; none where there are no more values than parameters and two."""
+    from scipy.optimize import least_squares  # slow to import
+
+    size = starts[0].size
+    if x.size < size + 3:
+        return []
+    fixed = {} if time is None else {"relaxation_time": time}
+    schema = numbers_of(kind)["exponent"]
+    low, high = np.full(size, -np.inf), np.full(size, np.inf)
+    at = 1 if time is not None else 2
+    low[at], high[at] = schema.lowest, schema.highest
+    if size > 3:
+        low[3], high[3] = math.log(1e-12), math.log(1 - 1e-9)
+
+    def deviation(p: Array) -> Array:
+        law = kind(**fixed, **numbers(p))
+        rate = x * law.time
+        return np.asarray(p[0] + np.log(law.stress(rate) / rate) - log_y)
+
+    inside = (np.clip(start, low + 1e-6, high - 1e-6) for start in starts)
+    found = min((least_squares(deviation, start, bounds=(low, high)) for start in inside), key=lambda each: each.cost)
+    _, singular, rows = np.linalg.svd(np.asarray(found.jac), full_matrices=False)
+    scatter = math.sqrt(2 * found.cost / (x.size - size))
+    if singular[-1] > EPSILON * singular[0]:
+        errors = scatter * np.sqrt(((rows.T / singular) ** 2).sum(axis=1))
+    else:
+        errors = np.full(size, np.inf)
+    given = fixed | numbers(found.x)
+    return [_judged(name, kind, float(found.x[0]), given, errors, found.fun)]
+
+
+def _judged(
+    name: str, kind: type[Any] | None, log_viscosity: float, given: dict[str, float], log_errors: Array, deviation: Array
+) -> _Fit:
+    """Return a fit with its numbers in SI units, their errors and its criterion."""
+    n, k = deviation.size, log_errors.size
+    viscosity, squares = math.exp(log_viscosity), float(deviation @ deviation)
+    errors = {"viscosity": viscosity * float(log_errors[0])}
+    fitted = [each for each in given if kind is not PowerLaw or each != "relaxation_time"]
+    for each, error in zip(fitted, log_errors[1:], strict=True):
+        errors[each] = float(error) * (1.0 if each == "exponent" else given[each])
+    if "infinite_viscosity" in given:
+        given = given | {"infinite_viscosity": viscosity * given["infinite_viscosity"]}
+        errors["infinite_viscosity"] *= viscosity
+    law = None if kind is None else kind(**given)
+    criterion = n * math.log(max(squares / n, NO_SCATTER**2)) + k * math.log(n)
+    return _Fit(name, viscosity, law, errors, math.sqrt(squares / n), k, criterion)
+
+
+def _notes(fit: _Fit, x: Array) -> list[str]:
+    """Return what must be known of a law before it is used."""
+    low, high = (format_si(value, "rate") for value in (x[0], x[-1]))
+    notes = [f"Films of shear rates beyond {low} to {high} take what the law continues."]
+    if fit.misfit > POOR_FIT:
+        notes.append(f"No law follows these values within {format_percent(POOR_FIT)}; look at them before you use one.")
+    unknown = [name for name, error in fit.errors.items() if name != "exponent" and not error < UNKNOWN * _value(fit, name)]
+    if unknown:
+        words = " and ".join(name.replace("_", " ") for name in unknown)
+        notes.append(f"These rates do not show the {words} within a factor of two; measure at lower and at higher rates.")
+    return notes
+
+
+def _value(fit: _Fit, name: str) -> float:
+    return fit.viscosity if name == "viscosity" else float(getattr(fit.law, name))

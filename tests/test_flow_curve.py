@@ -1,0 +1,119 @@
+"""A viscosity measured over the shear rate becomes the law of a fluid, with errors, or is refused in words."""
+
+import numpy as np
+import pytest
+from command_line import call
+
+import stribeck as sb
+
+RATE = np.geomspace(0.1, 1000, 25)
+TRUE = {
+    "newtonian": (0.01, None),
+    "power-law": (0.8, sb.fluids.PowerLaw(0.1, 0.6)),
+    "cross": (1.0, sb.fluids.Cross(2.0, 0.8, 1e-3)),
+    "carreau": (2.0, sb.fluids.Carreau(5.0, 0.4)),
+}
+
+
+def measured(name, seed=1, scatter=0.03):
+    viscosity, law = TRUE[name]
+    exact = sb.fluids.FlowCurve(RATE, RATE, viscosity, law, {}, 0.0, {}).at(RATE)
+    return exact * np.exp(scatter * np.random.default_rng(seed).standard_normal(RATE.size))
+
+
+@pytest.mark.quick
+def test_the_law_of_a_liquid_is_found_with_its_numbers(subtests):
+    for name, (viscosity, law) in TRUE.items():
+        with subtests.test(name=name):
+            found = sb.fluids.flow_curve(RATE, measured(name))
+            assert found.fluid.name == name
+            assert 0.015 < found.misfit < 0.04 and found.misfit == found.misfits[name]
+            assert found.at(RATE) == pytest.approx(measured(name, scatter=0.0), rel=0.03)
+            if name == "power-law":
+                assert found.law.exponent == pytest.approx(0.6, abs=0.01)
+                continue
+            assert abs(found.viscosity - viscosity) < 3 * found.errors["viscosity"]
+            for number, error in found.errors.items():
+                if number != "viscosity":
+                    assert abs(getattr(found.law, number) - getattr(law, number)) < 3 * error
+
+
+def test_standard_errors_hold_the_truth_as_often_as_they_say():
+    scores = []
+    for seed in range(40):
+        found = sb.fluids.flow_curve(RATE, measured("carreau", seed), law="carreau")
+        scores.append(
+            [(found.viscosity - 2.0) / found.errors["viscosity"], (found.law.exponent - 0.4) / found.errors["exponent"]]
+        )
+    inside = np.mean(np.abs(scores) < 1.96, axis=0)
+    assert all(inside >= 0.85) and np.all(np.std(scores, axis=0) > 0.5)
+
+
+@pytest.mark.quick
+def test_values_that_allow_no_law_are_refused(subtests):
+    for name, rate, viscosity, sentence in (
+        ("few", RATE[:4], RATE[:4], "4 different rates; a law needs 5"),
+        ("thickens", RATE, 1 + RATE, "thicken under shear are not modelled"),
+        ("zero", RATE, 0 * RATE, "viscosity holds 0"),
+        ("nan", RATE, np.full(25, np.nan), "viscosity holds nan"),
+        ("shapes", RATE, RATE[:5], "as many numbers"),
+        ("text", RATE, "water", "arrays of numbers"),
+    ):
+        with subtests.test(name=name), pytest.raises(sb.InputError, match=sentence):
+            sb.fluids.flow_curve(rate, viscosity)
+    with pytest.raises(sb.InputError, match="law = 'bingham' is not known"):
+        sb.fluids.flow_curve(RATE, measured("cross"), law="bingham")
+
+
+def test_what_the_rates_do_not_show_is_said():
+    found = sb.fluids.flow_curve(RATE, measured("power-law"), law="carreau")
+    assert any("do not show" in note for note in found.notes)
+    scattered = sb.fluids.flow_curve(RATE, measured("cross", scatter=0.4))
+    assert any("No law follows" in note for note in scattered.notes)
+
+
+CASE = """
+[contact]
+radius = "10 mm"
+modulus = "2 MPa"
+load = "100 N/m"
+speed = "0.1 m/s"
+roughness = "1 um"
+alpha = 2.0
+beta = 0.06
+boundary_friction = 0.5
+
+[fluid]
+flow_curve = "gum.csv"
+"""
+
+
+def test_a_file_of_a_rheometer_is_the_fluid_of_a_case(tmp_path, capsys):
+    values = measured("cross")
+    lines = [f"{x:.6g};{1e3 * y:.6g};7".replace(".", ",") for x, y in zip(RATE, values, strict=True)]
+    (tmp_path / "gum.csv").write_text(
+        "Gum, 25 °C\nShear Rate [1/s];Viscosity [mPa·s];Torque [µN·m]\n" + "\n".join(lines) + "\n"
+    )
+    found = sb.fluids.read_flow_curve(tmp_path / "gum.csv")
+    assert found.viscosity == pytest.approx(sb.fluids.flow_curve(RATE, values).viscosity, rel=1e-4)
+    case = tmp_path / "case.toml"
+    case.write_text(CASE)
+    contact = sb.load_case(case).contact
+    assert contact.viscosity == found.viscosity and contact.fluid == found.fluid
+    answer = call(capsys, "solve", case, "-v", "--rtol", "1e-3")
+    assert answer.code == 0 and "from flow_curve = 'gum.csv': Cross through 25 values" in " ".join(answer.out.split())
+    gum = 'flow_curve = "gum.csv"'
+    for old, new, sentence in (
+        (gum, 'flow_curve = "none.csv"', "none.csv"),
+        (gum, f'{gum}\nmodel = "bingham"', "bingham"),
+        (gum, f'{gum}\nrelaxation_time = "1 s"', "relaxation_time"),
+        (gum, "flow_curve = 3", "text in quotes"),
+        ("alpha = 2.0", 'alpha = 2.0\nviscosity = "1 Pa*s"', "both given"),
+    ):
+        case.write_text(CASE.replace(old, new))
+        with pytest.raises(sb.InputError, match=sentence):
+            sb.load_case(case)
+    (tmp_path / "gum.csv").write_text("Shear Rate [1/s];Viscosity\n1;2\n2;3\n")
+    case.write_text(CASE)
+    with pytest.raises(sb.InputError, match="has no unit"):
+        sb.load_case(case)
