@@ -272,6 +272,9 @@ def operators_of(found: Resolution) -> Operators:
     # They are made without the lock: a process that is forked meanwhile would find it taken for good.
     operators = Operators(found.mesh, found.model.solid)
     with _lock:
+        for kept, of_more in _kept.items():  # more angles on the same radii, whose modes begin with these
+            if kept.modes > found.modes and replace(kept, modes=found.modes) == found and "deflection" in vars(of_more):
+                vars(operators)["deflection"] = of_more.deflection[: found.modes].copy()
         operators = _kept.setdefault(found, operators)
         while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > NEGLIGIBLE * MAX_BYTES:
             _kept.popitem(last=False)

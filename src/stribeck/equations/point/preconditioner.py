@@ -159,7 +159,7 @@ class BlockLU:
         self.count, size = shape
         self.band = band
         self.scale = np.ones(shape)
-        self.pivots: list[tuple[Single, npt.NDArray[np.int32]]] = []
+        self.inverses: list[Single] = []
         self.right: list[Single] = []
         self.below: list[Single] = []
         window: dict[tuple[int, int], Single] = {}
@@ -182,17 +182,19 @@ class BlockLU:
 
     def _eliminate(self, window: dict[tuple[int, int], Single], k: int, last: int, size: int) -> None:
         lu, pivots, _ = lapack.sgetrf(_without_tiny(window.pop((k, k))))
-        self.pivots.append((lu, pivots))
+        # Products with an inverse are several times as fast as solutions by the factors, and in single precision as good.
+        inverse = _without_tiny(lapack.sgetri(lu, pivots)[0])
+        self.inverses.append(inverse)
         if last == k + 1:
             return
         beyond = _without_tiny(np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))
-        right = _without_tiny(lapack.sgetrs(lu, pivots, beyond)[0])
+        right = _without_tiny(inverse @ beyond)
         below = _without_tiny(np.vstack([window.pop((i, k)) for i in range(k + 1, last)]))
         for i in range(k + 1, last):  # row by row: all at once would need as much memory as the window
             update = below[(i - k - 1) * size : (i - k) * size] @ right
             for j in range(k + 1, last):
                 window[i, j] -= update[:, (j - k - 1) * size : (j - k) * size]
-        self.right.append(np.ascontiguousarray(right))
+        self.right.append(right)
         self.below.append(below)
 
     def solve(self, right: Any) -> Any:
@@ -201,7 +203,7 @@ class BlockLU:
         x = (right * scale).astype(np.float32, copy=False)
         one = x.shape[1:]
         for k in range(self.count):
-            x[k] = lapack.sgetrs(*self.pivots[k], x[k])[0]
+            x[k] = self.inverses[k] @ x[k]
             if k < len(self.below):
                 last = min(self.count, k + self.band + 1)
                 x[k + 1 : last] -= (self.below[k] @ x[k]).reshape(-1, *one)

@@ -45,6 +45,7 @@ from stribeck.numerics.settings import (
     MODES_RATIO,
     NEGLIGIBLE,
     SAFETY,
+    SHARE,
 )
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.estimate import Pair, pair_of
@@ -76,7 +77,7 @@ def refine(
         if known is None:
             wanted, start, mesh = first_mesh(speed, law, guess, rtol, model)
         else:
-            (wanted, coarse), start, mesh = next_mesh(known), known.fine.unknowns, known.fine.mesh
+            (wanted, coarse), start, mesh = next_mesh(known, rtol), known.fine.unknowns, known.fine.mesh
         for _ in range(MAX_REFINEMENTS):
             if coarse is None:
                 coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance)
@@ -95,7 +96,7 @@ def refine(
             if holds(pair, rtol):
                 return pair
             before, start, mesh = wanted, fine.unknowns, fine.mesh
-            wanted, coarse = next_mesh(pair)
+            wanted, coarse = next_mesh(pair, rtol)
             if wanted == before:
                 break
     except MeshTooLargeError as problem:
@@ -179,17 +180,22 @@ def improved_panels(level: Level) -> Resolution:
     return split_where_poor(level.resolution, level.mesh, fluid, level.contact_pressure)
 
 
-def next_mesh(pair: Pair) -> tuple[Resolution, Level | None]:
+def next_mesh(pair: Pair, rtol: float) -> tuple[Resolution, Level | None]:
     """Return the next finer mesh within the limits, and the state on its coarser companion if that is solved already."""
     now = pair.fine.resolution
-    wanted = improved_panels(pair.fine)
+    needs_radii, needs_angles = True, True
+    if now.is_full:
+        # On a mesh that is finer in one direction alone the errors of the other one are left.
+        radial, angular = gap_tails(pair.fine)
+        excess = max(pair.total, pair.minimum / MINIMUM_RTOL_FACTOR) / rtol
+        needs_radii, needs_angles = excess * radial > SHARE * angular, excess * angular > SHARE * radial
+    wanted = improved_panels(pair.fine) if needs_radii else now
     if wanted != now:
         return wanted, None
     finer = now.finer()
     if now.is_full:
-        radial, angular = gap_tails(pair.fine)
-        degree = now.degree if radial < NEGLIGIBLE * angular else max(now.degree, min(finer.degree, MAX_DEGREE))
-        finer = replace(finer, degree=degree, modes=now.modes if angular < NEGLIGIBLE * radial else finer.modes)
+        degree = max(now.degree, min(finer.degree, MAX_DEGREE)) if needs_radii else now.degree
+        finer = replace(finer, degree=degree, modes=finer.modes if needs_angles else now.modes)
     limited = limit_modes(finer)
     if limited.modes < now.modes:
         return now, None
@@ -285,12 +291,16 @@ def mesh_for_neighbour(speed: float, law: ContactLaw, neighbour: Pair, rtol: flo
     else:  # errors fall geometrically
         allowed = min(1.0, MINIMUM_RTOL_FACTOR * rtol)
         is_waste = neighbour.total < rtol**MODES_RATIO and neighbour.minimum < allowed**MODES_RATIO
-    wanted = now
-    if is_waste:
-        leaner = now.leaner()
-        degree, modes = max(leaner.degree, LEAST_DEGREE + breaks), max(leaner.modes, LEAST_MODES)
-        wanted = replace(now, degree=min(now.degree, degree), modes=min(now.modes, modes))
+    leaner = now.leaner()
+    degree, modes = min(now.degree, max(leaner.degree, LEAST_DEGREE + breaks)), min(now.modes, max(leaner.modes, LEAST_MODES))
+    wanted = replace(now, degree=degree, modes=modes) if is_waste else now
+    if not breaks and not is_waste:
+        radial, angular = gap_tails(neighbour.coarse)
+        if angular < radial**MODES_RATIO:  # fewer angles would be as good
+            wanted = replace(now, modes=modes)
     if fits(now, speed, law):
         return wanted
     found = resolution(speed, law, wanted.degree, wanted.modes, now.model)
+    if found.halvings > now.halvings:  # for the next neighbours too, which will be as much thinner
+        found = replace(found, halvings=found.halvings + 1)
     return improved_panels(fine.on(found))
