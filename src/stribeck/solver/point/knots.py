@@ -128,9 +128,9 @@ class BallKnots:
             self.last = state
             measure = self._measure(s)
             fine = state.work.fine
-            values = dict(state.values) | {
-                name: value for name, value in measure(fine.equations, fine.unknowns).items() if name in WITHIN
-            }
+            values = dict(state.values)
+            if self.cut_offs is not None:
+                values |= {name: value for name, value in measure(fine.equations, fine.unknowns).items() if name in WITHIN}
 
             def moved(step: float) -> Groups:
                 return self.groups_at(s + step)

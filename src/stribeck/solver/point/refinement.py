@@ -255,13 +255,15 @@ def follow(
     # From a guess that needs much shorter steps a film is not found sooner than from cold, if at all.
     least_part = NEGLIGIBLE if now.is_full else HALF_DIGITS
     if wanted != now:
-        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance, least_part=least_part)
+        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance / NEGLIGIBLE, least_part=least_part)
         if not coarse.outcome.ok:
             return None
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
     guess = old.unknowns if prediction is None else on_other_mesh(prediction, neighbour.fine, old)
-    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, least_part)
+    # What the iteration leaves on the coarser mesh counts as an error of that mesh.
+    loose = tolerance / NEGLIGIBLE
+    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, loose, old.iterated.preconditioner, least_part)
     if not coarse.outcome.ok:
         return None
     if prediction is None or now.is_full:
