@@ -23,6 +23,7 @@ from stribeck.curves.coordinate import Over, check_points, given_values
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, Regime, Transition, check_transition, ranges_of, regimes_along
+from stribeck.curves.simulator_model import StribeckModel, simulator_model
 from stribeck.curves.source import CurveValues, Readings
 from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.lazy import cached_property
@@ -395,6 +396,23 @@ class StribeckCurve(Exported, Shown, ByValue):
             raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
         films = [si_films(solution) for solution in self.solutions]
         return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
+
+    def to_stribeck_model(self) -> StribeckModel:
+        r"""Return the formula of Stribeck friction that simulators of motion take, through this curve.
+
+        .. math:: \mu(v) = \mu_c + (\mu_s - \mu_c) \, e^{-(v/v_s)^\delta} + k v
+
+        Returns
+        -------
+        StribeckModel
+            Its five parameters over the sliding speed v, with its largest deviations from the curve.
+
+        Raises
+        ------
+        InputError
+            If the curve is not one of a contact over its speed, or nothing slides.
+        """
+        return simulator_model(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return settings, minimum, transitions, regimes and the columns of :meth:`to_dataset`, ready for JSON.

@@ -10,6 +10,7 @@ _HOMES = {
     "contacts.contact": ("HertzScales",),
     "curves.landmarks": ("Landmark",),
     "curves.result": ("StribeckCurve",),
+    "curves.simulator_model": ("StribeckModel",),
     "experiments.compare": ("Comparison",),
     "experiments.next_runs": ("Plan",),
     "fits.measurements": ("Measurements",),

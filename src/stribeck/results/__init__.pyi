@@ -7,6 +7,7 @@ from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.friction import Friction
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
+from stribeck.curves.simulator_model import StribeckModel
 from stribeck.experiments.compare import Comparison
 from stribeck.experiments.next_runs import Plan
 from stribeck.fits.measurements import Measurements
@@ -39,6 +40,7 @@ __all__ = [
     "Solution",
     "Spread",
     "StribeckCurve",
+    "StribeckModel",
     "Sweep",
     "SweepDesign",
     "SweepProgress",
