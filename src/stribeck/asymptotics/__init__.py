@@ -11,6 +11,7 @@ from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.formula import Formula, Limit, OutOfRangeWarning
 from stribeck.asymptotics.rough import boundary, free_exit, load_sharing, mixed, perturbation, transitions, uniform
 from stribeck.asymptotics.smooth import edge_layer, film_layers, hydrodynamic, large_deformation, small_deformation, wedge
+from stribeck.asymptotics.smooth.film_of_pressure import film_of_pressure
 
 __all__ = [
     "FORMULAS",
@@ -20,6 +21,7 @@ __all__ = [
     "boundary",
     "edge_layer",
     "film_layers",
+    "film_of_pressure",
     "free_exit",
     "hertz",
     "hydrodynamic",

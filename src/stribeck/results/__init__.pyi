@@ -1,5 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
+from stribeck.asymptotics.smooth.film_of_pressure import Films, Inlet, PressureFilm
 from stribeck.batches.result import BatchSolution
 from stribeck.checks.check import Check, Checks
 from stribeck.cli.reports.regimes import Explanation
@@ -27,15 +28,18 @@ __all__ = [
     "Comparison",
     "Explanation",
     "Field",
+    "Films",
     "Fit",
     "FitOutcome",
     "FittedInput",
     "Friction",
     "HertzScales",
+    "Inlet",
     "Landmark",
     "Measurements",
     "Plan",
     "PointSolution",
+    "PressureFilm",
     "Profile",
     "Solution",
     "Spread",

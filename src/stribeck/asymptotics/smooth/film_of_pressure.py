@@ -1,0 +1,297 @@
+r"""Film under any smooth soft profile, from the pressure of its dry contact: made by its edge, or by its steepest rise.
+
+A dry pressure begins as :math:`p = k d^{1/2}` at a distance d from its edge.  With :math:`p' = 6 \eta U (h - h^*)/h^3` the
+inlet there lets in
+
+.. math::
+
+    h^* = 0.5121 \, (6 \eta U)^{3/5} {E^*}^{1/5} k^{-4/5}, \qquad
+    \ell = \left(\frac{6 \eta U {E^*}^2}{k^3}\right)^{2/5}
+
+with the inlet length :math:`\ell`.  The constant is that of the parabola, whose :math:`\ell/a` is
+:math:`(4 \lambda)^{2/5}/2^{3/5}`.  A rise :math:`p'_\mathrm{max}` inside the contact lets
+through no more than :math:`h^* = (8 \eta U/(9 p'_\mathrm{max}))^{1/2}`.
+
+Source: ours, and the inverse theory of Blok; theory.md, section 7.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.asymptotics.formula import OutOfRangeWarning
+from stribeck.asymptotics.smooth.dry_pressure import DryPressure, rows_of
+from stribeck.quantities.formats import format_percent, format_si
+from stribeck.quantities.results import ByValue, Card, Shown, Told
+from stribeck.quantities.units import InputError, show, to_si
+
+__all__ = ["Films", "Inlet", "PressureFilm", "film_of_pressure"]
+
+EDGE_CONSTANT = FILM_CONSTANT * 2**0.2  # h* over (6 eta U)^(3/5) E*^(1/5) k^(-4/5)
+
+# Errors of both laws against solved parabolas, lands and lips (test_film_of_pressure.py), bounded by these multiples.
+EDGE_ERROR_FACTOR = 0.2  # of the inlet length over the way from the edge to nine tenths of the peak
+INTERIOR_ERROR_FACTOR = 3.5  # of E* h* p'max over the square of the highest pressure
+JOINT_ERROR = 0.05  # Where both laws give nearly the same film it is thinner than either by up to this.
+NEARLY_EQUAL = 0.85  # Ratio of both films from which they are nearly the same.
+NEGLIGIBLE = 0.01  # Part of its error below which a net film is zero.
+MAX_LAW_ERROR = 0.07  # Largest error of the laws in their range.
+
+EDGE_ZONE = 2.0  # Inlet lengths from the edge within which a rise belongs to the edge.
+MAX_EDGE_ZONE = 0.5  # Largest part of the way to the peak that this zone takes.
+MAX_RESOLUTION_ERROR = 0.25  # Largest relative error of a film that a table may leave.
+
+
+class Films(NamedTuple):
+    """Both films, and what a stroke leaves."""
+
+    forward: float
+    backward: float
+    net: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Inlet(ByValue, Shown):
+    """One direction: what of the pressure makes the film, and how well the table tells it.
+
+    Attributes
+    ----------
+    film : float
+        h* [m].
+    error : float
+        Its relative error, of the law and of the table [-].
+    law_error, resolution_error : float
+        The parts of this error [-].
+    law : str
+        What governs: ``"edge"``, ``"interior"``, or ``"edge and interior"`` where both are nearly equal.
+    edge : float
+        Where the contact begins [m].
+    edge_coefficient, edge_coefficient_error : float
+        k, and its absolute error [Pa/m^(1/2)].
+    steepest_rise, steepest_rise_error : float
+        p'max, and its absolute error [Pa/m]; zero where the pressure does not rise beyond the edge.
+    inlet_length : float
+        The length over which the edge makes the film [m].
+    spacing : float
+        Step of the table at the edge [m].
+    """
+
+    film: float
+    error: float
+    law_error: float
+    resolution_error: float
+    law: str
+    edge: float
+    edge_coefficient: float
+    edge_coefficient_error: float
+    steepest_rise: float
+    steepest_rise_error: float
+    inlet_length: float
+    spacing: float
+
+    def scaled(self, L: float, P: float) -> Inlet:
+        """Return the inlet in other units of length and pressure.
+
+        Parameters
+        ----------
+        L, P : float
+            The present units in the new ones.
+
+        Returns
+        -------
+        Inlet
+            The same inlet.
+        """
+        lengths = {name: getattr(self, name) * L for name in ("film", "edge", "inlet_length", "spacing")}
+        roots = {name: getattr(self, name) * P / L**0.5 for name in ("edge_coefficient", "edge_coefficient_error")}
+        rises = {name: getattr(self, name) * P / L for name in ("steepest_rise", "steepest_rise_error")}
+        return replace(self, **lengths, **roots, **rises)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PressureFilm(ByValue, Told):
+    """Films of both directions and what a stroke leaves outside.
+
+    Attributes
+    ----------
+    forward, backward : float
+        h*, the gap at the highest pressure, as the moving surface goes towards larger and smaller x [m].
+    net : float
+        (forward - backward)/2: what a stroke to and fro leaves on the far side, per length of the stroke and of the seal
+        [m].  A gap h* lets pass the flux U h*/2.  Where it is negative, the way back could return more than came out.
+    error : Films
+        Absolute errors of the three [m].
+    inlets : tuple of Inlet
+        Both directions, forward first.
+    """
+
+    forward: float
+    backward: float
+    net: float
+    error: Films
+    inlets: tuple[Inlet, Inlet]
+
+    @property
+    def range(self) -> str:
+        """The range in words."""
+        length = MAX_LAW_ERROR / EDGE_ERROR_FACTOR
+        rise = MAX_LAW_ERROR / INTERIOR_ERROR_FACTOR
+        return (
+            f"edge: inlet length up to {length:g} of the way to nine tenths of the peak; interior: E* h* p'max up to {rise:g} "
+            "of the peak squared; film thicker than the roughness"
+        )
+
+    @property
+    def valid(self) -> bool:
+        """Whether both films lie in this range."""
+        return all(each.law_error <= MAX_LAW_ERROR for each in self.inlets)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What limits the answer, in sentences."""
+        found = []
+        for name, each in zip(Films._fields, self.inlets, strict=False):
+            if each.law_error > MAX_LAW_ERROR:
+                found.append(
+                    f"The {name} film is out of range: too fast or too viscous for this pressure; its law errs by up to "
+                    f"{format_percent(each.law_error)}."
+                )
+            if each.spacing > each.inlet_length and each.law != "interior":
+                found.append(
+                    f"The {name} film is made within {format_si(each.inlet_length, 'length', 2)} of the edge, where rows are "
+                    f"{format_si(each.spacing, 'length', 2)} apart: an edge that is rounder or sharper in between is not seen."
+                )
+        return (*found, "Asperities are left out: where they carry a few per cent of the load, films are up to 10 % thicker.")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all numbers with their errors.
+
+        Returns
+        -------
+        dict
+            Films in m by name, the inlets as dictionaries, range and notes.
+        """
+        found: dict[str, Any] = {name: getattr(self, name) for name in Films._fields}
+        found |= {f"{name}_error": value for name, value in self.error._asdict().items()}
+        found |= {name: vars(each).copy() for name, each in zip(("forward_inlet", "backward_inlet"), self.inlets, strict=True)}
+        return found | {"in_range": self.valid, "range": self.range, "notes": list(self.notes)}
+
+    def _card(self) -> Card:
+        is_zero = abs(self.net) < NEGLIGIBLE * self.error.net
+        net, doubt = format_si(0.0 if is_zero else self.net, "length"), format_si(self.error.net, "length", 2)
+        headline = f"Half the difference of both films, which a stroke to and fro leaves behind, is {net} ± {doubt}."
+        table: list[tuple[str, ...]] = [("direction", "film h*", "error", "of the law", "of the table", "made by")]
+        for name, each in zip(Films._fields, self.inlets, strict=False):
+            errors = (each.error, each.law_error, each.resolution_error)
+            table.append((name, format_si(each.film, "length", 3), *map(format_percent, errors), each.law))
+        return Card(headline, notes=self.notes, table=table, right=(1, 2, 3, 4))
+
+
+def film_of_pressure(
+    x: Iterable[float | str],
+    p: Iterable[float | str],
+    *,
+    modulus: float | str,
+    viscosity: float | str,
+    speed: float | str | Sequence[float | str],
+) -> PressureFilm:
+    r"""Return the films that a smooth soft profile drags in both ways, from the pressure of its dry contact.
+
+    .. math::
+
+        h^* = \min\left[0.5121 \, (6 \eta U)^{3/5} {E^*}^{1/5} k^{-4/5},
+              \left(\frac{8 \eta U}{9 p'_\mathrm{max}}\right)^{1/2}\right]
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+        Positions, in any order and unevenly spaced [m].
+    p : array_like, shape (n,)
+        Pressure of the dry contact there, of finite elements or measured; zero outside of the contact [Pa].
+    modulus : float or str
+        E* [Pa].
+    viscosity : float or str
+        Viscosity of the fluid [Pa s].
+    speed : float or str, or two of them
+        Speed of the surface that moves [m/s]; of two the first is towards larger x, the second back.
+
+    Returns
+    -------
+    PressureFilm
+        Both films and what a stroke leaves, with errors.
+
+    Raises
+    ------
+    InputError
+        If an input is no such number, or the table does not tell the film: too few rows, negative pressure, no edge, several
+        contacts, or an error of the film beyond 25 %.
+
+    Notes
+    -----
+    k is fitted to the square of the pressure, which is smooth at the edge, over the number of rows whose error is the least;
+    p'max likewise, beyond two inlet lengths from the edge.  The error of the table is that of these fits, by their residuals
+    and by what a smaller fit gives.  The error of the edge law falls as the inlet length, as :math:`\lambda^{2/5}`; with an
+    exit, a parabola's film is thicker by 1.6 % at speed group 1e-3.  Its range ends there at 0.012.
+
+    Source: ours, and Blok's inverse theory; ``test_film_of_pressure.py``.
+    """
+    xs, ps = rows_of(x, p)
+    numbers = {"modulus": to_si(modulus, "pressure", "modulus"), "viscosity": to_si(viscosity, "viscosity", "viscosity")}
+    pair = [speed, speed] if isinstance(speed, str) or not isinstance(speed, Sequence | np.ndarray) else list(speed)
+    if len(pair) != 2:
+        raise InputError(f"speed = {show(speed)}; give one speed, or two: towards larger x, and back.")
+    speeds = [to_si(each, "speed", "speed") for each in pair]
+    for name, value in (*numbers.items(), *(("speed", each) for each in speeds)):
+        if value <= 0:
+            raise InputError(f"{name} = {show(value)}; it must be above zero.")
+    E, eta = numbers.values()
+    L, P = float(np.ptp(xs)), float(ps.max())  # Scales of the table
+    tables = (xs / L, ps / P, "left"), (-xs[::-1] / L, ps[::-1] / P, "right")
+    drags = (eta / P * U / L for U in speeds)
+    forward, backward = (
+        _inlet(DryPressure.of(*each), E / P, drag).scaled(L, P) for each, drag in zip(tables, drags, strict=True)
+    )
+    there, back = forward.film * forward.error, backward.film * backward.error
+    net = (forward.film - backward.film) / 2
+    error = Films(there, back, (there + back) / 2)
+    found = PressureFilm(forward.film, backward.film, net, error, (forward, backward))
+    if not found.valid:
+        warnings.warn(f"film_of_pressure is used outside its range: {found.range}.", OutOfRangeWarning, stacklevel=2)
+    return found
+
+
+def _inlet(pressure: DryPressure, E: float, drag: float) -> Inlet:
+    """Return the film that moves towards larger x, of E* and viscosity times speed."""
+    edge = pressure.edge()
+    k, k_error = edge.coefficient
+    length = (6 * drag) ** 0.4 * E**0.8 * k**-1.2 if k > 0 else math.inf
+    rise, rise_error = pressure.steepest_rise(edge.place + min(EDGE_ZONE * length, MAX_EDGE_ZONE * edge.flank))
+
+    def films(k: float, rise: float) -> tuple[float, float]:
+        at_edge = EDGE_CONSTANT * (6 * drag) ** 0.6 * E**0.2 * k**-0.8 if k > 0 else math.inf
+        return at_edge, math.sqrt(8 * drag / (9 * rise)) if rise > 0 else math.inf
+
+    at_edge, inside = films(k, rise)
+    film = min(at_edge, inside)
+    thickest, thinnest = min(films(k - k_error, rise - rise_error)), min(films(k + k_error, rise + rise_error))
+    resolution = max(thickest / film - 1, 1 - thinnest / film) if math.isfinite(film) else math.inf
+    if resolution > MAX_RESOLUTION_ERROR:
+        raise InputError(
+            f"The table does not tell the film at the {pressure.side} edge within {format_percent(MAX_RESOLUTION_ERROR)}: its "
+            "rows are too few or too noisy there. Give more rows near the edge, or smoother ones."
+        )
+    of_edge = EDGE_ERROR_FACTOR * length / edge.flank
+    of_inside = INTERIOR_ERROR_FACTOR * E * film * rise / pressure.highest**2
+    law, error = ("edge", of_edge) if at_edge < inside else ("interior", of_inside)
+    if film > NEARLY_EQUAL * max(at_edge, inside):
+        law = "edge and interior"
+        error = max(JOINT_ERROR, min(of_edge + at_edge / film, of_inside + inside / film) - 1)
+    at = edge.place if pressure.side == "left" else -edge.place
+    return Inlet(film, error + resolution, error, resolution, law, at, k, k_error, rise, rise_error, length, edge.spacing)
