@@ -111,6 +111,8 @@ def test_every_form_of_an_input_is_taken_in_its_place_and_said_where_it_has_a_fo
         given = own | {each.name: each.example for each in form.inputs}
         if form.geometry == "point":
             given |= {"geometry": '"point"'}
+        if "youngs_modulus" in form.uses:
+            given |= {"modulus": None, "youngs_modulus": '"5 MPa"', "poisson_ratio": "0.5"}
         path.write_text(case_text(given))
         case = sb.load_case(path)
         assert len(case.conversions) == bool(form.formula) and case.contact.modulus > 0
@@ -305,3 +307,22 @@ def test_the_inputs_of_a_report_name_fluid_and_solid_and_their_errors(tmp_path, 
     _, value, error, _ = inputs.table[-1]
     assert "fluid newtonian, solid bonded layer, layer thickness 2 mm" in value
     assert error == "thickness of the layer ± 5 %"
+
+
+@pytest.mark.quick
+def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
+    """Lindley's formula at 10, 20 and 30 %: 0.0396, 0.115 and 0.242 times E d."""
+    ring = {
+        "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.06, "boundary_friction": 0.3,
+        "radius": 1.765e-3, "youngs_modulus": 5.5e6, "poisson_ratio": 0.5,
+    }  # fmt: skip
+    for squeeze, ratio in ((0.1, 0.0396), (0.2, 0.115), (0.3, 0.242)):
+        assert sb.LineContact(**ring, squeeze=squeeze).load == pytest.approx(ratio * 5.5e6 * 3.53e-3, rel=0.01)
+    for changed, words in (
+        ({"squeeze": 0.4}, "between 0 and 0.3"),
+        ({"squeeze": 0.1, "load": 700.0}, "give either load, or squeeze"),
+        ({"squeeze": 0.1, "radius": None}, "radius is missing beside squeeze = 0.1"),
+        ({"squeeze": 0.1, "youngs_modulus": None, "poisson_ratio": None, "modulus": 7e6}, "youngs_modulus is missing beside"),
+    ):
+        with subtests.test(words=words), pytest.raises(sb.InputError, match=words):
+            sb.LineContact(**{name: value for name, value in (ring | changed).items() if value is not None})

@@ -34,6 +34,7 @@ class Form:
     of: str  # The input that follows
     inputs: tuple[Input, ...]  # Inputs that are given in its place, all together
     value: Callable[..., float]  # Value of the result from the inputs, in SI units
+    uses: tuple[str, ...] = ()  # Inputs of the contact that it needs besides, before its own, and leaves where they are
     geometry: str = ""  # The geometry that it is for; empty for all
     formula: str = ""  # For people; empty where it need not be said
     source: str = ""  # For people
@@ -178,6 +179,27 @@ FORMS = (
         value=lambda force, width: force / width,
         formula="load = force/width",
         source="definition",
+    ),
+    Form(
+        of="load",
+        geometry="line",
+        uses=("youngs_modulus", "radius"),
+        inputs=(
+            Input(
+                name="squeeze",
+                label="squeeze of an O-ring over its cord diameter",
+                symbol="$C$",
+                dimension="number",
+                typical="0.1",
+                source="0.08 to 0.16 of dynamic seals, up to 0.25 of static ones",
+                highest=0.3,
+                reason="it is a share of the cord diameter, twice the radius, and the formula holds up to there",
+            ),
+        ),
+        value=lambda E, R, squeeze: E * 2 * R * (1.25 * squeeze**1.5 + 50 * squeeze**6),
+        formula="load = 2 R E (1.25 C^1.5 + 50 C^6)",
+        source="Lindley 1967, a cord between two plates",
+        error=0.1,
     ),
     Form(
         of="load", geometry="point", inputs=(_FORCE,), value=lambda force: force, formula="load = force", source="definition"

@@ -180,10 +180,11 @@ def check_motion(given: Mapping[str, Any], table: InputTable) -> None:
 def _apply(form: Form, found: ReadInputs, given: Mapping[str, Any], table: InputTable) -> None:
     """Replace the inputs of a form by its result."""
     values, errors = found.values, found.errors
-    _check(form, values, given)
+    _check(form, values, given, table)
     names = [*([form.of] if form.joins else []), *(name for name in form.names if name in values)]
     shown = " and ".join(f"{name} = {_shown(name, values, given)}" for name in names)
-    numbers, own = [values.pop(name) for name in names], [errors.pop(name, 0.0) for name in names]
+    numbers = [*(values[name] for name in form.uses), *(values.pop(name) for name in names)]
+    own = [*(errors.get(name, 0.0) for name in form.uses), *(errors.pop(name, 0.0) for name in names)]
     values[form.of] = form.value(*numbers)
     slopes = [_slope(form, numbers, i) if error else 0.0 for i, error in enumerate(own)]
     error = math.hypot(form.error, *(slope * each for slope, each in zip(slopes, own, strict=True)))
@@ -197,7 +198,7 @@ def _apply(form: Form, found: ReadInputs, given: Mapping[str, Any], table: Input
         found.sentences.append(f"{made}: {form.formula} ({form.source}{about}){besides}.")
 
 
-def _check(form: Form, values: Mapping[str, float], given: Mapping[str, Any]) -> None:
+def _check(form: Form, values: Mapping[str, float], given: Mapping[str, Any], table: InputTable) -> None:
     """Refuse a form that is given in part, or beside the input that follows from it."""
     about = f" ({form.meaning})" if form.meaning else ""
     there = [f"{name} = {_shown(name, values, given)}" for name in form.names if name in values]
@@ -210,6 +211,7 @@ def _check(form: Form, values: Mapping[str, float], given: Mapping[str, Any]) ->
         )
     others = form.second if any(each.name in values for each in form.second) else ()
     missing = [each for each in (*form.inputs, *others) if each.name not in values]
+    missing += [table.quantities[name] for name in form.uses if name not in values]
     if missing:
         alone = "" if form.joins else f", or give {form.of}{about} alone"
         raise InputError(f"{missing[0].name} is missing beside {' and '.join(there)}; {missing[0].advice}{alone}.")
