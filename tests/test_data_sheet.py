@@ -202,7 +202,7 @@ def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path,
     answer = call(capsys, "regimes", path, "-v")
     assert answer.code == 0
     assert "Converted: roughness = 1.003 µm from ra = '0.8 um +- 0.2 um'" in answer.out
-    assert "Probability of each regime: boundary 0 %, mixed" in answer.out
+    assert "Probability of each regime by the errors of roughness: boundary 0 %, mixed" in answer.out
     found = json.loads(call(capsys, "regimes", path, "--json").out)
     assert sum(found["uncertainty"]["regime_probabilities"].values()) == pytest.approx(1)
     assert len(found["conversions"]) == 1
@@ -326,3 +326,23 @@ def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
     ):
         with subtests.test(words=words), pytest.raises(sb.InputError, match=words):
             sb.LineContact(**{name: value for name, value in (ring | changed).items() if value is not None})
+
+
+def test_usual_errors_stand_in_for_those_that_nobody_gives(tmp_path, capsys):
+    path = tmp_path / "case.toml"
+    path.write_text('uncertainty = "typical"\n' + case_text({"load": '"50 N/m +- 1 %"'}))
+    case = sb.load_case(path)
+    assert case.errors["load"] == pytest.approx(0.01) and case.errors["beta"] == 0.3 and "speed" not in case.errors
+    assert "load" not in case.conversions[-1] and "contact-law beta 30 %" in case.conversions[-1]
+    found = sb.propagate(TRUE, "typical", transitions=False)
+    assert found.errors.keys() == {*case.errors} and "by the errors of radius," in found.probability_sentence
+    given = sb.propagate(TRUE, {"beta": 0.3}, transitions=False)
+    assert found["friction"].interval_95[1] > given["friction"].interval_95[1]
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=4e4, q1=4e6, hurst=0.8)
+    rough = TRUE.replace(law=sb.surfaces.persson_law(spectrum))
+    assert "beta" not in sb.propagate(rough, "typical", transitions=False).errors  # it follows the roughness
+    path.write_text('uncertainty = "large"\n' + case_text({}))
+    with pytest.raises(sb.InputError, match="uncertainty = 'large'"):
+        sb.load_case(path)
+    path.write_text(case_text({}))
+    assert 'uncertainty = "typical" at the top' in call(capsys, "regimes", path).out

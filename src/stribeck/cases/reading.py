@@ -21,6 +21,7 @@ from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
 from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_inputs
 from stribeck.contacts.parts import PART_INPUTS
+from stribeck.contacts.typical_errors import typical_error_text, typical_errors
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.uncertain import has_error, split_error
@@ -91,6 +92,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         _refuse(path, [in_file(line, "contact") for line in str(problem).splitlines()])
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
         _refuse(path, [f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."])
+    known = {**found.errors, **errors}
+    typical = typical_errors(contact, known) if checked["uncertainty"] == "typical" else {}
     return Case(
         path=path,
         contact=contact,
@@ -104,8 +107,12 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
             scales_surface="surface" in tables and not tables["surface"].get("shape_only", False),
         ),
         facts={**preset_facts(tables), **facts},
-        errors={**found.errors, **errors},
-        conversions=(*found.sentences, *viscosity_source_text(tables, contact.viscosity, path.parent)),
+        errors=known | typical,
+        conversions=(
+            *found.sentences,
+            *viscosity_source_text(tables, contact.viscosity, path.parent),
+            *typical_error_text(contact, typical),
+        ),
         tables=tables,
         **checked["solver"],
     )

@@ -112,10 +112,11 @@ def rising_pair(name: str, value: Any, read: Callable[[Any], float], of: str = "
     return low, high
 
 
-HEAD = {"title": Key(TEXT, ""), "notes": Key(TEXT, "")}  # Keys at the top of any file
-
-
 def tolerance(default: float) -> Key:
     """Return the key of a relative tolerance."""
     what = "a number from 1e-11 to 1e-2, without quotes"
     return Key(must(lambda value: is_number(value) and 1e-11 <= value <= 1e-2, what), default)
+
+
+# Keys at the top of a case.
+HEAD = {"title": Key(TEXT, ""), "notes": Key(TEXT, ""), "uncertainty": Key(one_of("given", "typical"), "given")}

@@ -86,6 +86,7 @@ class Contact(Parts):
         units=("mm", "cm", "m"),
         letters=("R",),
         known=7,
+        typical_error=0.02,
     )
     modulus: Input = Input(
         label="effective modulus",
@@ -97,6 +98,7 @@ class Contact(Parts):
         units=("kPa", "MPa", "GPa"),
         letters=("E_star",),
         known=4,
+        typical_error=0.2,
     )
     load: float
     viscosity: Input = Input(
@@ -110,6 +112,7 @@ class Contact(Parts):
         letters=("eta",),
         or_else='or that of a liquid by its name, preset = "water" in the table [fluid] of a case',
         known=5,
+        typical_error=0.1,
     )
     speed: Input = Input(
         label="speed",
@@ -133,6 +136,7 @@ class Contact(Parts):
         letters=("h_rms",),
         zero=True,
         known=1,
+        typical_error=0.2,
     )
     alpha: Input = Input(
         label="contact-law alpha",
@@ -143,6 +147,7 @@ class Contact(Parts):
         usual=(1.0, 4.0),
         follows_surface=True,
         known=3,
+        typical_error=0.05,
     )
     beta: Input = BETA
     boundary_friction: Input = Input(
@@ -156,6 +161,7 @@ class Contact(Parts):
         letters=("mu0", "mu_0"),
         zero=True,
         known=0,
+        typical_error=0.2,
     )
     law: AsperityLaw | None
 

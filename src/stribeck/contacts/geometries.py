@@ -71,6 +71,7 @@ class LineContact(Contact):
         units=("N/m", "kN/m", "N/mm"),
         letters=("F_N",),
         known=6,
+        typical_error=0.05,
     )
 
     WIDTH: ClassVar[str] = "Hertz half-width"
@@ -127,6 +128,7 @@ class PointContact(Contact):
         units=("mN", "N"),
         letters=("F_N",),
         known=6,
+        typical_error=0.05,
     )
     slide_to_roll: Input = replace(numbers_of(Parts)["slide_to_roll"], typical="2.0", lowest=0.0, highest=2.0)
     wetted_radius: Input = Input(

@@ -93,6 +93,7 @@ BETA = Input(
     usual=(1e-3, 2.0),
     follows_surface=True,
     known=2,
+    typical_error=0.3,
 )
 
 

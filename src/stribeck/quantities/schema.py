@@ -36,6 +36,9 @@ class Input:
     usual: tuple[float, float] = (0.0, math.inf)  # Range that contacts have, in SI units: the ends of its slider
     implausible: float = math.inf
     units: tuple[str, ...] = ()  # Units to choose from; empty for a bare number
+    typical_error: float = (
+        0.0  # Standard error over the value, of one that was not measured on the contact itself; 0 if unknown
+    )
     letters: tuple[str, ...] = ()  # Symbols and names that users type for it
     lowest: float = 0.0  # Lower bound, in SI units
     zero: bool = False  # Whether the lower bound itself is allowed

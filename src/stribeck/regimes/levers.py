@@ -10,12 +10,12 @@ from typing import Annotated
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
+from stribeck.contacts.typical_errors import follows_surface
 from stribeck.files.results import Record
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
-from stribeck.uncertainty.result import follows_surface
 
 DESIGN_INPUTS = tuple(name for name, row in LINE.kept.items() if not row.follows_surface)  # What a designer can change
 

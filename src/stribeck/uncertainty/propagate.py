@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
+from stribeck.contacts.typical_errors import follows_surface, typical_errors
 from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.dual import Dual
@@ -26,7 +27,7 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
-from stribeck.uncertainty.result import Spread, Uncertainty, follows_surface
+from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of
 
 __all__ = ["STATE_RTOL", "errors_of_kept_inputs", "inputs_tied_to", "propagate"]
@@ -47,7 +48,7 @@ SUBSTITUTES = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 
 @one_blas_thread
 def propagate(
     contact: Contact,
-    errors: Mapping[str, Any],
+    errors: Mapping[str, Any] | Literal["typical"],
     *,
     definition: Definition = "balanced",
     transitions: bool = True,
@@ -62,9 +63,11 @@ def propagate(
     ----------
     contact : Contact
         The contact.
-    errors : mapping
+    errors : mapping or "typical"
         Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
         Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.
+        ``"typical"`` takes what inputs usually have that nobody measured on the contact itself: beta 30 %, dry friction,
+        roughness and modulus 20 %, viscosity 10 %, load and alpha 5 %, radius 2 %.
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     transitions : bool
@@ -94,7 +97,9 @@ def propagate(
     definition = check_definition(definition)
     checked_kind("contact", contact, Contact, "a LineContact or PointContact")
     checked_kind("transitions", transitions, (bool, np.bool_), "True or False")
-    checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}")
+    if errors == "typical":
+        errors = typical_errors(contact, ())
+    checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}, or 'typical'")
     if not errors:
         raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     sigmas = errors_of_kept_inputs(contact, errors)

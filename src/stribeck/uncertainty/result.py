@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.typical_errors import follows_surface
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told
@@ -97,8 +98,10 @@ class Uncertainty(Exported, Told):
 
     @property
     def probability_sentence(self) -> str:
-        """The same as a sentence."""
-        return f"Probability of each regime: {self.probabilities}."
+        """The same as a sentence, with the inputs whose errors it counts."""
+        rows = self.contact.INPUTS.rows
+        counted = f" by the errors of {_listed([rows[name].label for name in self.errors])}" if self.errors else ""
+        return f"Probability of each regime{counted}: {self.probabilities}."
 
     def to_dict(self) -> dict[str, Any]:
         """Return spreads, probabilities and contributions, ready for JSON.
@@ -161,11 +164,6 @@ def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
     ]
     counted = f"Intervals count the errors of {_listed(known)}"
     return f"{counted}; {_listed(exact)} count as exact." if exact else f"{counted}."
-
-
-def follows_surface(contact: Contact, errors: Collection[str]) -> bool:
-    """Return whether beta moves with an uncertain roughness, as under Persson's law."""
-    return "roughness" in errors and "beta" not in errors and contact.law is not None and contact.law.name == "persson"
 
 
 def _listed(names: list[str]) -> str:

@@ -23,13 +23,17 @@ from stribeck.solver.numbers import main_rows
 # Numbers that the sentence above the table has.
 OF_THE_SENTENCE = ("friction from", "hysteresis", "load on", "Lambda")
 
+NO_ERRORS = (
+    'No input has an error, and no number here an interval; uncertainty = "typical" at the top of the case takes usual errors.'
+)
+
 MORE = "-v shows all inputs, sensitivities, transitions, intervals and full notes."
 
 
 def regimes_answer(found: Overview) -> Iterator[str]:
     """Yield what people read first: verdict, regime, the main numbers, the way to other regimes, doubts and notes in short."""
     body = [answer_sentence(found.solution, found.friction), *_main_table(found), *_margin_table(found), *_strongest(found)]
-    body += [] if found.errors is None else [found.errors.probability_sentence]
+    body.append(NO_ERRORS if found.errors is None else found.errors.probability_sentence)
     return report_lines(found.solution, found.case, found.checks, body, found.notes, MORE)
 
 
