@@ -125,7 +125,7 @@ def check_numbers(page, now):
     shown = page.evaluate(NUMBERS)
     solution = sb.solve(now.contact)
     friction = {kind: solution.friction(definition=kind) for kind in ("published", "balanced")}
-    chosen = friction[now.definition]
+    chosen = friction[now.case.definition]
     expected = {
         "friction_published": friction["published"].total,
         "friction_balanced": friction["balanced"].total,
@@ -185,10 +185,10 @@ def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
     page.wait_for_selector(".explorer:not(.working)")
     page.wait_for_function("document.querySelector('.chart-plane canvas')?.getBoundingClientRect().width > 100")
     assert isinstance(now.contact, sb.PointContact)
-    solution = sb.solve(now.contact, rtol=now.rtol)
+    solution = sb.solve(now.contact, rtol=now.case.rtol)
     shown = page.evaluate(NUMBERS)
-    friction = solution.friction(definition=now.definition).total
-    assert abs(float(shown[f"friction_{now.definition}"][0]) / friction - 1) < 3 * now.rtol
+    friction = solution.friction(definition=now.case.definition).total
+    assert abs(float(shown[f"friction_{now.case.definition}"][0]) / friction - 1) < 3 * now.case.rtol
     film = np.array(page.evaluate(CHART, "plane")["series"][0]["data"])
     assert film.shape == (25 * 49,) and film.max() - film.min() > 1
     page.locator(".chart-plane").scroll_into_view_if_needed()
@@ -347,7 +347,7 @@ def test_a_shared_address_opens_as_it_was_left(open_page):
     page.locator(".choice").get_by_role("button", name="balanced").click()
     at_rest(page, lambda: page.keyboard.press("p"))
     now = at_rest(page, lambda: (slider(page, "load").focus(), page.keyboard.press("ArrowRight")))
-    assert now.definition == "balanced"
+    assert now.case.definition == "balanced"
     other = open_page(urlparse(address_of(page)).query)
     assert other.evaluate(NUMBERS).keys() == page.evaluate(NUMBERS).keys()
     assert contact_of(other) == now

@@ -287,7 +287,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
                 case = sb.load_case(some_case(random, kind, tmp_path))
                 shown = inputs.from_case(case)
                 same_contact(shown.contact, case.contact)
-                assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
+                assert (shown.case.title, shown.case.rtol, shown.case.definition) == (case.title, case.rtol, case.definition)
                 pin = START.replace(title="kept ~ once", definition="published"), shown.replace(title="law")
                 assert case.tables.keys() - shown.tables.keys() <= {"asperities"}  # whose numbers are others
                 opened = reopened(url.encode(shown, pin))
@@ -305,8 +305,8 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     shown = inputs.from_case(sb.load_case("examples/rod_seal.toml"))
     answer = Answerer()(reopened(url.encode(shown)).inputs)
     expected = sb.solve(sb.load_case("examples/rod_seal.toml").contact)
-    found = {row.key: row for row in table.numbers(answer)}[f"friction_{shown.definition}"]
-    assert abs(found.value - expected.friction(definition=shown.definition).total) <= 2 * found.error
+    found = {row.key: row for row in table.numbers(answer)}[f"friction_{shown.case.definition}"]
+    assert abs(found.value - expected.friction(definition=shown.case.definition).total) <= 2 * found.error
     assert answer.solution.law == "persson"
     saved = files.read_case("saved.toml", files.content("toml", answer))
     assert sb.solve(saved.contact).friction() == expected.friction()
@@ -387,8 +387,8 @@ def test_a_group_of_a_ball_moves_alone(subtests):
 
 def test_a_headline_does_not_name_the_geometry_before():
     ball = choices.choose(START, "geometry", "point")
-    assert START.title and not ball.title
-    assert choices.choose(START, "geometry", "line").title == START.title
+    assert START.case.title and not ball.case.title
+    assert choices.choose(START, "geometry", "line").case.title == START.case.title
 
 
 def test_what_a_ball_may_do_without_is_an_empty_field():
@@ -407,7 +407,8 @@ def check_link_and_saved_case(shown):
     saved = files.read_case("saved.toml", saved_case(shown))
     same_contact(saved.contact, shown.contact)
     again = inputs.from_case(saved)
-    assert (again.definition, again.rtol, again.title) == (shown.definition, shown.rtol, shown.title)
+    for name in ("definition", "rtol", "title"):
+        assert getattr(again.case, name) == getattr(shown.case, name), name
     for name in ("fluid", "cavitation", "slide_to_roll", "flow_factors", "solid"):
         assert getattr(again.contact, name, None) == getattr(shown.contact, name, None), name
 
@@ -469,7 +470,7 @@ def test_the_examples_of_the_page_load_and_come_with_the_wheel():
     assert {path.name for path in files.examples().values()} == {Path(name).name for name in shipped}
     assert all(shipped[name] == f"stribeck/explorer/{name}" for name in shipped)
     for title, path in files.examples().items():
-        assert inputs.from_case(sb.load_case(path)).title == title
+        assert inputs.from_case(sb.load_case(path)).case.title == title
 
 
 def test_a_preset_is_a_viscosity_and_a_fluid():
@@ -772,12 +773,12 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert solve(model, heavy) and not solve(model, heavy)
     now = model(heavy)
     assert "curve" not in now.stale and "solved" in now.curve.source
-    steps = np.diff(np.log(now.curve.friction[heavy.definition]))
-    bottom = int(np.argmin(now.curve.friction[heavy.definition]))
+    steps = np.diff(np.log(now.curve.friction[heavy.case.definition]))
+    bottom = int(np.argmin(now.curve.friction[heavy.case.definition]))
     assert np.abs(steps[bottom - 1 : bottom + 1]).max() < 0.03  # no kink where friction turns
-    default = np.log(now.curve.friction[heavy.definition])
+    default = np.log(now.curve.friction[heavy.case.definition])
     friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), default))
-    assert friction == pytest.approx(sb.solve(heavy.contact).friction(definition=heavy.definition).total, rel=0.02)
+    assert friction == pytest.approx(sb.solve(heavy.contact).friction(definition=heavy.case.definition).total, rel=0.02)
     heavier = model(inputs.with_slider(heavy, "load", inputs.position(heavy, "load") + 0.1))
     assert "curve" in heavier.stale and not heavier.curve.marks
     light = model(START)
@@ -909,7 +910,7 @@ def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
     path.write_bytes(files.content("toml", shown))
     case = sb.load_case(path)
     assert case.contact == odd.contact
-    assert (case.definition, case.title, case.curve.points) == ("balanced", odd.title, 121)
+    assert (case.definition, case.title, case.curve.points) == ("balanced", odd.case.title, 121)
     assert case.curve.range == (shown.curve.speed[0], shown.curve.speed[-1])
     assert files.read_case("case.toml", path.read_bytes()).contact == odd.contact
 
@@ -930,7 +931,7 @@ def test_the_csv_holds_the_curve_and_the_pins_at_the_same_speeds(answer):
     assert float(rows[60]["friction_pin_1 [1]"]) == pytest.approx(there, rel=1e-9)
     text = content.decode()
     assert "# pin_1: pinned, once\n" in text and f"# input_load: {START.contact.load}\n" in text
-    assert text.startswith("# source: stribeck") or f"# title: {START.title}\n" in text
+    assert text.startswith("# source: stribeck") or f"# title: {START.case.title}\n" in text
 
 
 def test_the_profile_is_downloaded_in_si_units(answer):

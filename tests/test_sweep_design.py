@@ -111,8 +111,11 @@ def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_pa
         (GROUPS + "[vary]\n", "[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m']."),
         (GROUPS + "[vary]\nspeed = []\n", "[vary] speed = [] is empty; list its values."),
         (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
-        (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be finite and zero or positive."),
-        (GROUPS + '[vary]\nspeed = ["1 m/s"]\n', "[vary] speed = '1 m/s' is text; groups are bare numbers"),
+        (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be zero or positive."),
+        (
+            GROUPS + '[vary]\nspeed = ["1 m/s"]\n',
+            "[vary] speed = '1 m/s' is text, but a number is expected; write a bare number without quotes",
+        ),
         (GROUPS + "[vary]\nmu0 = [1]\n", "[vary] 'mu0' cannot vary; write boundary_friction."),
         (
             GROUPS + "[vary]\nspede = [1]\n",

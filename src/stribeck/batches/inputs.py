@@ -27,12 +27,21 @@ def varied(
         columns, names = broadcast_inputs(table, dims)
         return replace(problem, **{name: _numbers(name, column) for name, column in columns.items()}), None, names
     columns, names = broadcast_inputs(inputs, dims)
+    contacts, groups = contacts_at(problem, columns)
+    return groups, contacts, names
+
+
+def contacts_at(base: Contact, columns: Mapping[str, Any]) -> tuple[Objects, Groups]:
+    """Return a contact for each state, changed by columns of objects, and their groups, with the parts of the first."""
     contacts: Objects = np.empty(next(iter(columns.values())).shape if columns else (), dtype=object)
-    for index in np.ndindex(contacts.shape):
-        contacts[index] = problem.replace(**{name: column[index] for name, column in columns.items()})
+    for i, index in enumerate(np.ndindex(contacts.shape)):
+        try:
+            contacts[index] = base.replace(**{name: column[index] for name, column in columns.items()})
+        except InputError as problem:
+            raise InputError(f"state {i}: {problem}" if contacts.size > 1 else str(problem)) from None
     flat = [contact.groups for contact in contacts.ravel()]
     arrays = {name: np.reshape([float(getattr(each, name)) for each in flat], contacts.shape) for name in GROUPS}
-    return replace(flat[0] if flat else problem.groups, **arrays), contacts, names
+    return contacts, replace(flat[0] if flat else base.groups, **arrays)
 
 
 def broadcast_inputs(inputs: Mapping[str, Any], dims: Sequence[str] | None) -> tuple[dict[str, Any], tuple[str, ...]]:

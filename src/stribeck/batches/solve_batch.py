@@ -74,9 +74,7 @@ def solve_batch(
         given = tuple(dict.fromkeys(problem.INPUTS.stands_for.get(name, name) for name in inputs))
     else:
         given = tuple(name for name in GROUPS if name in inputs or np.ndim(getattr(problem, name)))
-    parts = (np.broadcast_to(getattr(groups, name), groups.shape).ravel() for name in GROUPS)
-    flat = None if contacts is None else contacts.ravel()
-    states = States(groups=np.stack(list(parts), axis=1), physics=groups.physics, rtol=rtol, contacts=flat)
+    states = States(rtol=rtol, **States.flat(groups, contacts))
     kept = _InMemory(len(states.groups))
 
     def report_progress() -> None:

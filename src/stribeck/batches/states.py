@@ -14,6 +14,7 @@ from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError, describe
@@ -42,15 +43,18 @@ class States(Described):
     contacts: Annotated[Objects | None, "the contacts in SI units that the states come from"] = None
     coefficients: Annotated[Array | None, "``boundary_friction`` and ``beta`` of each beside groups, shape (n, 2)"] = None
 
+    @staticmethod
+    def flat(groups: Groups, contacts: Objects | None) -> dict[str, Any]:
+        """Return arrays of groups and their contacts as fields of states, one after the other."""
+        columns = [np.broadcast_to(getattr(groups, name), groups.shape).ravel() for name in GROUPS]
+        own = None if contacts is None else contacts.ravel()
+        return {"groups": np.stack(columns, axis=1), "physics": groups.physics, "contacts": own}
+
     def part(self, rows: Indices) -> States:
         """Return some of the states."""
-        return States(
-            groups=self.groups[rows],
-            physics=self.physics,
-            rtol=self.rtol,
-            contacts=None if self.contacts is None else self.contacts[rows],
-            coefficients=None if self.coefficients is None else self.coefficients[rows],
-        )
+        arrays = {"groups": self.groups, "contacts": self.contacts, "coefficients": self.coefficients}
+        own: dict[str, Any] = {name: None if each is None else each[rows] for name, each in arrays.items()}
+        return States(physics=self.physics, rtol=self.rtol, **own)
 
     def problem(self, i: int) -> tuple[Groups, Contact | None]:
         """Return the groups of a state, and its contact where it has one."""

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 from types import FrameType
 from typing import Any
 
@@ -100,11 +101,7 @@ def interruptible(after_point: bool = False, sigterm: bool = False, time_limit: 
 
 
 def _time_text(seconds: float) -> str:
-    if not math.isfinite(seconds):
-        return "time left unknown"
-    minutes, seconds = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{seconds:02} left"
+    return f"{timedelta(seconds=round(seconds))} left" if math.isfinite(seconds) else "time left unknown"
 
 
 @contextmanager

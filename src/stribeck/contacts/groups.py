@@ -97,6 +97,17 @@ BETA = Input(
 )
 
 
+# The groups as inputs: bare numbers, each with the range of its slider.
+GROUP_INPUTS = {
+    name: Input(name=name, label=f"{name} group", symbol=symbol, dimension="number", typical="1.0", usual=usual, zero=zero)
+    for name, symbol, usual, zero in (
+        ("speed", "λ", (1e-12, 1e4), True),
+        ("load", "F", (1e-6, 1e4), False),
+        ("roughness", "h\u0304_rms", (1e-9, 1e3), True),
+    )
+}
+
+
 class Physics(TypedDict):
     """All of :class:`Groups` but the numbers: what states of one curve, sweep or diagram have in common."""
 

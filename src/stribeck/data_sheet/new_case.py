@@ -10,7 +10,7 @@ from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
-from stribeck.contacts.parts import KINDS
+from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
@@ -96,7 +96,8 @@ def new_case(geometry: Geometry = "line") -> str:
         "[contact]",
         *([f'geometry = "{geometry}"', ""] if geometry != "line" else []),
     ]
-    for row in table.kept.values():
+    motion = {"slide_to_roll": table.kept.get("slide_to_roll", LAW_NUMBERS["slide_to_roll"])}
+    for row in (table.kept | motion).values():
         left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
         lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {row.example}"]
         for form in reversed(table.forms):
@@ -109,12 +110,6 @@ def new_case(geometry: Geometry = "line") -> str:
         if row.name == "radius":
             lines.append(f"# radius_2 = {table.quantities['radius_2'].example}   # if the other body is curved too")
         lines.append("")
-    if geometry == "line":
-        lines += [
-            "# Slide-to-roll ratio [no unit], 2 (u1 - u2)/(u1 + u2), 0 to 2. Without it one surface rests, which is 2.",
-            "# slide_to_roll = 0.5",
-            "",
-        ]
     lines += [
         f"# Contact law: {', '.join(map(_law, LAWS))}.",
         SURFACE_TEXT[geometry].rstrip(),

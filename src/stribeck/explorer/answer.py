@@ -112,7 +112,7 @@ class Answerer:
 
     def __call__(self, inputs: Inputs, pins: Sequence[Inputs] = (), measured: Sequence[Measured] = ()) -> Answer:
         """Return the answer at once, with the last curve where a new one has to be solved."""
-        contact, definition, geometry = inputs.contact, inputs.definition, inputs.table.geometry
+        contact, definition, geometry = inputs.contact, inputs.case.definition, inputs.table.geometry
         solution = self._state(inputs)
         marks = self._marks(contact, definition) if in_atlas(contact) else None
         places = [place for found in measured for place in found.places(contact, inputs.abscissa).tolist() if place > 0]
@@ -172,7 +172,7 @@ class Answerer:
 
     def _solve_curve(self, inputs: Inputs, rtol: float, report: Report) -> Iterator[None]:
         """Solve the curve of inputs outside the atlas, unless it is known as finely."""
-        contact, definition = inputs.contact, inputs.definition
+        contact, definition = inputs.contact, inputs.case.definition
         key, why = ("solved", _key(contact), definition), ("why", _key(contact), definition)
         known: Curve | None = self._kept.get(key)
         if in_atlas(contact) or why in self._kept or (known is not None and known.found.rtol <= rtol):
@@ -186,7 +186,7 @@ class Answerer:
 
     def _solve_diagram(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Solve the map of inputs outside the atlas row by row."""
-        contact, definition = inputs.contact, inputs.definition
+        contact, definition = inputs.contact, inputs.case.definition
         if in_atlas(contact):
             return
         known: Curve | None = self.curve(contact, definition, (0.0, 0.0))
@@ -203,7 +203,7 @@ class Answerer:
         key = _known_key("margins", inputs)
         if key in self._kept:
             return
-        contact, definition = inputs.contact, inputs.definition
+        contact, definition = inputs.contact, inputs.case.definition
         try:
             if inputs.table.geometry == "point":
                 raise InputError(NO_MARGINS_OF_BALLS)
@@ -215,7 +215,7 @@ class Answerer:
 
     def _find_spread(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Find what the errors of the inputs leave open in the state, and then along the curve."""
-        errors, contact, definition = inputs.case.errors, inputs.contact, inputs.definition
+        errors, contact, definition = inputs.case.errors, inputs.contact, inputs.case.definition
         if not errors or _known_key("spread", inputs) in self._kept:
             return
         self._put(_known_key("spread", inputs), propagate(contact, errors, definition=definition))
@@ -239,18 +239,18 @@ class Answerer:
     def _state(self, inputs: Inputs) -> Solution | PointSolution:
         """Return the state, from the last ones where these are near."""
         contact = inputs.contact
-        if self._last_state is not None and self._last_state[0] == contact and self._last_state[1].rtol == inputs.rtol:
+        if self._last_state is not None and self._last_state[0] == contact and self._last_state[1].rtol == inputs.case.rtol:
             return self._last_state[1]
-        if self._neighbours.rtol != inputs.rtol:
-            self._neighbours = Neighbours(inputs.rtol, KEPT_STATES)
+        if self._neighbours.rtol != inputs.case.rtol:
+            self._neighbours = Neighbours(inputs.case.rtol, KEPT_STATES)
         state: Solution | PointSolution = self._neighbours.solution(contact.groups, contact)
         self._last_state = contact, state
         return state
 
     def _pinned(self, pin: Inputs, speeds: tuple[float, float]) -> Pinned:
-        contact, definition = pin.contact, pin.definition
+        contact, definition = pin.contact, pin.case.definition
         state = self._keep(("pin", contact), lambda: solve(contact, rtol=PIN_RTOL))
-        return Pinned(pin.title, contact, definition, self.curve(contact, definition, speeds), state)
+        return Pinned(pin.case.title, contact, definition, self.curve(contact, definition, speeds), state)
 
     def _marks(self, contact: Contact, definition: Definition) -> Any:
         return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
@@ -276,7 +276,7 @@ class Answerer:
 
 def _subject(inputs: Inputs, solution: Any, report: Report = lambda part: None) -> Subject:
     """Return what is checked of inputs, whose state may be known."""
-    return Subject(inputs.contact, inputs.case.facts, inputs.definition, solution, on_point=_parts(report))
+    return Subject(inputs.contact, inputs.case.facts, inputs.case.definition, solution, on_point=_parts(report))
 
 
 def _parts(report: Report) -> Callable[..., object]:
@@ -291,13 +291,13 @@ def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
 
 def _known_key(what: str, inputs: Inputs) -> tuple[Any, ...]:
     """Return what margins, and the propagated errors of a state, depend on."""
-    return (what, inputs.contact, inputs.definition, inputs.known)
+    return (what, inputs.contact, inputs.case.definition, inputs.known)
 
 
 def _diagram_key(inputs: Inputs, speeds: tuple[float, float]) -> tuple[Any, ...]:
     """Return what a map depends on: all but speed and roughness, and its axes."""
     contact = inputs.contact
-    return ("diagram", _key(contact, "roughness"), inputs.definition, speeds, decade_of_roughness(contact))
+    return ("diagram", _key(contact, "roughness"), inputs.case.definition, speeds, decade_of_roughness(contact))
 
 
 def _ends_of(curve: Curve | None, contact: Contact) -> tuple[float, float]:

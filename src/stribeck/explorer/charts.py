@@ -35,7 +35,7 @@ def all_charts(answer: Answer) -> dict[str, Options]:
 def friction_chart(answer: Answer) -> Options:
     """Return the sizes of friction over the speed or the Hersey number, with the present point, pins and measured curves."""
     inputs, curve, over_speed = answer.inputs, answer.curve, answer.inputs.abscissa == "speed"
-    contact, chosen = inputs.contact, inputs.definition
+    contact, chosen = inputs.contact, inputs.case.definition
     scale = 1.0 if over_speed else hersey_scale(contact)
     ends = answer.speeds[0] * scale, answer.speeds[1] * scale
     friction = abs(answer.solution.friction(definition=chosen).total)

@@ -88,8 +88,8 @@ def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
         geometry = {"line": "cylinder", "point": "ball"}[models[0][0]]
         changed.insert(0, models[0][1] or geometry)
     name = ", ".join(changed[:3]) or "start"
-    if inputs.definition != start.definition:
-        name += f", {inputs.definition}"
+    if inputs.case.definition != start.case.definition:
+        name += f", {inputs.case.definition}"
     number = 2
     unique = name
     while unique in taken:
@@ -110,7 +110,7 @@ def content(kind: str, shown: Answer) -> bytes:
     found = shown.solution.to_dataset() if what else curves_dataset(shown)
     with TemporaryDirectory(prefix="stribeck-") as folder:
         path = Path(folder) / "data.csv"
-        write_csv(found.assign_attrs(title=shown.inputs.title), path)
+        write_csv(found.assign_attrs(title=shown.inputs.case.title), path)
         return path.read_bytes()
 
 
@@ -134,16 +134,17 @@ def figure_of(shown: Answer, what: str) -> Any:
     """Return the picture of the curve, with pinned and measured ones, or of the state, as the package draws it."""
     inputs = shown.inputs
     if what == "state":
-        return shown.solution.plot(title=inputs.title)
+        return shown.solution.plot(title=inputs.case.title)
     curve, hersey = _present_curve(shown), inputs.abscissa == "hersey"
     assert shown.curve is not None
     band, verdict = shown.curve.band, shown.checks.headline
-    figure = curve.plot(title=inputs.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
+    figure = curve.plot(title=inputs.case.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
     axes = figure.axes[0]
     added, heights = [], [np.array(axes.get_ylim())]
     for i, pin in enumerate(each for each in shown.pins if each.curve is not None):
         assert pin.curve is not None
-        places, friction = pin.curve.speed * (hersey_scale(pin.contact) if hersey else 1.0), pin.curve.sizes[inputs.definition]
+        places = pin.curve.speed * (hersey_scale(pin.contact) if hersey else 1.0)
+        friction = pin.curve.sizes[inputs.case.definition]
         style: Any = {"color": SERIES[-1 - i % len(SERIES)], "ls": (0, (3 + 2 * i, 2)), "lw": 1.4}
         added += axes.plot(places, friction, label=pin.name, **style)
         heights.append(friction[friction > 0])

@@ -59,12 +59,12 @@ class Page(ui.element, component="page.js"):
 def form_of(now: Inputs, problems: Problems) -> dict[str, Any]:
     """Return what fields, sliders, lists and switches show."""
     return {
-        "title": now.title,
+        "title": now.case.title,
         "geometry": now.table.geometry,
         "rows": [row_of(now, name) | problems.get(name, {}) for name in now.fields],
         "groups": [row_of(now, name) | problems.get(name, {}) for name in GROUP_FIELDS],
         "lists": [list_of(now, name) | problems.get(name, {}) for name in CHOICES],
-        "chosen": {"definition": now.definition, "abscissa": now.abscissa},
+        "chosen": {"definition": now.case.definition, "abscissa": now.abscissa},
     }
 
 

@@ -135,7 +135,7 @@ def build(start: Inputs, port: int, token: str) -> None:
         content = await tab.content(kind)
         if content is None:
             return Response(status_code=409)
-        name = quote(name_of(kind, tab.inputs.title))
+        name = quote(name_of(kind, tab.inputs.case.title))
         return Response(content, media_type="application/octet-stream", headers={"x-file-name": name})
 
     app.add_route("/upload/{tab}", upload, methods=["POST"])

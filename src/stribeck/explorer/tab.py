@@ -142,7 +142,7 @@ class Tab:
 
     def pin(self) -> None:
         """Keep the present curve."""
-        name = files.pin_name(self.inputs, self.start, [pin.title for pin in self.pins])
+        name = files.pin_name(self.inputs, self.start, [pin.case.title for pin in self.pins])
         pins = [*self.pins, self.inputs.replace(title=name)]
         try:
             if len(pins) > url.MAX_PINS:

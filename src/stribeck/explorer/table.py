@@ -66,8 +66,8 @@ def numbers(answer: Answer) -> list[Row]:
     spread, films = answer.spread, {row.name: row.film for row in answer.solution.outputs.rows if row.film}
     known = {} if spread is None else {each.name: _plain(each.texts[1]) for each in spread.spreads}
     names = {films.get(name, name): text for name, text in known.items()}
-    names[f"friction_{answer.inputs.definition}"] = known.get("friction", "")
-    rows = state_rows(answer.solution, answer.inputs.definition)
+    names[f"friction_{answer.inputs.case.definition}"] = known.get("friction", "")
+    rows = state_rows(answer.solution, answer.inputs.case.definition)
     return [*(replace(row, interval=names.get(row.key, "")) for row in rows), *_transition_rows(answer)]
 
 
@@ -159,7 +159,7 @@ def comparison_html(answer: Answer) -> str:
     """Return numbers of the pinned contacts beside those of the present one; empty where nothing is pinned."""
     if not answer.pins:
         return ""
-    states: list[tuple[str, BaseSolution, Definition]] = [("present", answer.solution, answer.inputs.definition)]
+    states: list[tuple[str, BaseSolution, Definition]] = [("present", answer.solution, answer.inputs.case.definition)]
     states += [(pin.name, pin.state, pin.definition) for pin in answer.pins]
     found: dict[str, list[str]] = {"": [], "Regime": [], "Friction µ": []}
     for name, state, definition in states:

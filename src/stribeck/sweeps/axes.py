@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -13,10 +12,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.hints import advice_on
 from stribeck.cases.tables import Key, noted, one_of, read_tables, rising_pair, whole
-from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.contacts.groups import Groups
-from stribeck.contacts.inputs import InputTable
-from stribeck.quantities.outputs import GROUPS
+from stribeck.contacts.geometries import LINE
+from stribeck.contacts.groups import GROUP_INPUTS
+from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
 
 Kind = Literal["grid", "list", "random", "latin-hypercube", "sobol"]
@@ -27,6 +25,8 @@ RANDOM_KINDS: tuple[Kind, ...] = KINDS[2:]  # Kinds of design whose number of po
 MAX_STATES = 1_000_000
 
 COEFFICIENTS = ("boundary_friction", "beta")  # Inputs of friction beside groups
+
+GROUP_ROWS = GROUP_INPUTS | {name: LINE.quantities[name] for name in COEFFICIENTS}  # What may vary in the place of a contact
 
 KEYS_OF_DESIGN = {
     "kind": Key(one_of(*KINDS), "grid"),
@@ -88,7 +88,7 @@ def _parts(kind: Kind, axes: int, points: int, seed: int) -> Array:
 
 
 def read_axes(
-    tables: dict[str, Any], inputs: InputTable | None, problems: list[str]
+    tables: dict[str, Any], rows: Mapping[str, Input], problems: list[str]
 ) -> tuple[dict[str, Any], dict[str, Axis]]:
     """Return what ``[design]`` says and the axes of ``[vary]``, of inputs in SI units or of groups."""
     design = read_tables({"design": {}} | tables, {"design": KEYS_OF_DESIGN}, problems).get("design", {})
@@ -98,30 +98,18 @@ def read_axes(
         return design, {}
     if not vary:
         problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
-    rows = None if inputs is None else inputs.rows
-    known = (*GROUPS, *COEFFICIENTS) if rows is None else tuple(rows)
     axes, before = {}, len(problems)
     for name, entry in vary.items():
         with noted(problems, "vary"):
-            if name not in known:
-                hint = advice_on(name, known) or f"known are {', '.join(known)}"
+            if name not in rows:
+                hint = advice_on(name, rows) or f"known are {', '.join(rows)}"
                 raise InputError(f"{show(name)} cannot vary; {hint}.")
             # This stands for an axis that is refused, so that nothing else is said of it.
-            axes[name] = Axis(values=(1.0 if rows is None else rows[name].typical_value,))
-            check = partial(checked_group, name) if rows is None else rows[name].checked
-            axes[name] = _axis_of(name, entry, design.get("kind", "grid"), check)
+            axes[name] = Axis(values=(rows[name].typical_value,))
+            axes[name] = _axis_of(name, entry, design.get("kind", "grid"), rows[name].checked)
     if axes and len(problems) == before:
         problems += _design_problems(design, axes)
     return design, axes
-
-
-def checked_group(name: str, value: Any) -> float:
-    """Return a group or a coefficient, checked."""
-    if name in COEFFICIENTS:
-        return INPUT_TABLES["line"].quantities[name].checked(value)
-    if isinstance(value, str):
-        raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
-    return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
 
 
 def _axis_of(name: str, entry: Any, kind: Kind, check: Callable[[Any], float]) -> Axis:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.batches.inputs import contacts_at
 from stribeck.batches.states import States
 from stribeck.cases.case import Case
 from stribeck.cases.law import KEYS_OF_SURFACES, LAW_KEY, Law, law_of_file
@@ -37,7 +38,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.sweeps.axes import COEFFICIENTS, Axis, Kind, checked_group, points_of, read_axes
+from stribeck.sweeps.axes import COEFFICIENTS, GROUP_ROWS, Axis, Kind, points_of, read_axes
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -57,9 +58,7 @@ class SweepDesign(Tabled, Shown, States):
     law: Annotated[Law, "name of the contact law"]
 
     def _labelled(self) -> Labelled:
-        groups = {f"{name}_group": self.groups[:, i] for i, name in enumerate(GROUPS)}
-        about = input_columns(self.inputs, self.physics)
-        columns: dict[str, Column] = {name: ("state", values, *about[name]) for name, values in (self.inputs | groups).items()}
+        columns: dict[str, Column] = {name: ("state", *each) for name, each in self.input_columns.items()}
         number: dict[str, Column] = {"state": ("state", np.arange(len(self)), *COLUMNS["state"])}
         return columns, number, {"title": self.title or "States of a sweep", "rtol": self.rtol, "kind": self.kind}
 
@@ -86,6 +85,13 @@ class SweepDesign(Tabled, Shown, States):
         fixed |= {name: float(values[0]) for name, values in inputs.items() if name not in self.varied}
         ends = ({name: float(end(inputs[name])) for name in self.varied if name in inputs} for end in (min, max))
         return tuple(filter(None, (unusual(numbers, table) for numbers in (fixed, *ends))))
+
+    @property
+    def input_columns(self) -> dict[str, tuple[Array, str, str]]:
+        """Inputs and groups of all states: values, unit and meaning of each."""
+        rows = INPUT_TABLES[self.physics["geometry"]].rows
+        inputs = {name: (values, rows[name].unit, rows[name].label) for name, values in self.inputs.items()}
+        return inputs | {f"{name}_group": (self.groups[:, i], "1", f"{name} group") for i, name in enumerate(GROUPS)}
 
     @property
     def contact_law(self) -> AsperityLaw | None:
@@ -137,7 +143,7 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     with noted(problems, "contact" if "contact" in tables else "groups"):
         geometry, _ = geometry_of(tables)
     si = "groups" not in tables
-    design, axes = read_axes(own, INPUT_TABLES[geometry] if si else None, problems)
+    design, axes = read_axes(own, INPUT_TABLES[geometry].rows if si else GROUP_ROWS, problems)
     where = "contact" if si else "groups"
     base: Any = tables.get(where)
     for name in axes.keys() & (base if isinstance(base, dict) else {}):
@@ -196,7 +202,7 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
             "[groups], or leave the table out."
         )
     keys: dict[str, Keys] = {
-        "groups": {**dict.fromkeys((*GROUPS, *COEFFICIENTS), Key(checked_group)), "law": LAW_KEY},
+        "groups": {**{name: Key(lambda name, value: GROUP_ROWS[name].checked(value)) for name in GROUP_ROWS}, "law": LAW_KEY},
         "solver": {"rtol": tolerance(Case.rtol)},
         **KEYS_OF_SURFACES,
         "": HEAD,
@@ -215,32 +221,17 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
 
 def _contacts(base: Contact, forms: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
     """Return contacts, each of which is checked, with their inputs and groups."""
-    contacts = np.empty(len(next(iter(varying.values()))), dtype=object)
-    for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):
-        try:
-            contacts[i] = base.replace(**forms, **dict(zip(varying, values, strict=True)))
-        except InputError as problem:
-            raise InputError(f"state {i}: {problem}") from None
+    number = len(next(iter(varying.values())))
+    fixed = {name: np.full(number, base.INPUTS.quantities[name].checked(value)) for name, value in forms.items()}
+    contacts, groups = contacts_at(base, {name: column.astype(object) for name, column in (fixed | varying).items()})
     kept = [contact.to_si() for contact in contacts]
     inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
-    for name in forms:
-        inputs[name] = np.full(len(contacts), base.INPUTS.quantities[name].checked(forms[name]))
-    groups = [contact.groups for contact in contacts]
-    columns = np.array([[getattr(each, name) for name in GROUPS] for each in groups])
-    return {"inputs": inputs | varying, "groups": columns, "contacts": contacts, "physics": groups[0].physics}
+    return {"inputs": inputs | fixed | varying, **States.flat(groups, contacts)}
 
 
 def _groups(physics: Physics, fixed: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
     """Return groups, and the coefficients beside them."""
     number = len(next(iter(varying.values())))
-    every = {name: varying.get(name, np.full(number, fixed.get(name, 1.0))) for name in (*GROUPS, *COEFFICIENTS)}
-    groups, coefficients = (np.stack([every[name] for name in names], axis=1) for names in (GROUPS, COEFFICIENTS))
-    own = {name: every[name] for name in COEFFICIENTS}
-    return {"inputs": own, "groups": groups, "coefficients": coefficients, "physics": physics}
-
-
-def input_columns(names: Iterable[str], physics: Physics) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the inputs and groups of a state."""
-    rows = INPUT_TABLES[physics["geometry"]].rows
-    inputs = {name: (rows[name].unit, rows[name].label) for name in names}
-    return inputs | {f"{name}_group": ("1", f"{name} group") for name in GROUPS}
+    every = {name: varying.get(name, np.full(number, fixed.get(name, 1.0))) for name in GROUP_ROWS}
+    own = {name: every.pop(name) for name in COEFFICIENTS}
+    return {"inputs": own, "coefficients": np.stack([*own.values()], axis=1), **States.flat(Groups(**every, **physics), None)}

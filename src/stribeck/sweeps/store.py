@@ -30,10 +30,11 @@ from stribeck._types import Array, Flags
 from stribeck.batches.executors import SweepError
 from stribeck.batches.states import Ended, States
 from stribeck.files.writing import PathLike, path_of, reason_of
-from stribeck.quantities.outputs import COLUMNS, GROUPS
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import COLUMNS
 from stribeck.quantities.units import InputError
 from stribeck.solver.numbers import numbers_of
-from stribeck.sweeps.design import SweepDesign, input_columns
+from stribeck.sweeps.design import SweepDesign
 
 FORMAT = 4  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks, 3 had relative errors
 APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
@@ -77,6 +78,9 @@ class Store:
         self.path, self.note = path, note  # What was found on opening, such as the name of a sweep that had died
         self._db, self._name = db, _new_name()
         self._values = values  # Unit and meaning of the numbers of states
+        done = self.done()
+        self.total, self.found = len(done), int(done.sum())  # States of the design, and those that earlier runs have finished
+        self.computed = self.failed = 0  # States of this run, and those of them that did not converge
         self._set("writer", self._name)
         self._commit()
 
@@ -97,6 +101,8 @@ class Store:
             named |= {name: value for name, (value, _, _) in row.numbers.items()}
             names, places = ", ".join(f'"{name}"' for name in named), ", ".join("?" * len(named))
             self._db.execute(f"INSERT INTO states ({names}) VALUES ({places})", list(named.values()))
+            self.failed += row.outcome != Outcome.CONVERGED.name
+        self.computed += len(rows)
         self._commit()
 
     def _add_columns(self, row: Row) -> None:
@@ -256,7 +262,7 @@ def _new_name() -> dict[str, Any]:
 
 def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
     """Write everything but the states."""
-    columns = design.inputs | {f"{name}_group": design.groups[:, k] for k, name in enumerate(GROUPS)}
+    columns = design.input_columns
     about = {
         "version": version("stribeck"),
         "title": design.title,
@@ -270,7 +276,7 @@ def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
         "rtol": design.rtol,
         "contact_law": design.law,
         "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
-        "inputs": input_columns(design.inputs, design.physics),
+        "inputs": {name: words for name, (_, *words) in columns.items()},
         "values": {},
     }
     inputs = ", ".join(f'"{name}" REAL' for name in columns)
@@ -280,7 +286,7 @@ def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
     db.execute(f"CREATE TABLE inputs (state INTEGER PRIMARY KEY, {inputs})")
     db.execute("CREATE TABLE states (state INTEGER PRIMARY KEY, outcome TEXT NOT NULL, message TEXT NOT NULL)")
     db.executemany("INSERT INTO about VALUES (?, ?)", [(name, json.dumps(value)) for name, value in about.items()])
-    rows = zip(range(len(design)), *(column.tolist() for column in columns.values()), strict=True)
+    rows = zip(range(len(design)), *(values.tolist() for values, _, _ in columns.values()), strict=True)
     db.executemany(f"INSERT INTO inputs VALUES ({', '.join('?' * (1 + len(columns)))})", rows)
 
 

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Self
 
-from stribeck._types import Flags
 from stribeck.batches.executors import Executor, SweepError, solve_all, solve_here, solve_on_cluster, solve_on_processes
 from stribeck.files.results import Record
 from stribeck.files.writing import PathLike
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.store import Row, Store, claimed_store, row_of
+from stribeck.sweeps.store import Store, claimed_store, row_of
 
 MAX_WORKERS = 1024
 
@@ -32,6 +30,12 @@ class SweepProgress(Record):
     failed: Annotated[int, "states of this run that did not converge", "1"]
     rate: Annotated[float, "states per second of this run, 0 before the first", "s-1"]
     seconds_left: Annotated[float, "time left at this rate, infinite before the first", "s"]
+
+    @classmethod
+    def of(cls, store: Store, seconds: float) -> Self:
+        """Return the progress of the run that fills a store since so many seconds."""
+        done, rate = store.found + store.computed, store.computed / seconds if seconds > 0 else 0.0
+        return cls(done, store.total, store.failed, rate, (store.total - done) / rate if rate > 0 else math.inf)
 
     @property
     def text(self) -> str:
@@ -94,45 +98,19 @@ def sweep(
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
     began = time.monotonic()
     with claimed_store(out, plan) as store:
-        run = _Watched(store, on_progress)
-        interrupted = solve_all(plan, run, _executor(workers, scheduler), row_of, run.report_progress)
-        missing = not store.done().all()
-    if missing and not interrupted:
+
+        def report_progress() -> None:
+            if on_progress is not None:
+                on_progress(SweepProgress.of(store, time.monotonic() - began))
+
+        interrupted = solve_all(plan, store, _executor(workers, scheduler), row_of, report_progress)
+    if store.found + store.computed < store.total and not interrupted:
         raise SweepError("The run ended without an error, but states are missing; please report it.")
     seconds, found = time.monotonic() - began, open_sweep(store.path)
-    return replace(found, interrupted=interrupted, computed=run.computed, seconds=seconds, note=store.note)
+    return replace(found, interrupted=interrupted, computed=store.computed, seconds=seconds, note=store.note)
 
 
 def _executor(workers: int, scheduler: str | None) -> Executor:
     if scheduler is not None:
         return partial(solve_on_cluster, scheduler)
     return partial(solve_on_processes, workers) if workers > 1 else solve_here
-
-
-class _Watched:
-    """A store whose filling is watched."""
-
-    def __init__(self, store: Store, on_progress: Callable[[SweepProgress], object] | None) -> None:
-        self.store, self.on_progress = store, on_progress
-        self.total, self.before = len(store.done()), int(store.done().sum())
-        self.computed = self.failed = 0
-        self.began = time.monotonic()
-
-    def done(self) -> Flags:
-        """Return whether each state of the design has ended."""
-        return self.store.done()
-
-    def keep(self, rows: Sequence[tuple[int, Row]]) -> None:
-        """Keep states that have ended, and count them."""
-        self.store.keep(rows)
-        self.computed += len(rows)
-        self.failed += sum(row.outcome != Outcome.CONVERGED.name for _, row in rows)
-
-    def report_progress(self) -> None:
-        """Tell who wants to know how many states have ended."""
-        if self.on_progress is None:
-            return
-        passed, done = time.monotonic() - self.began, self.before + self.computed
-        rate = self.computed / passed if passed > 0 else 0.0
-        left = (self.total - done) / rate if rate > 0 else math.inf
-        self.on_progress(SweepProgress(done, self.total, self.failed, rate, left))

@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +23,6 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA_INPUT
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.contacts.model import Model
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, fluid_table
 from stribeck.fluids.cavitation import Cavitation
@@ -143,9 +142,6 @@ CHOICES = {
 }
 """The lists, in the order of the page."""
 
-CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
-"""What refuses models that the equations of a geometry do not have."""
-
 
 def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
     """Return what is chosen in tables."""
@@ -164,7 +160,7 @@ def available_values(name: str, geometry: str) -> tuple[str, ...]:
     choice = CHOICES[name]
     if name == "motion" and "slide_to_roll" in INPUT_TABLES[geometry].names:  # which has a field
         return (choice.first,)
-    if geometry not in CHECKS or choice.table in ("", "contact"):
+    if geometry != "point" or choice.table in ("", "contact"):
         return tuple(choice.options)
     numbers = {key: row.typical_value for key, row in INPUT_TABLES[geometry].kept.items() if not row.optional}
     typical, found = Inputs.of({"contact": {"geometry": geometry, **numbers}}), []
@@ -287,6 +283,6 @@ def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
 def _with(now: Inputs, tables: dict[str, Any], **numbers: float) -> Inputs:
     """Return the inputs with other tables and numbers, if the equations of their geometry have such a model."""
     found = now.edited(numbers, tables)
-    if found.table.geometry in CHECKS:
-        CHECKS[found.table.geometry](found.contact.groups.model)
+    if found.table.geometry == "point":
+        check_model(found.contact.groups.model)
     return found

@@ -23,8 +23,8 @@ from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, preset
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
+from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.fluids.description import Fluid
@@ -45,14 +45,7 @@ FIELDS: dict[str, dict[str, Input]] = {
 }
 """The inputs of each geometry, those changed most often first."""
 
-GROUP_FIELDS = {
-    f"{name}_group": Input(label=f"{name} group", symbol=symbol, dimension="number", typical="", source="", usual=usual)
-    for name, symbol, usual in (
-        ("speed", "λ", (1e-12, 1e4)),
-        ("load", "F", (1e-6, 1e4)),
-        ("roughness", "h\u0304_rms", (1e-9, 1e3)),
-    )
-}
+GROUP_FIELDS = {f"{name}_group": row for name, row in GROUP_INPUTS.items()}
 """The groups: moving one moves speed, load and roughness so that the other two stay."""
 
 GREEK = {"eta": "η", "alpha": "α", "beta": "β", "mu": "µ"}
@@ -105,21 +98,6 @@ class Inputs:
     def contact(self) -> Contact:
         """The contact."""
         return self.case.contact
-
-    @property
-    def definition(self) -> Definition:
-        """The friction by which curves, regimes and margins go."""
-        return self.case.definition
-
-    @property
-    def rtol(self) -> float:
-        """Relative tolerance of the states."""
-        return self.case.rtol
-
-    @property
-    def title(self) -> str:
-        """Headline."""
-        return self.case.title
 
     @property
     def known(self) -> tuple[Any, ...]:

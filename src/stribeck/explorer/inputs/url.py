@@ -67,8 +67,8 @@ def check_length(inputs: Inputs, pins: Sequence[Inputs] = ()) -> None:
     """Refuse what no address can hold."""
     length = len(encode(inputs, pins))
     if length > MAX_URL_LENGTH:
-        parts = {"the title": inputs.title, "the pinned curves": "".join(pin.text for pin in pins)}
-        parts["the contact law and other tables"] = inputs.text.replace(inputs.title, "")
+        parts = {"the title": inputs.case.title, "the pinned curves": "".join(pin.text for pin in pins)}
+        parts["the contact law and other tables"] = inputs.text.replace(inputs.case.title, "")
         most = max(parts, key=lambda name: len(parts[name]))
         raise InputError(
             f"the address of this state would have {length} characters, but at most {MAX_URL_LENGTH} are "
