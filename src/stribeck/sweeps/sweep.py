@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, Self
+from typing import Annotated
 
 from stribeck.batches.executors import Executor, SweepError, solve_all, solve_here, solve_on_cluster, solve_on_processes
 from stribeck.files.results import Record
@@ -30,12 +30,6 @@ class SweepProgress(Record):
     failed: Annotated[int, "states of this run that did not converge", "1"]
     rate: Annotated[float, "states per second of this run, 0 before the first", "s-1"]
     seconds_left: Annotated[float, "time left at this rate, infinite before the first", "s"]
-
-    @classmethod
-    def of(cls, store: Store, seconds: float) -> Self:
-        """Return the progress of the run that fills a store since so many seconds."""
-        done, rate = store.found + store.computed, store.computed / seconds if seconds > 0 else 0.0
-        return cls(done, store.total, store.failed, rate, (store.total - done) / rate if rate > 0 else math.inf)
 
     @property
     def text(self) -> str:
@@ -101,7 +95,7 @@ def sweep(
 
         def report_progress() -> None:
             if on_progress is not None:
-                on_progress(SweepProgress.of(store, time.monotonic() - began))
+                on_progress(_progress_of(store, time.monotonic() - began))
 
         interrupted = solve_all(plan, store, _executor(workers, scheduler), row_of, report_progress)
     if store.found + store.computed < store.total and not interrupted:
@@ -114,3 +108,8 @@ def _executor(workers: int, scheduler: str | None) -> Executor:
     if scheduler is not None:
         return partial(solve_on_cluster, scheduler)
     return partial(solve_on_processes, workers) if workers > 1 else solve_here
+
+
+def _progress_of(store: Store, seconds: float) -> SweepProgress:
+    done, rate = store.found + store.computed, store.computed / seconds if seconds > 0 else 0.0
+    return SweepProgress(done, store.total, store.failed, rate, (store.total - done) / rate if rate > 0 else math.inf)
