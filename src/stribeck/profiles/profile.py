@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -82,21 +82,9 @@ class Parabola:
     """The cylinder, from whose gap nothing departs."""
 
     name: str = "cylinder"
-
-    @property
-    def parameters(self) -> Mapping[str, float | str]:
-        """None."""
-        return {}
-
-    @property
-    def places(self) -> Array:
-        """None."""
-        return np.empty(0)
-
-    @property
-    def is_parabola(self) -> bool:
-        """It is."""
-        return True
+    parameters: ClassVar[Mapping[str, float | str]] = {}
+    places: ClassVar[Array] = np.empty(0)
+    is_parabola: ClassVar[bool] = True
 
     def part(self, part: float) -> Parabola:
         """Return the parabola itself."""

@@ -208,8 +208,10 @@ def first_path(groups: Groups) -> Path[State]:
 def _under_profile(groups: Groups, guess: Guess) -> State | None:
     """Return the state of groups from that under the parabola, which a guess leads to."""
     profile = groups.model.profile
+    if profile.is_parabola:
+        return coarse_state(groups, guess)
     start = coarse_state(_with_model(groups, profile=profile.part(0.0)), guess)
-    if profile.is_parabola or start is None or not start.outcome.ok:
+    if start is None or not start.outcome.ok:
         return start
     path = _homotopy(start, lambda part: _with_model(groups, profile=profile.part(part)))
     return path.states[-1] if path.outcome.ok else None
