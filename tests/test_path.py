@@ -148,7 +148,7 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.path.follow.MAX_PATH_STATES", 50)
+    monkeypatch.setattr("stribeck.solver.path.follow.MAX_STATES", 50)
     monkeypatch.setattr("stribeck.solver.path.follow.MAX_LOG_STEP", 0.2)
 
     class Doubted(Known):

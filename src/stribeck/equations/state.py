@@ -22,9 +22,9 @@ from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.settings import (
-    CHORD_CONTRACTION,
     COARSE_STEP,
     HALF_DIGITS,
+    MAX_STEPS,
     NEGLIGIBLE,
     ROUNDING,
     SAFETY,
@@ -224,7 +224,6 @@ def solve_state(
     operators: Operators,
     guess: Guess,
     tolerance: float,
-    max_steps: int = 40,
     kept: Inverse | None = None,
 ) -> State:
     """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
@@ -235,7 +234,7 @@ def solve_state(
     if thinnest < MIN_GAP:  # steps of that size are rounding
         tolerance = max(tolerance, min(ROUNDING / thinnest, NEGLIGIBLE))
     # Where a wall is not sheared the viscosity of a thinning fluid turns sharply: full steps may go to and fro.
-    control = StepControl(tolerance, max_steps, CHORD_CONTRACTION, monotone=is_thinning(equations.film))
+    control = StepControl(tolerance, MAX_STEPS, NEGLIGIBLE, monotone=is_thinning(equations.film))
     root = root_find(equations, start, control, kept)
     gap = equations.layout.gap
     with np.errstate(all="ignore"):  # a root that was not found need not be finite

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stribeck._types import Array
-from stribeck.numerics.settings import MAX_PATH_STATES, STEP_GROWTH
+from stribeck.numerics.settings import MAX_STATES, STEP_GROWTH
 from stribeck.quantities.outcome import Outcome
 
 
@@ -89,7 +89,7 @@ def march(
             failure = state
             return path(Outcome.PATH_LOST if state is None else state.outcome)
         points.append((start, state))
-    for _ in range(MAX_PATH_STATES):
+    for _ in range(MAX_STATES):
         here = points[-1][0]
         if here == stop:
             return path(Outcome.CONVERGED)

@@ -19,7 +19,7 @@ SHARE = 0.5  # Share of a tolerance that each of two causes of error may take: t
 MIN_LOG_STEP = 0.02  # Shortest step and interval: a path that needs a shorter one ends, an interval keeps its error
 MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that show none
 STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step to the one before that failed
-MAX_PATH_STATES = 400  # Limit on work
+MAX_STATES = 400  # States of a path, and neighbours that are kept: a limit on work and memory
 WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes
 SERIES_ORDER = 18  # Orders of series by formulas, and values of a polynomial between states
 SAMPLED_ORDER = 9  # Orders of series of sampled functions, whose rounding grows with the order
@@ -27,7 +27,7 @@ CAVITY_ORDER = 2  # Orders of series of films that re-form, whose nodes pass thr
 SAMPLES = 12  # Places of a sampled function: a few more than orders, so that what it has beyond them does not count as theirs
 COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
 SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence
-INNER_PLACES = (0.25, 0.5, 0.75)  # Parts of an interval where it is checked: laws with kinks may agree by accident at one
+INNER_PLACES = 3  # Places, evenly apart, where an interval is checked: laws with kinks may agree by accident at one
 
 # Of balls: what two meshes tell of errors, by tests/test_ball_errors.py.
 SMOOTH_SAFETY = 0.5  # Stated error over the difference of two meshes where errors fall exponentially; with less, too small
@@ -35,8 +35,7 @@ NEAR_MINIMUM = 1.3  # Gap over its minimum up to which the difference of two gap
 
 # Limits on work: with more, memory and time; with less, states that miss their tolerance or fail, and say so.
 MAX_REFINEMENTS = 8  # Pairs of meshes tried for a state of a ball, and times that its panels are split
-MAX_STEPS = 80  # Steps of an iteration, Newton's or a fixed point's
-MAX_KRYLOV = 60  # Steps of GMRES for one step of Newton's iteration
+MAX_STEPS = 60  # Steps of an iteration: Newton's, a fixed point's, or those of GMRES for one step of Newton's
 GMRES_RTOL = 3e-2  # Relative error of a step of Newton's iteration that GMRES may leave
 REBUILD_AT = 12  # Steps of GMRES, or nodes that changed sides, above which a film that ends has a new preconditioner
 BAND, MAX_BAND = 4, 16  # Angular modes that the preconditioner couples, and where these do not serve
@@ -53,8 +52,6 @@ FAR_GROWTH = 2.0 * PANEL_GROWTH  # Ratio of the radii of panels far out, where t
 LEGENDRE_DECAY = (PANEL_GROWTH**0.5 + 1.0) / (PANEL_GROWTH**0.5 - 1.0)
 MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 
-CHORD_CONTRACTION = 0.25  # Contraction of steps with kept factors above which new ones are made
-
 # Of the line: states that only start others, and limits on work.
 COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
 COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration towards such a state; smaller ones may be rounding
@@ -64,7 +61,8 @@ EXTRA_NODES = 4  # Nodes that panels gain for the error estimate: with two it se
 DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
 SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two
-MAX_AMPLIFICATION = 40.0  # Sum of absolute weights of a prediction above which it uses fewer states, whose errors it amplifies
+# Sum of absolute weights of a prediction above which it uses fewer states: it would make negligible errors of theirs whole.
+MAX_AMPLIFICATION = 1.0 / NEGLIGIBLE
 
 # Tolerances of the promise.
 FLOOR = 1e-3  # Value below which the error of what crosses zero, the offset or a gap at rest, is not relative to it

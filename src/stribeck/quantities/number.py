@@ -22,7 +22,7 @@ class Number:
     dimension: str = "number"
     sign: str = ""  # Behind the number in reports, where it has no dimension
     factor: float = 1.0  # To the unit of that sign
-    step: float = 0.0  # Of what reports print; zero for all digits that the error allows
+    crosses_zero: bool = False  # Whether reports print zero where the number is smaller than its error
     interval: tuple[float, float] | None = None  # With 95 % probability
     is_bounded: bool = False  # Whether reports print the error as a bound where the number is positive and smaller
 
@@ -36,8 +36,8 @@ class Number:
         if self.interval is not None:
             low, high = self.interval
             known = f"{f'{low:.3g} to' if low else 'at most'} {high:.3g} (95 %)"
-        if self.step:
-            value = round(value / self.step) * self.step + 0.0
+        if self.crosses_zero and abs(value) <= error:
+            value = 0.0
         if self.dimension != "number":
             digits = 3 if math.isnan(error) else figures(error / abs(value) if value else error)
             return format_si(value, self.dimension, digits), known

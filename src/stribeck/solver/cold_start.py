@@ -53,10 +53,8 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding", "next_state"]
 
-MIN_RIGID = 30.0  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
+MIN_RIGID = NEGLIGIBLE**-2  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
-MAX_STEPS_ON_PATH = 15  # Newton steps after which a step of the path is halved: longer iterations mostly fail
-MAX_UNLOADED = 0.5  # Load group above which the path comes down in speed: loading would cross the hand-over to the film
 STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE**2 * MIN_LOG_STEP)
 """Steps along ln of a group or of the suction of a cavity, and in the part of a fluid."""
 
@@ -161,7 +159,7 @@ def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
         mesh = mesh_for(guess, groups, contact_law(groups), COARSE_ORDER, COARSE_RTOL, anew=False)
     except MeshTooLargeError:
         return None
-    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP, MAX_STEPS_ON_PATH)
+    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP)
 
 
 def cold_start(groups: Groups) -> Path[State]:
@@ -175,7 +173,8 @@ def cold_start(groups: Groups) -> Path[State]:
     name = "speed" if groups.speed > 0 else "roughness"
     top = max(0.0, math.log(MIN_RIGID / float(groups.speed if groups.speed > 0 else groups.relative_roughness)))
     kappa = float(groups.relative_roughness)
-    unloads = groups.speed > 0 and groups.load <= MAX_UNLOADED and kappa > 0
+    # Of a heavier load, whose pressure is that of full contact, loading would cross the hand-over to the film.
+    unloads = groups.speed > 0 and groups.load <= 1.0 and kappa > 0
     if unloads:
         top = max(0.0, min(0.5 * top, math.log(MIN_RIGID / kappa)))
 

@@ -21,7 +21,7 @@ from stribeck.equations.point.observables import FrictionWithin
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.numerics.continuation import steady_weights
-from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, SLOPE_RESIDUAL
+from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MAX_STATES, SLOPE_RESIDUAL
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
@@ -38,7 +38,6 @@ from stribeck.solver.solve_error import SolveError
 __all__ = ["Neighbours", "Observed"]
 
 MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
-MAX_STATES = 120  # States that are kept
 
 
 Line = Sequence[tuple[float, Any]]

@@ -39,8 +39,6 @@ MAIN = (
     *("lambda_ratio", "maximum_pressure"),
 )
 
-POSITION_RATIO = 1e-4  # Step of a printed position over the half-width: of a symmetric film only rounding remains
-
 
 def numbers_of(
     solution: Any, boundary_friction: float | None = None, beta: float | None = None, with_fields: bool = True
@@ -136,16 +134,16 @@ def _observables(solution: Any) -> Iterator[Number]:
         sign = HERTZ_SIGNS.get(row.scale, "")
         meaning = row.meaning + UNIT_SUFFIXES[row.scale]
         label = "" if row.name.endswith(("_estimate", "_error")) else row.label
-        step = POSITION_RATIO if row.scale == "width" else 0.0
+        is_position = row.scale == "width"
         if row.name == "minimum_angle":
             yield Number(row.name, label, meaning, value, error, sign="°", factor=180 / math.pi)
             continue
         is_share = row.error == "absolute"
-        yield Number(row.name, label, meaning, value, error, sign=sign, step=step, is_bounded=is_share)
+        yield Number(row.name, label, meaning, value, error, sign=sign, crosses_zero=is_position, is_bounded=is_share)
         if row.film and factors:
             scale, unit, dimension = factors[row.scale], UNITS[row.scale], DIMENSIONS_OF_SCALES[row.scale]
             in_si = value * scale, error * scale, unit, dimension
-            yield Number(row.film, label, row.meaning, *in_si, step=step * scale)
+            yield Number(row.film, label, row.meaning, *in_si, crosses_zero=is_position)
 
 
 def _error(solution: Any, row: Observable) -> float:

@@ -32,7 +32,6 @@ from stribeck.numerics.settings import (
     GMRES_RTOL,
     HALF_DIGITS,
     MAX_BAND,
-    MAX_KRYLOV,
     MAX_STEPS,
     NEGLIGIBLE,
     REBUILD_AT,
@@ -95,7 +94,7 @@ def iterate_cavitated(
                 kept = Capacitance(BandedModes(linear, band), equations.operators.mesh, y.gap.shape)
                 factorisations += 1
             wanted = linear_rtol(size, tolerance) if same else GMRES_RTOL
-            solved = gmres(linear.product, kept.of(linear), right, wanted, MAX_KRYLOV)
+            solved = gmres(linear.product, kept.of(linear), right, wanted, MAX_STEPS)
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)

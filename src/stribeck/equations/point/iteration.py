@@ -26,7 +26,6 @@ from stribeck.numerics.settings import (
     GMRES_RTOL,
     HALF_DIGITS,
     MAX_BAND,
-    MAX_KRYLOV,
     MAX_STEPS,
     NEGLIGIBLE,
     SAFETY,
@@ -125,7 +124,7 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Ar
     law, h = linear.equations.law, linear.y.gap
     x, rest, steps, tolerance = np.zeros_like(right), right, 0, wanted
     while True:
-        solved = gmres(linear.product, preconditioner, rest, tolerance, MAX_KRYLOV - steps)
+        solved = gmres(linear.product, preconditioner, rest, tolerance, MAX_STEPS - steps)
         x, steps = x + solved.x, steps + solved.steps
         rest = right - linear.product(x)
         correction = preconditioner(rest)
@@ -133,7 +132,7 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Ar
         missed, size = step_size(law, h, linear.changes(correction).gap), step_size(law, h, step.gap)
         if not math.isfinite(missed + size):
             return _Step(x, step, steps, math.inf, False)
-        if missed <= wanted * size or steps >= MAX_KRYLOV:
+        if missed <= wanted * size or steps >= MAX_STEPS:
             # The correction is accurate to the contraction of GMRES, which is far below one.
             x = x + correction
             accepted = missed <= max(wanted, NEGLIGIBLE) * size

@@ -13,7 +13,7 @@ from stribeck.equations.line import Operators
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
-from stribeck.numerics.settings import MAX_BYTES, MAX_STEPS, NEGLIGIBLE, SHARE, STEP_GROWTH
+from stribeck.numerics.settings import MAX_BYTES, NEGLIGIBLE, SHARE, STEP_GROWTH
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
@@ -76,8 +76,7 @@ class Corrector:
                 self.operators,
                 guess,
                 newton_tolerance(self.rtol, self.own_inverse),
-                MAX_STEPS,
-                self.inverse,
+                kept=self.inverse,
             )
             if state.outcome.ok:
                 if self._is_resolved(state, spread):

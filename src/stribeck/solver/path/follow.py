@@ -13,7 +13,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.settings import HALF_DIGITS, MAX_LOG_STEP, MAX_PATH_STATES, MIN_LOG_STEP, STEP_GROWTH
+from stribeck.numerics.settings import HALF_DIGITS, MAX_LOG_STEP, MAX_STATES, MIN_LOG_STEP, STEP_GROWTH
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
@@ -118,7 +118,7 @@ def follow(
             path = path.with_state(here)
         upwards = end > here.coordinate
         while (left := abs(end - here.coordinate)) > 0 and not (until is not None and until(path)):
-            if len(path.expansions) >= MAX_PATH_STATES:
+            if len(path.expansions) >= MAX_STATES:
                 outcome = Outcome.STATE_LIMIT
                 break
             step = min(left, MAX_LOG_STEP, max(MIN_LOG_STEP, path.step_length(upwards, rtol)))
@@ -155,7 +155,7 @@ def _next_coordinate(here: Any, end: float, step: float, upwards: bool) -> float
 
 def _halve_intervals(path: Path, rtol: float, is_whole: bool, upwards: bool, refused: set[float]) -> Path:
     """Return a path whose poor intervals are halved, but those whose middle was ``refused`` by the solver."""
-    while len(path.expansions) < MAX_PATH_STATES:
+    while len(path.expansions) < MAX_STATES:
         states = path.expansions
         ends = [(states[k], states[k + 1]) for k in path.intervals_to_halve(rtol, is_whole)]
         middles = {0.5 * (left.coordinate + right.coordinate): (left, right) for left, right in ends}

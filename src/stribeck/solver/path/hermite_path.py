@@ -118,7 +118,7 @@ class HermitePath(Path):
         That is the error of the polynomial through two states less, as the whole one shows it.
         """
         left, right = self.coordinates[k : k + 2]
-        parts = np.array(INNER_PLACES)
+        parts = np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
         s = left + parts * (right - left)
         best = self._through(*self._window(k, WINDOW), s)
         if len(self.knots) > 2:

@@ -140,7 +140,7 @@ class Interval:
             self._alone.read(found, where, places, basis)
             return found
 
-        places = np.array(INNER_PLACES)
+        places = np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
         return self.problem.checked_error(self.left, self.right, places, values)
 
     @cached_property

@@ -25,7 +25,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
-from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_BAND, MAX_KRYLOV, NEGLIGIBLE
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_BAND, MAX_STEPS, NEGLIGIBLE
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.state import PointState
@@ -118,7 +118,7 @@ def _solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: floa
     x, rest, left = np.zeros_like(right), right, 1.0
     while True:
         here = max(LOG_STEP, tolerance / left)  # the preconditioner is in single precision: the next round removes its error
-        found = gmres(linear.product, preconditioner, rest, here, MAX_KRYLOV)
+        found = gmres(linear.product, preconditioner, rest, here, MAX_STEPS)
         if not found.left <= here / NEGLIGIBLE:
             return None
         x, left = x + found.x, left * here
