@@ -219,3 +219,123 @@ def test_a_shape_that_contradicts_itself_is_refused():
         sb.solve(groups(1e-3), profile=Wrong())
     with pytest.raises(sb.InputError, match="give one of sb.profiles"):
         sb.solve(groups(1e-3), profile=object())
+
+
+CONTACT = {
+    "modulus": "2.1 MPa",
+    "load": "50 N/m",
+    "viscosity": "10 mPa*s",
+    "speed": "50 mm/s",
+    "roughness": "1 um",
+    "alpha": 2.0,
+    "beta": 0.05,
+    "boundary_friction": 0.8,
+}
+
+
+def test_the_cylinder_as_a_profile_is_the_radius_to_the_bit():
+    by_radius = sb.LineContact(radius="10 mm", **CONTACT)
+    by_profile = sb.LineContact(profile=sb.profiles.Cylinder("10 mm"), **CONTACT)
+    assert by_profile.groups == by_radius.groups
+    assert by_profile.radius == by_radius.radius
+    assert sb.solve(by_profile).friction() == sb.solve(by_radius).friction()
+
+
+def test_a_contact_with_a_profile_has_the_scales_of_its_dry_contact():
+    land = sb.profiles.Land("0.4 mm", "1 mm")
+    contact = sb.LineContact(profile=land, **CONTACT)
+    dry = sb.profiles.dry_contact(land, contact.load, contact.modulus)
+    assert contact.hertz.half_width == pytest.approx(dry.half_width, rel=1e-12)
+    assert contact.hertz.indentation == pytest.approx(4 * contact.load / (np.pi * contact.modulus), rel=1e-12)
+    assert contact.cavitation == "exit"
+    assert contact.replace(cavitation="none").cavitation == "none"
+    assert "radius=" not in repr(contact).replace("edge_radius=", "")
+    heavier = contact.replace(load="100 N/m")
+    assert heavier.hertz.half_width > contact.hertz.half_width
+    assert contact.replace(land_width="0.2 mm").hertz.half_width < contact.hertz.half_width
+    assert eval(repr(contact), {"LineContact": sb.LineContact, "Land": sb.profiles.Land}) == contact
+
+
+def test_a_contact_takes_a_radius_or_a_profile_and_a_ball_takes_none():
+    land = sb.profiles.Land("0.4 mm", "1 mm")
+    with pytest.raises(sb.InputError, match="are both given"):
+        sb.LineContact(radius="10 mm", profile=land, **CONTACT)
+    with pytest.raises(sb.InputError, match="a ball is round"):
+        sb.PointContact(radius="10 mm", profile=land, **CONTACT | {"load": "1 N"})
+    with pytest.raises(sb.InputError, match="curve over the load"):
+        sb.stribeck_curve(sb.LineContact(profile=land, **CONTACT), load=("10 N/m", "100 N/m"))
+
+
+def test_dry_contacts_have_the_edges_of_closed_forms_and_tables(subtests):
+    edges = {"cylinder": (sb.profiles.Cylinder(1.0), 2**0.5, 2**0.5), "land": (LAND, 5.566, 5.566), "lip": (LIP, 2.528, 0.430)}
+    for name, (shape, left, right) in edges.items():
+        with subtests.test(name=name):
+            found = sb.profiles.dry_contact(shape, np.pi / 2, 2.0)
+            assert found.centre == pytest.approx(0.0, abs=1e-6)
+            assert found.half_width == pytest.approx(1.0, rel=1e-6)
+            assert (found.left_edge, found.right_edge) == pytest.approx((left, right), rel=2e-4)
+
+
+def test_a_shape_from_its_pressure_has_that_contact():
+    x = np.cos(np.linspace(np.pi, 0, 41))
+    pressure = (1 - x**2) ** 0.5 * (1 + 0.3 * x)
+    pressure[[0, -1]] = 0.0
+    shape = sb.profiles.from_pressure(x, pressure, modulus=2.0)
+    load = np.pi / 2
+    found = sb.profiles.dry_contact(shape, load, 2.0)
+    assert (found.centre, found.half_width) == pytest.approx((0.0, 1.0), abs=1e-6)
+    assert (found.left_edge, found.right_edge) == pytest.approx((0.7 * 2**0.5, 1.3 * 2**0.5), rel=1e-6)
+
+
+def test_a_table_of_a_shape_is_that_shape(tmp_path):
+    x = np.linspace(-2e-3, 2e-3, 401)
+    worn = sb.profiles.Worn("10 mm", "2 um")
+    (tmp_path / "worn.csv").write_text(
+        "x [mm], z [um]\n" + "\n".join(f"{1e3 * a:.17g}, {1e6 * b:.17g}" for a, b in zip(x, worn.gap(x), strict=True))
+    )
+    table = sb.profiles.Table(str(tmp_path / "worn.csv"))
+    by_table, by_formula = (sb.solve(sb.LineContact(profile=shape, **CONTACT), rtol=1e-5) for shape in (table, worn))
+    assert float(by_table.friction()) == pytest.approx(float(by_formula.friction()), rel=1e-4)
+    with pytest.raises(sb.InputError, match="ascending"):
+        sb.profiles.Table(x[::-1], x)
+
+
+def test_slow_smooth_films_follow_the_edge_of_the_dry_pressure(subtests):
+    """The film of a smooth soft body by its inlet: 0.4458 lambda^(3/5) (k^2/2)^(-2/5), which lands and cylinders share."""
+    for shape in (None, of_unit_width(lambda c: Land(0.5, c), [2.0]), LAND):
+        with subtests.test(shape=shape):
+            known = sb.profiles.dry_contact(sb.profiles.Cylinder(1.0) if shape is None else shape, np.pi / 2, 2.0)
+            films = [
+                sb.solve(sb.Groups(speed, 1e-4, 1e-8), profile=shape, cavitation="none", rtol=1e-4).flux_gap
+                / (0.4458 * speed**0.6 * (known.left_edge**2 / 2) ** -0.4)
+                for speed in (3e-3, 3e-4)
+            ]
+            assert abs(films[1] - 1) < abs(films[0] - 1)
+            assert films[1] == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_case_names_a_shape(tmp_path):
+    lines = "\n".join(f"{name} = {value!r}".replace("'", '"') for name, value in CONTACT.items())
+    case = tmp_path / "lip.toml"
+    lip = 'shape = "lip"\nangle_oil = "15 deg"\nangle_air = "8 deg"\ntip_radius = "0.5 mm"\n'
+    case.write_text(f"[contact]\n{lines}\n[profile]\n{lip}reversed = true\n")
+    contact = sb.load_case(case).contact
+    assert contact.profile == sb.profiles.Lip("15 deg", "8 deg", "0.5 mm", reversed=True)
+    assert contact.cavitation == "exit"
+    for text, sentence in (
+        (f"[contact]\nradius = 0.01\n{lines}\n[profile]\n{lip}", "are both given"),
+        (f'[contact]\n{lines}\n[profile]\nshape = "wedge"\n', "shape = 'wedge'"),
+        (f'[contact]\n{lines}\n[profile]\nshape = "grooved"\n', "base_radius is missing"),
+        (f"[contact]\n{lines}\n[profile]\ntip_radius = 1e-3\n", "shape is missing"),
+    ):
+        case.write_text(text)
+        with pytest.raises(sb.InputError, match=sentence):
+            sb.load_case(case)
+
+
+def test_the_check_of_a_shape_says_how_steep_it_is_and_why_the_film_ends():
+    contact = sb.LineContact(profile=sb.profiles.Lip("15 deg", "8 deg", "0.5 mm"), **CONTACT)
+    found = {each.name: each for each in sb.check(contact.replace(law="exponential"))}
+    assert found["shape"].value == pytest.approx(0.202, abs=2e-3)
+    assert "ends at the exit" in found["shape"].sentence
+    assert "contact width a/R" not in found

@@ -220,7 +220,7 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
         stribeck.__getattr__("stribek_curve")
 
 
-NAMESPACES = [stribeck, stribeck.contact_laws, stribeck.fluids, stribeck.results, stribeck.solids]
+NAMESPACES = [stribeck, stribeck.contact_laws, stribeck.fluids, stribeck.profiles, stribeck.results, stribeck.solids]
 
 
 def test_the_stub_of_a_package_has_its_names(subtests):

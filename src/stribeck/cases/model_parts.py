@@ -1,4 +1,4 @@
-"""The tables ``[fluid]``, ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` of a case file.
+"""The tables ``[fluid]``, ``[cavitation]``, ``[flow_factors]``, ``[solid]`` and ``[profile]`` of a case file.
 
 Each becomes one or two arguments of the contact; what a number may be is checked by the law that it goes into.
 """
@@ -196,6 +196,16 @@ def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str
     return {"solid": base["base"]}
 
 
+def _profile(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
+    """Return the shape of a table."""
+    kind = KINDS["profile"]
+    name = one_of(*kind.laws)("shape", table["shape"])
+    given = {key: value for key, value in table.items() if key != "shape"}
+    if folder is not None and isinstance(given.get("x"), str):  # the name of a file
+        given["x"] = str(folder / given["x"])
+    return {"profile": made_of(kind.laws[name], f"shape = {name!r}", given)}
+
+
 PART_TABLES = {
     "fluid": PartTable((*_keys(*FLUID_KINDS.values()), *SOURCES_OF_VISCOSITY, *CONDITIONS), _fluid),
     "cavitation": PartTable(
@@ -209,4 +219,9 @@ PART_TABLES = {
         f"add model = {' or '.join(map(json.dumps, KINDS['flow_factors'].laws))}",
     ),
     "solid": PartTable(_keys(KINDS["solid"]), _solid),
+    "profile": PartTable(
+        _keys(KINDS["profile"]),
+        _profile,
+        f"add shape = {' or '.join(map(json.dumps, KINDS['profile'].laws))}",
+    ),
 }

@@ -66,11 +66,12 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
     table, parts, wrong = take_parts(table, path.parent)
+    elsewhere = ("radius",) if parts.get("profile", tables.get("profile")) is not None else ()
     problems += wrong
     fit = FitSettings(geometry=geometry)
     with noted(problems):
         fit = check_fit_table(table.pop("fit", {}), geometry)
-    found = _read_contact(table, problems, inputs)
+    found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)
     facts: dict[str, float] = {}
     with noted(problems, "check"):
@@ -172,13 +173,13 @@ def _split_errors(table: dict[str, Any], problems: list[str]) -> dict[str, float
     return errors
 
 
-def _read_contact(table: dict[str, Any], problems: list[str], inputs: InputTable) -> ReadInputs:
+def _read_contact(table: dict[str, Any], problems: list[str], inputs: InputTable, elsewhere: tuple[str, ...]) -> ReadInputs:
     """Put the inputs that a contact keeps in the place of those that are given, and return what is known of them."""
     contact, surface = table.get("contact"), table.get("surface")
     if not isinstance(contact, dict):
         return ReadInputs()
     given = {name: value for name, value in contact.items() if name in inputs.quantities}
-    found = read_inputs(given, inputs, _given_by_surface(table), has_errors=True)
+    found = read_inputs(given, inputs, (*_given_by_surface(table), *elsewhere), has_errors=True)
     problems += [f"[contact] {problem}" for problem in found.problems]
     with noted(problems, "contact"):
         check_motion(given, inputs)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from stribeck.checks.check import MIN_STATED_CHANGE, Check, Verdict, check_against_limits, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contacts.geometries import POINT
@@ -17,6 +19,8 @@ from stribeck.contacts.notes import (
     pressure_notes,
     width_notes,
 )
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.profiles.dry import dry_contact
 from stribeck.quantities.formats import format_percent, format_si
 
 STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
@@ -28,6 +32,8 @@ WIDTH_RATIO_OUTSIDE = 0.5  # Half-width over the radius beyond which a parabola 
 
 # Load that a circle bears beyond the parabola at the same width, over (a/R)^2: see :func:`width`
 EXCESS_LOAD_OF_CIRCLE = {"line": 3 / 8, "point": 2 / 5}
+
+SLOPES_CHECKED = 257  # Places in the contact at which the slope of a profile is looked at
 
 LAYER_RATIO_FINE = 0.3  # Half-width over thickness up to which a layer acts as a half-space within about a tenth
 LAYER_RATIO_OUTSIDE = 1.0  # Half-width over thickness beyond which a layer is no half-space
@@ -182,7 +188,7 @@ def stiffness(subject: Subject) -> Check:
     return Check("stiffness", E, MODULUS_FINE_PA, verdict, sentence, "Pa")
 
 
-def width(subject: Subject) -> Check:
+def width(subject: Subject) -> Check | None:
     r"""Return the check of the half-width over the radius, with what the parabola costs.
 
     .. math:: f = \frac{x^2}{2 R} + \frac{x^4}{8 R^3} + \dots, \qquad
@@ -192,6 +198,8 @@ def width(subject: Subject) -> Check:
     for a cylinder, and 1 + (2/5) (a/R)^2 by the same integral of Sneddon for a ball.  Source: derived for docs/checks.md.
     """
     contact = subject.contact
+    if contact.profile is not None:  # see :func:`shape`
+        return None
     slope = contact.slope
     verdict = verdict_of(slope, MAX_CONTACT_SLOPE, WIDTH_RATIO_OUTSIDE)
     error = EXCESS_LOAD_OF_CIRCLE[contact.groups.geometry] * slope**2
@@ -204,6 +212,31 @@ def width(subject: Subject) -> Check:
     return Check(
         "contact width a/R", slope, MAX_CONTACT_SLOPE, verdict, sentence, error=error, notable=error >= MIN_STATED_CHANGE
     )
+
+
+def shape(subject: Subject) -> Check | None:
+    """Return the check of a profile: its steepest slope in the dry contact, and the end of its film; None of a cylinder."""
+    contact, profile = subject.contact, subject.contact.profile
+    if profile is None:
+        return None
+    dry = dry_contact(profile, contact.load, contact.modulus)
+    turned = -1.0 if getattr(profile, "reversed", False) else 1.0
+    x = turned * (dry.centre + dry.half_width * np.linspace(-1, 1, SLOPES_CHECKED))
+    steepest = float(np.abs(profile.slope(x)).max())
+    verdict = verdict_of(steepest, MAX_CONTACT_SLOPE, WIDTH_RATIO_OUTSIDE)
+    about = (
+        f"The steepest slope of the profile in its dry contact, {format_si(2 * dry.half_width, 'length')} wide, is "
+        f"{steepest:.2g}; the half-space is accurate up to about 0.1 and coarse at {MAX_CONTACT_SLOPE}. "
+    )
+    if contact.cavitation is Cavitation.NONE:
+        verdict = "doubtful" if verdict == "fine" else verdict
+        end = "The film does not end: its suction behind the edge adds to the load on asperities; take cavitation = 'exit'."
+    else:
+        end = (
+            "The film ends at the exit, by default of a profile: a full film would suck behind the edge and load asperities "
+            "by more than the whole load. Where it breaks inside the contact too, that is not modelled."
+        )
+    return Check("shape", steepest, MAX_CONTACT_SLOPE, verdict, about + end)
 
 
 LAYER_ADVICE = " Give layer_thickness in [solid]: the layer is then solved."

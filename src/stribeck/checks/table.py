@@ -41,6 +41,7 @@ ROWS = (
     Row("Hertz pressure", body.pressure, "contact"),
     Row("stiffness", body.stiffness, "contact"),
     Row("contact width", body.width, "contact"),
+    Row("shape", body.shape, "contact"),
     Row("adhesion", body.adhesion, "contact", "work_of_adhesion"),
     Row("pores", body.pores, "contact", "diffusivity"),
     Row("layer", body.layer, "contact", "layer_thickness"),

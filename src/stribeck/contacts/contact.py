@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -34,6 +35,7 @@ from stribeck.contacts.parts import (
 from stribeck.files.results import Record
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
+from stribeck.profiles.dry import DryContact, dry_contact
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
@@ -180,14 +182,30 @@ class Contact(Parts):
                 f"to the contact as {row.table}."
             )
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
-        values = read_inputs({name: each for name, each in inputs.items() if name not in parts}, self.INPUTS).checked()
+        given = {name: each for name, each in inputs.items() if name not in parts}
+        shape = parts.get("profile")
+        values = read_inputs(given, self.INPUTS, elsewhere=() if shape is None else ("radius",)).checked()
         super().__init__(**parts)
+        if self.profile is not None:
+            values = values | {"radius": self._radius_of_profile(values)}
         for name in self.INPUTS.names:
             object.__setattr__(self, name, values.get(name))
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
         _ = self.groups.model
+
+    def _radius_of_profile(self, values: Mapping[str, float]) -> float:
+        """Return the radius of the cylinder with the same dry width under this load."""
+        if self.scaling().dimensions != 1:
+            raise InputError(f"profile = {show(self.profile)}: profiles are those of a line contact; a ball is round.")
+        if "radius" in values:
+            raise InputError(
+                f"radius = {show(values['radius'])} and profile = {show(self.profile)} are both given; give one of them: a "
+                "profile is the whole shape of the body."
+            )
+        own, load, modulus = getattr(self.profile, "radius_of_contact", None), values["load"], values["modulus"]
+        return own if own is not None else math.pi * modulus * _dry(self.profile, load, modulus).half_width ** 2 / (4 * load)
 
     @classmethod
     def of_kept(cls, inputs: Mapping[str, Any], law: str | AsperityLaw | None) -> Self:
@@ -256,7 +274,8 @@ class Contact(Parts):
         if not self.own_parts:
             return self._base_groups
         # Made anew each time: a fluid holds what is computed of it.
-        return replace(self._base_groups, model=self.model_in(self.film_units, self.hertz.half_width, self.speed))
+        origin = 0.0 if self.profile is None else _dry(self.profile, self.load, self.modulus).centre
+        return replace(self._base_groups, model=self.model_in(self.film_units, self.hertz.half_width, self.speed, origin))
 
     def __copy__(self) -> Self:
         """Return a copy that keeps no groups: who makes it sets other inputs."""
@@ -308,7 +327,9 @@ class Contact(Parts):
 
     def inputs(self) -> Iterator[tuple[str, float]]:
         """Return name and SI value of each input that the contact has, in the order in which outputs name them."""
-        pairs = ((name, getattr(self, name)) for name in self.INPUTS.names)
+        # Under a profile the radius is none.
+        derived = ("radius",) if self.profile is not None else ()
+        pairs = ((name, getattr(self, name)) for name in self.INPUTS.names if name not in derived)
         return ((name, value) for name, value in pairs if value is not None)
 
     def to_si(self) -> dict[str, float]:
@@ -323,7 +344,8 @@ class Contact(Parts):
 
     def __repr__(self) -> str:
         """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
-        shown = {name: getattr(self, name) for name in (*self.INPUTS.names, "law")} | self.own_parts
+        derived = ("radius",) if self.profile is not None else ()
+        shown = {name: getattr(self, name) for name in (*self.INPUTS.names, "law") if name not in derived} | self.own_parts
         shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
@@ -367,6 +389,10 @@ class Contact(Parts):
             changes |= parts.part_values()
         kept = {field.name: getattr(self, field.name) for field in fields(self)}
         changed = set(changes)
+        if self.profile is not None or changes.get("profile") is not None:  # from which the radius follows
+            changed.add("radius")
+        if "profile" in changes:  # a film ends by default as suits the shape
+            changed.add("cavitation")
         for form in self.INPUTS.forms:  # what is changed in another form is not kept beside it
             if not changed.isdisjoint(form.names):
                 changed.add(form.of)
@@ -400,6 +426,11 @@ class Contact(Parts):
             )
 
 
+@lru_cache(maxsize=256)  # a contact asks each time its groups are made
+def _dry(profile: Any, load: float, modulus: float) -> DryContact:
+    return dry_contact(profile, load, modulus)
+
+
 # What docstrings say of the arguments of all contacts that are no numbers.
 OTHER_ARGUMENTS = {
     "law": r"""str or AsperityLaw, optional
@@ -414,7 +445,8 @@ OTHER_ARGUMENTS = {
     "solid": """solid of sb.solids, optional
     The soft body; a half-space without it.""",
     "profile": """profile of sb.profiles, optional
-    The shape of the rigid body; a cylinder without it.""",
+    The shape of the rigid body in the place of ``radius``, of a line contact alone; its film ends at the exit, unless
+    ``cavitation`` says otherwise.""",
     **{name: f"str or float, optional\n    {row.description}" for name, row in numbers_of(Parts).items()},
 }
 

@@ -15,6 +15,7 @@ from stribeck.quantities.formats import format_percent, format_si
 # Beginnings of notes, by which outputs order them and checks find them
 HARD_PREFIX = "Hard elastohydrodynamics:"
 FLUID_PREFIX = "The fluid leaves the range of its laws:"
+POCKET_PREFIX = "Inside the contact the fluid pressure falls"
 SUCTION_PREFIX = "Behind the contact the fluid pressure falls"
 THICK_PREFIX = "The film is"
 WETTED_PREFIX = "The liquid ends at"
@@ -84,6 +85,11 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
     slope = contact.slope
     if not slope > MAX_CONTACT_SLOPE:
         return ()
+    if contact.profile is not None:
+        return (
+            f"The body is steep: the dry contact is {slope:.2g} of its half-width deep. The half-space is accurate up to "
+            f"about 0.1 and coarse at {MAX_CONTACT_SLOPE}; check modulus, load and profile.",
+        )
     layered = getattr(getattr(contact, "solid", None), "layer_thickness", None) is not None
     advice = "" if layered else " If the soft body is a thin layer on a stiff base, give its layer_thickness in [solid]."
     return (
@@ -178,6 +184,16 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
         f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
         f"{format_percent(load)} of the load and cause {format_percent(friction)} of the friction{supposed}: few asperities "
         "are so high, and a real surface may have fewer than the law assumes.",
+    )
+
+
+def pocket_notes(lowest_pressure: float) -> tuple[str, ...]:
+    """Return the note on suction inside a contact whose film ends behind it."""
+    if not -lowest_pressure > NEGLIGIBLE_SHARE:
+        return ()
+    return (
+        f"{POCKET_PREFIX} {-lowest_pressure:.2g} p_Hz below the ambient, before its exit: a film that breaks there too is not "
+        "modelled, and would leave less load and friction to the asperities.",
     )
 
 

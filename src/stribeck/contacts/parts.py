@@ -18,7 +18,8 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw
 from stribeck.profiles.check_profile import as_profile
-from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed
+from stribeck.profiles.profile import Parabola, Profile, Undeformed, undeformed
+from stribeck.profiles.shape import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, numbers_of
@@ -72,7 +73,7 @@ class Parts:
     def __init__(
         self,
         fluid: Any = None,
-        cavitation: str | Cavitation | None = Cavitation.NONE,
+        cavitation: str | Cavitation | None = None,
         cavity_pressure: str | float | None = 0.0,
         flow_factors: Any = None,
         solid: Solid | None = None,
@@ -81,7 +82,7 @@ class Parts:
     ) -> None:
         values = {
             "fluid": as_fluid(fluid),
-            "cavitation": Cavitation(checked_word("cavitation", "none" if cavitation is None else cavitation, Cavitation)),
+            "cavitation": _cavitation(cavitation, profile),
             "cavity_pressure": cavity_pressure,
             "flow_factors": as_flow_factors(flow_factors),
             "solid": None if solid is None else as_solid("solid", solid),
@@ -111,7 +112,7 @@ class Parts:
         """Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``."""
         return 0.5 * self.slide_to_roll
 
-    def model_in(self, units: FilmUnits, length: float = 1.0, speed: float | None = None) -> Model:
+    def model_in(self, units: FilmUnits, length: float = 1.0, speed: float | None = None, origin: float = 0.0) -> Model:
         """Return the model in Hertz units."""
         if not self.own_parts:
             return BASE_MODEL
@@ -129,8 +130,15 @@ class Parts:
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed
         solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, of_substrate)
-        profile: Undeformed = Parabola() if self.profile is None else Departure(self.profile, 0.0, length, units.gap)
+        profile: Undeformed = Parabola() if self.profile is None else undeformed(self.profile, origin, length, units.gap)
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure, profile)
+
+
+def _cavitation(given: Any, profile: Any) -> Cavitation:
+    """Return how the film ends: where that is not given, at the exit of a shape that is no cylinder."""
+    if given is None and profile is not None:
+        return Cavitation(getattr(profile, "cavitation", Cavitation.EXIT))
+    return Cavitation(checked_word("cavitation", Cavitation.NONE if given is None else given, Cavitation))
 
 
 def part_parameters(without: Collection[str]) -> list[inspect.Parameter]:
@@ -170,6 +178,7 @@ KINDS = {
     "density": Kind("fluid", "density", "Density", "incompressible", "stribeck.fluids.rheology", DensityLaw),
     "flow_factors": Kind("flow_factors", "model", "Flow factors", "none", "stribeck.fluids", FlowFactors),
     "solid": Kind("solid", "model", "Soft body", "half-space", "stribeck.solids", Solid),
+    "profile": Kind("profile", "shape", "Shape of the body", "cylinder", "stribeck.profiles", Shape),
 }
 
 

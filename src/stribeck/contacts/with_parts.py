@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -11,7 +12,7 @@ import numpy as np
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
-from stribeck.contacts.parts import PART_KEYWORDS, Parts
+from stribeck.contacts.parts import PART_INPUTS, PART_KEYWORDS, Parts, part_names
 from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.keywords import nearest
 from stribeck.quantities.units import InputError, show
@@ -67,6 +68,23 @@ def admissible_steps(contact: Contact, name: str, step: float, alone: float) -> 
             return 0.0, alone
         return -alone, 0.0
     return -step, step
+
+
+def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
+    """Return the exponents with which inputs enter the groups near a contact, those of a profile by its dry width."""
+    known = contact.INPUTS.exponents
+    if contact.profile is None:
+        return known
+    found = dict(known)
+    for name in ("load", "modulus", *(each for each in part_names(contact) if PART_INPUTS[each].table == "profile")):
+        value = getattr(contact, name)
+        below, above = (contact.replace(**{name: value * math.exp(step)}).radius for step in (-CENTRAL_STEP, CENTRAL_STEP))
+        rate = math.log(above / below) / (2 * CENTRAL_STEP)
+        speed, load, roughness = (
+            own + rate * by_radius for own, by_radius in zip(known.get(name, (0.0, 0.0, 0.0)), known["radius"], strict=True)
+        )
+        found[name] = speed, load, roughness
+    return found
 
 
 def hertz_units(groups: Groups) -> FilmUnits:

@@ -128,6 +128,11 @@ def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tu
     else:
         as_groups(problem)
         base = replace(problem, **fixed)
+    if over == "load" and isinstance(base, Contact) and base.profile is not None:
+        raise InputError(
+            f"a curve over the load with profile = {show(base.profile)}: its contact grows with the load in its own way, and "
+            "no series of the groups follows; take solve_batch over loads, or a curve over the speed."
+        )
     if not ranges:
         return base, over, None
     return base, over, _ends(over, given[over], base.INPUTS if isinstance(base, Contact) else None)

@@ -13,10 +13,9 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.geometries import LINE
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import part_names
-from stribeck.contacts.with_parts import models_at_both_sides
+from stribeck.contacts.with_parts import exponents_of, models_at_both_sides
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
@@ -52,8 +51,8 @@ def friction_sensitivities(
     definition = check_definition(definition)
     solution, by_groups, through, direct = SENSITIVITIES[contact.groups.geometry](contact, rtol, definition)
     total = float(solution.friction(definition=definition)) or math.nan
-    exponents = {name: contact.INPUTS.exponents[name] for name, _ in contact.inputs()}
-    exponents |= dict.fromkeys(part_names(contact), (0.0, 0.0, 0.0))
+    known = exponents_of(contact)
+    exponents = {name: known.get(name, (0.0, 0.0, 0.0)) for name in (*dict(contact.inputs()), *part_names(contact))}
     return solution, {
         name: (float(by_groups @ np.array(powers)) + through.get(name, 0.0) + direct.get(name, 0.0)) / total
         for name, powers in exponents.items()
@@ -80,7 +79,7 @@ def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Deriv
         point = solved_point(groups, rtol)
         solution, state = finish(point, groups, contact, rtol), point.state
         assert state is not None
-        named = [name for name in LINE.exponents if getattr(contact, name, None)] if groups.model != BASE_MODEL else []
+        named = [name for name, value in contact.inputs() if value and groups.model != BASE_MODEL]
         beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
         changes = {name: each for name, each in beside.items() if each is not None}
         rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)

@@ -28,6 +28,9 @@ MODEL_TEXT = """
 # model = {flow_factors}
 # [solid]
 {bodies}
+# A line contact may have a profile in the place of its radius.
+# [profile]
+{shapes}
 """
 
 OPTIONS_TEXT = """
@@ -137,11 +140,15 @@ def _parts() -> str:
             lines.append(f'# {"" if name == first else "# or "}{kind.key} = "{name}"{with_them}')
     factors = [f'"{name}"' for name, law in KINDS["flow_factors"].laws.items() if law is not None]
     bodies = [law for law in KINDS["solid"].laws.values() if law is not None]
+    shapes = [(name, law) for name, law in KINDS["profile"].laws.items() if law is not None and needed_of(law)]
     return MODEL_TEXT.format(
         presets=", ".join(name for name in PRESETS if name != "water"),
         laws="\n".join(lines),
         flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",
         bodies="\n".join(f"# {'# or ' if law is not bodies[0] else ''}{_needed(law)}   # {law.label}" for law in bodies),
+        shapes="\n".join(
+            f'# {"# or " if k else ""}shape = "{name}"; {_needed(law)}   # {law.label}' for k, (name, law) in enumerate(shapes)
+        ),
     )
 
 

@@ -44,6 +44,10 @@ class Profile(Protocol):
     def slope(self, x: Array) -> Array:
         """Return the derivative of the gap."""
 
+    def __hash__(self) -> int:
+        """Return the same for the same shape: what is computed is kept by it."""
+        return object.__hash__(self)
+
 
 class Undeformed(Protocol):
     """The undeformed gap in Hertz units."""
@@ -75,6 +79,13 @@ class Undeformed(Protocol):
 
     def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
         """Return the integral of the departure's slope times nodal pressure over the panels in x."""
+
+
+def undeformed(shape: Profile, origin: float, length: float, height: float) -> Undeformed:
+    """Return the gap of a shape in Hertz units, seen from an origin: a cylinder is the parabola itself."""
+    own = getattr(shape, "undeformed", None)
+    found: Undeformed = Departure(shape, origin, length, height) if own is None else own(origin, length, height)
+    return found
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,7 @@ DIMENSIONS = {
     "density": Dimension("a density", "kg/m^3", "870 kg/m^3", {0: "kg/m^3"}),
     "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
     "kinematic": Dimension("a kinematic viscosity", "m^2/s", "46 cSt", {-6: "mm^2/s", 0: "m^2/s"}),
+    "angle": Dimension("an angle", "rad", "45 deg", {0: "rad"}),
     "rotation": Dimension("an angular velocity", "rad/s", "1500 rpm", {0: "rad/s"}),
     "torque": Dimension("a torque", "N*m", "2 mN*m", _prefixed("N*m", (-9, -6, -3, 0, 3))),
     "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),

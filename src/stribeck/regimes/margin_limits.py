@@ -9,6 +9,7 @@ from typing import NamedTuple
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.with_parts import exponents_of
 from stribeck.curves.coordinate import Over
 
 # Groups between which is searched, where the solver is tested; the load also no further than the contact law holds.
@@ -72,7 +73,7 @@ def limits(contact: Contact, name: str) -> tuple[float, float]:
     groups = contact.groups
     highest = min(SEARCHES[groups.geometry].largest_group, largest_load(contact.law))
     box = BOX | {"load": (BOX["load"][0], highest)}
-    n_speed, n_load, n_roughness = contact.INPUTS.exponents[name]
+    n_speed, n_load, n_roughness = exponents_of(contact)[name]
     n_roughness -= groups.scaling.roughness_exponent * n_load
     low, high = _possible_factors(contact, name)
     for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness)):

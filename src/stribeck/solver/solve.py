@@ -18,7 +18,7 @@ from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, shape_notes
+from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, pocket_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
@@ -333,6 +333,8 @@ def state_notes(
         solved = state()
         fluid = solved.equations.pressures(solved.y)[1]
         notes += [] if contact is None else cavitation_notes(contact, solved.lowest_pressure)
+        if groups.model.cavitation is Cavitation.EXIT:
+            notes += pocket_notes(solved.lowest_pressure)
         if not solved.equations.operators.is_base_model:
             notes += fluid_notes(solved.equations.film, solved.gap, fluid, solved.flux_gap)
     if math.isnan(values.flux_gap):

@@ -75,7 +75,7 @@ class Choice:
 
 def _of_kind(name: str) -> Choice:
     """Return the list of the laws of a kind; a body with a memory may have the numbers of one without it too."""
-    kind, names = KINDS[name], {"rheology": "fluid", "viscosity": "viscosity_law"}
+    kind, names = KINDS[name], {"rheology": "fluid", "viscosity": "viscosity_law", "profile": "shape"}
     laws = sorted(kind.laws.items(), key=lambda each: hasattr(each[1], "base"))
     shapes = [key for _, law in laws if not hasattr(law, "base") for key in numbers_of(law)]
     options = {}
@@ -138,6 +138,7 @@ CHOICES = {
         ),
         _of_kind("flow_factors"),
         _of_kind("solid"),
+        _of_kind("profile"),
     )
 }
 """The lists, in the order of the page."""
@@ -228,7 +229,8 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         kept |= {choice.key: value}
     if value == choice.first:
         kept.pop(choice.key, None)
-    return _with(now, tables | {choice.where: kept | needed})
+    radius = {} if name != "shape" else {"radius": None if needed else now.contact.radius}  # a shape stands in its place
+    return _with(now, tables | {choice.where: kept | needed}, **radius)
 
 
 def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:
@@ -280,7 +282,7 @@ def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
     return _with(now, tables | {"surface": surface | {"shape_only": True}}, alpha=found["alpha"], beta=found["beta"])
 
 
-def _with(now: Inputs, tables: dict[str, Any], **numbers: float) -> Inputs:
+def _with(now: Inputs, tables: dict[str, Any], **numbers: float | None) -> Inputs:
     """Return the inputs with other tables and numbers, if the equations of their geometry have such a model."""
     found = now.edited(numbers, tables)
     if found.table.geometry == "point":

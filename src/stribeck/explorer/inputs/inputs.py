@@ -229,12 +229,10 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
 
 def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
     """Refuse tables that name files, which did not come with them; ``instead`` is what to do."""
-    for name, source in SOURCES.items():
+    for name, key in (*((name, source.file) for name, source in SOURCES.items()), ("profile", "x")):
         table = tables.get(name)
-        if isinstance(table, dict) and source.file in table:
-            raise InputError(
-                f"[{name}] {source.file} = {show(table[source.file])} is a file that the browser did not send; {instead}."
-            )
+        if isinstance(table, dict) and isinstance(table.get(key), str):
+            raise InputError(f"[{name}] {key} = {show(table[key])} is a file that the browser did not send; {instead}.")
 
 
 def value_of(inputs: Inputs, name: str) -> float:
