@@ -521,7 +521,7 @@ def test_the_axis_of_speeds_says_which_speed_it_is():
 def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
     ball = choices.choose(START, "geometry", "point")
     assert [key for key, _ in choices.list_of(ball, "solid")["options"]] == ["half-space", "layer"]
-    assert [name for name in choices.CHOICES if choices.list_of(ball, name).get("hidden")] == ["motion"]
+    assert [name for name in choices.CHOICES if choices.list_of(ball, name).get("hidden")] == ["motion", "shape"]
     with pytest.raises(sb.InputError, match="soft body must be a half-space or a bonded layer"):
         choices.choose(ball, "solid", "standard-linear-solid")
     with pytest.raises(sb.InputError, match="soft body"):

@@ -57,40 +57,42 @@ class Grooved(Shape):
         source="a few widths of the contact",
         is_free=False,
     )
-    base: Profile | None = None
+    body: Profile | None = None
     reversed: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a base that is no shape, or is given beside a radius."""
-        if (self.base is None) == (self.base_radius is None):
-            raise InputError("grooves are cut into one body: give base_radius, that of a cylinder, or base, another shape.")
-        _ = as_profile(self._body)
+        if (self.body is None) == (self.base_radius is None):
+            raise InputError("grooves are cut into one body: give base_radius, that of a cylinder, or body, another shape.")
+        _ = as_profile(self._under_grooves)
 
     @property
-    def _body(self) -> Profile:
+    def _under_grooves(self) -> Profile:
         """The body in which the grooves are."""
-        return Cylinder(self.base_radius) if self.base is None else self.base
+        return Cylinder(self.base_radius) if self.body is None else self.body
 
     @property
     def parameters(self) -> Mapping[str, float | str]:
         """Those of the body too."""
         own = {name: value for name, value in super().parameters.items() if value is not None}
-        return {**(self.base.parameters if self.base is not None else {}), **own}
+        return {**(self.body.parameters if self.body is not None else {}), **own}
 
     @property
     def places(self) -> tuple[float, ...]:
         """Kinks of the body [m]."""
-        return tuple(self._body.places)
+        return tuple(self._under_grooves.places)
 
     def gap(self, x: Array) -> Array:
         """Return the gap [m]."""
         depth, wave, fading, _ = self._grooves(x)
-        return np.asarray(self._body.gap(x) + depth * (1 - np.cos(wave * x)) * fading)
+        return np.asarray(self._under_grooves.gap(x) + depth * (1 - np.cos(wave * x)) * fading)
 
     def slope(self, x: Array) -> Array:
         """Return its slope."""
         depth, wave, fading, rate = self._grooves(x)
-        return np.asarray(self._body.slope(x) + depth * fading * (wave * np.sin(wave * x) - rate * (1 - np.cos(wave * x))))
+        return np.asarray(
+            self._under_grooves.slope(x) + depth * fading * (wave * np.sin(wave * x) - rate * (1 - np.cos(wave * x)))
+        )
 
     def _grooves(self, x: Array) -> tuple[float, float, Array, Array]:
         """Return half the depth, the wave number, what is left of the grooves, and the rate at which they fade."""

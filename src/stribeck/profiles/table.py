@@ -34,7 +34,7 @@ class Table(Shape):
 
     Parameters
     ----------
-    x : array_like or str
+    x : array_like or str, optional
         Positions along the contact, ascending [m]; or the name of a CSV file with a column of positions and one of heights,
         both with units in their headings.
     z : array_like, optional
@@ -55,11 +55,13 @@ class Table(Shape):
     z: tuple[float, ...]
     reversed: bool = False
 
-    def __init__(self, x: Any, z: Any = None, reversed: bool = False) -> None:
+    def __init__(self, x: Any = None, z: Any = None, reversed: bool = False) -> None:
         if isinstance(x, str | Path):
             if z is not None:
                 raise InputError(f"x = {show(x)} names a file, and z is given too; give one of them.")
             x, z = _columns_of(Path(x))
+        if x is None or z is None:
+            raise InputError("x and z are missing: positions and heights of the shape, or x alone, the name of a CSV file.")
         positions, heights = real_array("x", x), real_array("z", z)
         if positions.ndim != 1 or positions.shape != heights.shape or len(positions) < MIN_POINTS:
             raise InputError(f"a table of a shape needs as many heights as positions, and at least {MIN_POINTS}.")
@@ -98,13 +100,17 @@ class Table(Shape):
 class _OfPressure(Shape):
     """A shape by the series of its dry pressure."""
 
-    name: ClassVar[str] = ""
     label: ClassVar[str] = "shape of a dry pressure"
 
     centre: float
     half_width: float
     slopes: tuple[float, ...]  # Chebyshev coefficients of its slope
     reversed: bool = False
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """The name that outputs print; no name of a law, as no case has its numbers."""
+        return "of a dry pressure"
 
     @property
     def parameters(self) -> Mapping[str, float | str]:

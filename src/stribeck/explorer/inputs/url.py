@@ -131,6 +131,8 @@ def _tables(given: Given, start: Inputs) -> dict[str, Any]:
                 if other not in given:
                     del own[other]
         own[name] = _value(text)
+    if "profile" in tables and isinstance(tables["contact"], dict):  # in the place of the radius
+        tables["contact"] = {key: each for key, each in tables["contact"].items() if key in given or key != "radius"}
     return tables
 
 
