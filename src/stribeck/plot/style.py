@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import inspect
 import textwrap
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from functools import wraps
 from importlib.metadata import version
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
@@ -250,14 +252,17 @@ def caption_lines(figure: Figure, parts: Sequence[Sequence[str]], notes: Sequenc
 
 def _wrap(words: Sequence[str], fits: Callable[[str], bool]) -> list[str]:
     """Return words as lines that fit; a word longer than a line is cut."""
-    lines: list[str] = []
-    for word in words:
-        if lines and fits(f"{lines[-1]} {word}"):
-            lines[-1] += f" {word}"
-            continue
-        while not fits(word):
-            most = max(1, sum(fits(word[:n]) for n in range(1, len(word))))
-            lines.append(word[:most])
-            word = word[most:]
-        lines.append(word)
+    lines, rest = [], list(words)
+    while rest:
+        count = _most([*accumulate(rest, "{} {}".format)], fits)
+        if not count:
+            cut = max(1, _most([*accumulate(rest[0])][:-1], fits))
+            rest[:1], count = filter(None, [rest[0][:cut], rest[0][cut:]]), 1
+        lines.append(" ".join(rest[:count]))
+        rest = rest[count:]
     return lines
+
+
+def _most(growing: Sequence[str], fits: Callable[[str], bool]) -> int:
+    """Return how many of growing texts fit, by bisection: to measure one takes long."""
+    return bisect_left(growing, True, key=lambda text: not fits(text))
