@@ -17,7 +17,7 @@ def _exact(contact, low, high, rows):
     return speeds, sb.stribeck_curve(contact, speed=speeds, rtol=1e-7).friction
 
 
-def exact(contact=TRUE, low=1e-4, high=0.5, rows=25):
+def exact(contact=TRUE, low=1e-4, high=0.5, rows=15):
     """Return speeds and solved friction of a contact."""
     speeds, friction = _exact(contact, low, high, rows)
     return speeds.copy(), friction.copy()

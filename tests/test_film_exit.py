@@ -101,6 +101,7 @@ def test_a_cavity_in_a_contact_of_asperities_is_found():
     assert np.isnan(sb.solve(groups, cavitation="reform", cavity_pressure=-2.0).exit_position)
 
 
+@pytest.mark.slow
 def test_the_exit_of_a_thin_film_is_sought_where_a_free_one_goes_to_and_fro():
     """Steps of an exit by a hundred times the width of the inlet: Newton's iteration took 100 and did not arrive."""
     groups = sb.Groups(3.7224e-9, 2.32711e-8, 2.96201e-14)
@@ -127,6 +128,7 @@ def test_a_rolling_film_whose_gradient_is_a_small_power_of_the_gap_is_solved():
     assert state.flux_gap == pytest.approx(6.6325771484e-4, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_compressible_liquid_forms_anew_behind_a_thin_film_too():
     fluid = sb.fluids.Fluid(viscosity=sb.fluids.Barus(0.4), density=sb.fluids.DowsonHigginson(1.9))
     groups, parts = sb.Groups(1.5e-7, 4e-4, 0.0), {"cavitation": "reform", "cavity_pressure": -1e-3, "fluid": fluid}

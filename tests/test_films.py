@@ -196,12 +196,11 @@ def test_the_dry_smooth_contact_on_a_layer_is_refused():
 
 
 def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
-    groups, speeds = sb.Groups(1e-4, 0.1, 1e-4), np.geomspace(1e-5, 1e-2, 7)
+    groups, speeds = sb.Groups(1e-4, 0.1, 1e-4), np.geomspace(1e-5, 1e-2, 3)
     for keywords in ({"fluid": sb.fluids.Carreau(0.02, 0.5)}, {"cavitation": "exit"}):
         curve = sb.stribeck_curve(groups, speed=speeds, **keywords)
-        for k in (1, 4):
-            single = sb.solve(curve.solutions[k].groups)
-            assert curve.solutions[k].central_gap == pytest.approx(single.central_gap, rel=1e-6)
+        single = sb.solve(curve.solutions[1].groups)
+        assert curve.solutions[1].central_gap == pytest.approx(single.central_gap, rel=1e-6)
 
 
 def test_a_film_that_the_fluid_thins_a_thousand_times_is_found():

@@ -26,7 +26,7 @@ MEASURED, CASE = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
 @pytest.fixture(scope="module")
 def fitted():
     """Return the fit of one noisy curve to friction coefficient, roughness and modulus."""
-    return sb.fit(noisy(7), START, free=["boundary_friction", "roughness", "modulus"])
+    return sb.fit(noisy(7, rows=25), START, free=["boundary_friction", "roughness", "modulus"])
 
 
 @pytest.fixture(scope="module")
@@ -306,7 +306,7 @@ def test_data_of_greenwood_and_tripp_pass_for_their_own(of_asperities):
 
 
 def test_a_plateau_that_falls_with_speed_is_noticed():
-    speeds, friction = exact()
+    speeds, friction = exact(rows=25)
     friction *= (speeds / speeds[0]) ** -0.05 * np.exp(0.03 * np.random.default_rng(11).standard_normal(25))
     found = sb.fit(measured(speeds, friction), TRUE, intervals=False)
     assert found.converged
@@ -315,8 +315,8 @@ def test_a_plateau_that_falls_with_speed_is_noticed():
 
 
 def test_outliers_do_not_steer_the_robust_fit():
-    data = noisy(21, outliers=4)
-    plain, clean = sb.fit(data, NEAR, intervals=False), sb.fit(noisy(21), NEAR, intervals=False)
+    data, right = noisy(21, outliers=4, rows=25), noisy(21, rows=25)
+    plain, clean = sb.fit(data, NEAR, intervals=False), sb.fit(right, NEAR, intervals=False)
     robust = sb.fit(data, NEAR, robust=True)
     assert robust.converged and robust.robust
     for each in robust.inputs:
@@ -327,7 +327,7 @@ def test_outliers_do_not_steer_the_robust_fit():
     assert abs(math.log(plain["roughness"].value / 1e-6)) > 4 * clean["roughness"].standard_error
     assert robust.noise == pytest.approx(clean.noise, rel=0.5)
     [note] = [note for note in robust.notes if "four standard errors" in note]
-    ratios = data.friction / noisy(21).friction
+    ratios = data.friction / right.friction
     assert re.findall(r"\d+", note) == [str(row) for row in data.rows[ratios > 1.5]]
 
 
@@ -433,7 +433,7 @@ def test_the_example_holds_its_true_values(example):
 
 
 def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
-    speeds, friction = exact(low=0.03, high=3.0)
+    speeds, friction = exact(low=0.03, high=3.0, rows=25)
     lines = "\n".join(f"{u};{m}" for u, m in zip(speeds, friction * np.exp(0.03 * np.sin(7 * np.arange(25.0))), strict=True))
     (tmp_path / "lab.csv").write_text("speed [m/s];friction\n" + lines)
     answer = call(

@@ -1,6 +1,6 @@
 """Golden values: states, curves, fits, diagrams, margins and a sweep are within the stated errors of what they were.
 
-``tests/golden/make.py`` made the file; it says when to make it anew.  Here are a twentieth of the rows, and those in which
+``tests/golden/make.py`` made the file; it says when to make it anew.  Here are a fortieth of the rows, and those in which
 two parts of a model, or a part and an outcome or a regime, stand together for the first time; the others, and those that
 take longer, are those of ``make slow``.
 """
@@ -13,7 +13,7 @@ import pytest
 from golden.observed import GROWTH, PARTS, PLACES, faults, observed
 
 ROWS = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
-EVERY = 20
+EVERY = 40
 CHUNKS = 16
 """Parts that run apart from each other; every one holds some of each kind."""
 

@@ -117,7 +117,7 @@ def test_a_curve_of_a_ball_stays_itself_after_pickling_and_fits_a_screen(curve):
     [
         pytest.param({"cavitation": "exit"}, marks=pytest.mark.slow),
         pytest.param({"cavitation": "reform", "cavity_pressure": -0.02}, marks=pytest.mark.slow),
-        {"fluid": sb.fluids.Carreau(1e4, 0.5)},
+        pytest.param({"fluid": sb.fluids.Carreau(1e4, 0.5)}, marks=pytest.mark.slow),
         {"flow_factors": sb.fluids.PatirCheng(1)},
     ],
     ids=lambda each: next(iter(each)),

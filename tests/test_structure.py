@@ -72,6 +72,12 @@ HEAVY = {
 }
 
 
+@functools.cache
+def tree_of(path):
+    """Return the syntax of a file, which several tests walk over."""
+    return ast.parse(path.read_text())
+
+
 def top_of(path):
     """Return the module or subpackage of stribeck that a file belongs to."""
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
@@ -80,7 +86,7 @@ def top_of(path):
 def imported_tops(path):
     """Return the modules or subpackages of stribeck that a file imports, lazily or not."""
     here = ["stribeck", *path.relative_to(PACKAGE).parent.parts]
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(tree_of(path)):
         if isinstance(node, ast.Import):
             targets = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -111,12 +117,7 @@ def test_no_modules_import_one_another_in_a_circle(load_benchmark):
 
 def test_the_package_needs_nothing_beside_it():
     """Evidence for the numbers lies beside the package and uses it, not the other way round."""
-    imports = {
-        node.module or ""
-        for path in FILES
-        for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, ast.ImportFrom)
-    }
+    imports = {node.module or "" for path in FILES for node in ast.walk(tree_of(path)) if isinstance(node, ast.ImportFrom)}
     assert {name.partition(".")[0] for name in imports} & {"evidence", "tests", "benchmarks", "docs"} == set()
     assert {path.name for path in PACKAGE.glob("*.py")} == {"__init__.py", "__main__.py", "_types.py"}
 
@@ -137,7 +138,7 @@ def test_the_walk_over_imports_sees_every_form(tmp_path, monkeypatch):
 def test_a_module_runs_nothing_at_import():
     allowed = (ast.Import, ast.ImportFrom, ast.Assign, ast.AnnAssign, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     for path in FILES:
-        for node in ast.parse(path.read_text()).body:
+        for node in tree_of(path).body:
             where = f"{path.relative_to(PACKAGE)}:{node.lineno}"
             if isinstance(node, ast.If):
                 assert ast.unparse(node.test) in {"TYPE_CHECKING", "__name__ == '__main__'"}, where
@@ -148,7 +149,7 @@ def test_a_module_runs_nothing_at_import():
 
 
 def test_a_module_says_what_it_is_for():
-    assert [path for path in FILES if not ast.get_docstring(ast.parse(path.read_text()))] == []
+    assert [path for path in FILES if not ast.get_docstring(tree_of(path))] == []
 
 
 def test_importing_the_package_is_silent_and_leaves_heavy_libraries_alone():
