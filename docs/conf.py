@@ -38,6 +38,7 @@ CONTENTS = {
     "guide": [
         "cli",
         "data_sheet",
+        "leakage",
         "checks",
         "explorer",
         "surfaces",

@@ -157,16 +157,17 @@ class PressureFilm(ByValue, Told):
     def notes(self) -> tuple[str, ...]:
         """What limits the answer, in sentences."""
         found = []
-        for name, each in zip(Films._fields, self.inlets, strict=False):
+        for side, each in zip(("left", "right"), self.inlets, strict=True):
             if each.law_error > MAX_LAW_ERROR:
                 found.append(
-                    f"The {name} film is out of range: too fast or too viscous for this pressure; its law errs by up to "
-                    f"{format_percent(each.law_error)}."
+                    f"The film from the {side} is out of range, too fast or too viscous for this pressure: its law errs by up "
+                    f"to {format_percent(each.law_error)}."
                 )
             if each.spacing > each.inlet_length and each.law != "interior":
+                near, step = format_si(each.inlet_length, "length", 2), format_si(each.spacing, "length", 2)
                 found.append(
-                    f"The {name} film is made within {format_si(each.inlet_length, 'length', 2)} of the edge, where rows are "
-                    f"{format_si(each.spacing, 'length', 2)} apart: an edge that is rounder or sharper in between is not seen."
+                    f"The film from the {side} is made within {near} of the edge, where rows are {step} apart: an edge that "
+                    "is rounder or sharper in between is not seen."
                 )
         return (*found, "Asperities are left out: where they carry a few per cent of the load, films are up to 10 % thicker.")
 
