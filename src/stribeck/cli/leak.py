@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stribeck._types import Array
 from stribeck.cli.arguments import Quantity
 from stribeck.cli.exits import answer
 from stribeck.quantities.formats import format_percent, format_si
-from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError, checked_word, show, to_si
 
 if TYPE_CHECKING:
-    from stribeck.results import Inlet, PressureFilm
+    from stribeck._types import Array
+    from stribeck.asymptotics.smooth.film_of_pressure import Inlet, PressureFilm
 
 Given = Annotated[float | str, Parameter(allow_leading_hyphen=True)]
 
@@ -80,6 +79,8 @@ def leak_command(
 
 def _lines(found: PressureFilm, net: float, inlets: dict[str, Inlet], swept: float) -> Iterator[str]:
     """Yield whether the seal leaks and how much, the films, and what of the pressure makes them."""
+    from stribeck.quantities.results import table_lines
+
     size, error = format_si(abs(net), "length"), format_si(found.error.net, "length", 2)
     volume = "" if math.isnan(swept) else f", {abs(net) * swept * CUBIC_MM:.3g} ± {found.error.net * swept * CUBIC_MM:.2g} mm³"
     if abs(net) <= found.error.net:
