@@ -126,9 +126,8 @@ class Coupling:
             deflection = self.deflection[k].astype(np.float32)
             blocks = np.stack([self._of_gap(m, k) for m in reached]).astype(np.float32)[:, :, None] * deflection
             for panel, at in enumerate(mesh.of_panel):
-                acting = local_h[:, panel].reshape(-1, n) @ deflection[at]
-                blocks[:, at] += acting.reshape(-1, n, rings)
                 own = slice(at[0], at[-1] + 1)
+                blocks[:, own] += (local_h[:, panel].reshape(-1, n) @ deflection[own]).reshape(-1, n, rings)
                 blocks[:, own, own] += local_p[:, panel]
             orders = 0.5 * k * np.array(reached)[:, None]
             blocks[:, diagonal, diagonal] += orders * (self.ring_p[d] - self.ring_p[s])

@@ -135,7 +135,7 @@ class BallKnots:
             def moved(step: float) -> Groups:
                 return self.groups_at(s + step)
 
-            [change] = changes_along(state, {"along": moved}, HALF_DIGITS).values()
+            [change] = changes_along(state, {"along": moved}, max(HALF_DIGITS, NEGLIGIBLE**2 * self.rtol)).values()
             slopes = measured_change(state, moved, change, measure)
         else:
             values = dict(state.values)
@@ -158,7 +158,7 @@ class BallKnots:
 
     def _solved(self, s: float, near: Sequence[BallKnot]) -> PointState:
         """Return the state at a coordinate, from the polynomial through neighbours and their slopes."""
-        groups, rtol = self.groups_at(s), SHARE * self.rtol
+        groups, rtol = self.groups_at(s), self.rtol
         if not near:
             return solve_cold(groups, rtol)
         if any(knot.change is None for knot in near):

@@ -57,8 +57,7 @@ __all__ = ["follow", "holds", "is_cavitated", "refine"]
 
 def holds(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state hold a tolerance, and that of its minimum film a multiple of it."""
-    rtol = max(rtol, pair.fine.equations.finest)
-    return pair.total <= rtol and pair.minimum <= MINIMUM_RTOL_FACTOR * rtol
+    return excess_of(pair, max(rtol, pair.fine.equations.finest)) <= 1.0
 
 
 def is_cavitated(pair: Pair) -> bool:
@@ -183,23 +182,38 @@ def improved_panels(level: Level) -> Resolution:
 def next_mesh(pair: Pair, rtol: float) -> tuple[Resolution, Level | None]:
     """Return the next finer mesh within the limits, and the state on its coarser companion if that is solved already."""
     now = pair.fine.resolution
-    needs_radii, needs_angles = True, True
-    if now.is_full:
-        # On a mesh that is finer in one direction alone the errors of the other one are left.
-        radial, angular = gap_tails(pair.fine)
-        excess = max(pair.total, pair.minimum / MINIMUM_RTOL_FACTOR) / rtol
-        needs_radii, needs_angles = excess * radial > SHARE * angular, excess * angular > SHARE * radial
+    needs_radii, needs_angles = needed_directions(pair, rtol)
     wanted = improved_panels(pair.fine) if needs_radii else now
     if wanted != now:
         return wanted, None
-    finer = now.finer()
-    if now.is_full:
-        degree = max(now.degree, min(finer.degree, MAX_DEGREE)) if needs_radii else now.degree
-        finer = replace(finer, degree=degree, modes=finer.modes if needs_angles else now.modes)
-    limited = limit_modes(finer)
+    limited = limit_modes(finer_in(now, needs_radii, needs_angles))
     if limited.modes < now.modes:
         return now, None
     return limited, pair.fine if now.is_full and limited == now.finer() else None
+
+
+def needed_directions(pair: Pair, rtol: float) -> tuple[bool, bool]:
+    """Return whether a finer mesh needs more nodes along radii, and more angles."""
+    if not pair.fine.resolution.is_full:
+        return True, True
+    # On a mesh that is finer in one direction alone the errors of the other one are left.
+    radial, angular = gap_tails(pair.fine)
+    excess = excess_of(pair, rtol)
+    return excess * radial > SHARE * angular, excess * angular > SHARE * radial
+
+
+def excess_of(pair: Pair, rtol: float) -> float:
+    """Return the error of a state over what its tolerance allows."""
+    return max(pair.total, pair.minimum / MINIMUM_RTOL_FACTOR) / rtol
+
+
+def finer_in(now: Resolution, radii: bool, angles: bool) -> Resolution:
+    """Return a mesh that is finer along radii, in angles, or both."""
+    finer = now.finer()
+    if not now.is_full:
+        return finer
+    degree = max(now.degree, min(finer.degree, MAX_DEGREE)) if radii else now.degree
+    return replace(finer, degree=degree, modes=finer.modes if angles else now.modes)
 
 
 def gap_tails(level: Level) -> tuple[float, float]:
@@ -255,15 +269,13 @@ def follow(
     # From a guess that needs much shorter steps a film is not found sooner than from cold, if at all.
     least_part = NEGLIGIBLE if now.is_full else HALF_DIGITS
     if wanted != now:
-        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance / NEGLIGIBLE, least_part=least_part)
+        coarse = solve_level(wanted.coarser(), speed, law, start, mesh, tolerance, least_part=least_part)
         if not coarse.outcome.ok:
             return None
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
     guess = old.unknowns if prediction is None else on_other_mesh(prediction, neighbour.fine, old)
-    # What the iteration leaves on the coarser mesh counts as an error of that mesh.
-    loose = tolerance / NEGLIGIBLE
-    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, loose, old.iterated.preconditioner, least_part)
+    coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, least_part)
     if not coarse.outcome.ok:
         return None
     if prediction is None or now.is_full:
@@ -294,14 +306,20 @@ def mesh_for_neighbour(speed: float, law: ContactLaw, neighbour: Pair, rtol: flo
         allowed = min(1.0, MINIMUM_RTOL_FACTOR * rtol)
         is_waste = neighbour.total < rtol**MODES_RATIO and neighbour.minimum < allowed**MODES_RATIO
     leaner = now.leaner()
-    degree, modes = min(now.degree, max(leaner.degree, LEAST_DEGREE + breaks)), min(now.modes, max(leaner.modes, LEAST_MODES))
-    wanted = replace(now, degree=degree, modes=modes) if is_waste else now
-    if not breaks and not is_waste:
+    fewer_radii = fewer_angles = is_waste
+    excess = excess_of(neighbour, rtol)
+    if now.is_full and excess <= SHARE:  # or one direction is resolved far better than the other
         radial, angular = gap_tails(neighbour.coarse)
-        if angular < radial**MODES_RATIO:  # fewer angles would be as good
-            wanted = replace(now, modes=modes)
+        fewer_radii, fewer_angles = is_waste or radial < angular**MODES_RATIO, is_waste or angular < radial**MODES_RATIO
+    wanted = replace(
+        now,
+        degree=min(now.degree, max(leaner.degree, LEAST_DEGREE + breaks)) if fewer_radii else now.degree,
+        modes=min(now.modes, max(leaner.modes, LEAST_MODES)) if fewer_angles else now.modes,
+    )
     if fits(now, speed, law):
         return wanted
+    if now.is_full and excess > SHARE and needed_directions(neighbour, rtol)[1]:
+        wanted = limit_modes(replace(wanted, modes=now.finer().modes))  # as many angles would hardly do there
     found = resolution(speed, law, wanted.degree, wanted.modes, now.model)
     if found.halvings > now.halvings:  # for the next neighbours too, which will be as much thinner
         found = replace(found, halvings=found.halvings + 1)
