@@ -193,9 +193,9 @@ class HermitePath(Path):
         return [k for k in tested if self.excess(k, rtol) > 1.0]
 
     def excess(self, k: int, rtol: float) -> float:
-        """Return the error of interval k over what is allowed: what the errors of its ends leave of the tolerance."""
+        """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""
         between, ends = self.interpolation_error(k), np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
-        return float((between / np.maximum(rtol - ends, SHARE * ends))[self.problem.controlled].max())
+        return float((between / np.maximum(SHARE * rtol, ends))[self.problem.controlled].max())
 
 
 def _shape(parts: Array) -> Array:

@@ -158,7 +158,7 @@ class BallKnots:
 
     def _solved(self, s: float, near: Sequence[BallKnot]) -> PointState:
         """Return the state at a coordinate, from the polynomial through neighbours and their slopes."""
-        groups, rtol = self.groups_at(s), self.rtol
+        groups, rtol = self.groups_at(s), SHARE * self.rtol
         if not near:
             return solve_cold(groups, rtol)
         if any(knot.change is None for knot in near):
