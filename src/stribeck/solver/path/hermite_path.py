@@ -117,6 +117,7 @@ class HermitePath(Path):
 
         That is the error of the polynomial through two states less, as the whole one shows it.
         """
+        # On long intervals the errors of both are alike, so that their difference shows about a half of either.
         left, right = self.coordinates[k : k + 2]
         parts = np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
         s = left + parts * (right - left)
@@ -127,7 +128,7 @@ class HermitePath(Path):
             ends = np.stack([self.knots[k].values, self.knots[k + 1].values])
             less = (ends[:1] + parts[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
         with np.errstate(all="ignore"):
-            found = SAFETY * np.abs(best - less) / self.problem.scales(best, s) / _shape(parts)[:, None]
+            found = SAFETY**2 * np.abs(best - less) / self.problem.scales(best, s) / _shape(parts)[:, None]
         return np.asarray(np.nan_to_num(found, nan=math.inf).max(axis=0))
 
     @cached_property
@@ -193,9 +194,9 @@ class HermitePath(Path):
         return [k for k in tested if self.excess(k, rtol) > 1.0]
 
     def excess(self, k: int, rtol: float) -> float:
-        """Return the error of interval k over what is allowed: its share of the tolerance, or the errors of its ends."""
+        """Return the error of interval k over what is allowed: what its ends leave of the tolerance, or their errors."""
         between, ends = self.interpolation_error(k), np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
-        return float((between / np.maximum(SHARE * rtol, ends))[self.problem.controlled].max())
+        return float((between / np.maximum(rtol - ends, ends))[self.problem.controlled].max())
 
 
 def _shape(parts: Array) -> Array:
