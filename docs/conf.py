@@ -40,6 +40,7 @@ CONTENTS = {
         "data_sheet",
         "leakage",
         "checks",
+        "troubleshooting",
         "explorer",
         "surfaces",
         "fluids",
