@@ -349,4 +349,4 @@ def test_numbers_of_the_numerical_core_stand_in_its_settings(load_benchmark):
     house, root = load_benchmark("house"), Path(__file__).parents[1]
     inside = {path: house.constants(path) for folder in house.CORE for path in house.files(root, f"src/stribeck/{folder}")}
     assert {path.name for path, count in inside.items() if count} == {"settings.py"}
-    assert sum(inside.values()) <= 43
+    assert sum(inside.values()) <= 40

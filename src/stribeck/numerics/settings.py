@@ -7,9 +7,8 @@ one name for the core, whoever reads it: two places that need the same kind of n
 EPSILON = 2.0**-52  # Machine precision; what rounds away is a small multiple of it
 SAFETY = 2.0  # Stated over estimated error where the estimate is of leading order
 NEGLIGIBLE = 0.1  # Share of a tolerance, an error or a step that does not count beside the whole
-ROUNDING = (
-    16 * EPSILON
-)  # Rounding of a nodal gap, a difference of terms of order one; with less, noise counts as error of the mesh
+# Rounding of a nodal gap, a difference of terms of order one; with less, noise counts as error of the mesh.
+ROUNDING = 16 * EPSILON
 HALF_DIGITS = EPSILON**0.5  # What is smaller beside one is known to no digit in a difference quotient, or is no progress
 SAME_PLACE = EPSILON**0.75  # Distance over the scale of a mesh below which two places are one: nodes between are the same
 
@@ -17,16 +16,17 @@ SHARE = 0.5  # Share of a tolerance that each of two causes of error may take: t
 
 # Paths of states along ln of what varies.
 MIN_LOG_STEP = 0.02  # Shortest step and interval: a path that needs a shorter one ends, an interval keeps its error
-MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that show none
-STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step to the one before that failed
+MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that show none; longer ones pass over what is between
+STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step that failed to the next; with more, more steps fail
 MAX_STATES = 400  # States of a path, and neighbours that are kept: a limit on work and memory
-WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes
-SERIES_ORDER = 18  # Orders of series by formulas, and values of a polynomial between states
-SAMPLED_ORDER = 9  # Orders of series of sampled functions, whose rounding grows with the order
-CAVITY_ORDER = 2  # Orders of series of films that re-form, whose nodes pass through the inlet
-SAMPLES = 12  # Places of a sampled function: a few more than orders, so that what it has beyond them does not count as theirs
-COEFFICIENT_NOISE = 1e-12  # Rounding of sampled values relative to the unknowns, magnified by solving for the coefficients
-SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence
+WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes; with fewer a curve needs more states
+# Degree of polynomials: series by formulas, values between states, panels of a ball; with more they hold rounding.
+MAX_DEGREE = 18
+SAMPLED_ORDER = MAX_DEGREE // 2  # Orders of series of sampled functions, which have half of the digits of formulas
+CAVITY_ORDER = 2  # Orders of series of films that re-form; higher ones do not converge where nodes pass through the inlet
+# Rounding of coefficients, magnified by the equations that they solve: a radius of convergence is read off larger ones.
+COEFFICIENT_NOISE = EPSILON**0.75
+SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence; nearer, rounding grows, farther, truncation
 INNER_PLACES = 3  # Places, evenly apart, where an interval is checked: laws with kinks may agree by accident at one
 
 # Of balls: what two meshes tell of errors, by tests/test_ball_errors.py.
@@ -39,7 +39,7 @@ MAX_STEPS = 60  # Steps of an iteration: Newton's, a fixed point's, or those of 
 GMRES_RTOL = 3e-2  # Relative error of a step of Newton's iteration that GMRES may leave
 REBUILD_AT = 12  # Steps of GMRES, or nodes that changed sides, above which a film that ends has a new preconditioner
 BAND, MAX_BAND = 4, 16  # Angular modes that the preconditioner couples, and where these do not serve
-LEAST_DEGREE, MAX_DEGREE = 7, 18  # Degree of panels of a ball
+LEAST_DEGREE = 7  # Degree of panels of a ball
 LEAST_MODES = LEAST_DEGREE + 1  # Angular modes of first meshes: as many as nodes of a panel
 MAX_MODES = 200  # Angular modes
 MAX_BYTES = 670_000_000  # Memory of operators and preconditioner of a mesh
@@ -55,19 +55,22 @@ MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 # Of the line: states that only start others, and limits on work.
 COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
 COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration towards such a state; smaller ones may be rounding
-COARSE_ORDER = 10  # Nodes per panel of such a state
+COARSE_ORDER = 10  # Nodes per panel of such a state; with eight, a golden state of the line leaves its stated error
 MAX_PANELS = 128  # Panels of a mesh of the line
-EXTRA_NODES = 4  # Nodes that panels gain for the error estimate: with two it sees a fifth of errors on wide panels; even
+# Nodes that panels gain for the error estimate, and places of a sampled function over its order: what lies beyond the
+# polynomial would count as part of it.  With two the estimate sees a fifth of errors on wide panels; even.
+EXTRA_NODES = 4
+SAMPLES = SAMPLED_ORDER + EXTRA_NODES  # Places of a sampled function
 DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
-SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two
+SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two, with fewer not
 # Sum of absolute weights of a prediction above which it uses fewer states: it would make negligible errors of theirs whole.
 MAX_AMPLIFICATION = 1.0 / NEGLIGIBLE
 
 # Tolerances of the promise.
 FLOOR = 1e-3  # Value below which the error of what crosses zero, the offset or a gap at rest, is not relative to it
 MIN_RTOL, MIN_RTOL_OF_BALLS, MAX_RTOL = 1e-11, 1e-8, 1e-2  # Tolerances that may be asked for
-MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film over rtol
+MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film of a ball over rtol; with less, side lobes ask for many more angles
 
 # Residual of the slopes of a state over the tolerance of the state: with the preconditioner of a neighbour their error is a
 # hundred times that.  To solve them to rounding takes a sixth more of a fit of a ball in Carreau's fluid.

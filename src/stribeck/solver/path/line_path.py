@@ -25,12 +25,12 @@ from stribeck.numerics.series import beyond, interval, radius
 from stribeck.numerics.settings import (
     COEFFICIENT_NOISE,
     FLOOR,
+    MAX_DEGREE,
     MIN_LOG_STEP,
     NEGLIGIBLE,
     SAFETY,
     SAMPLE_RADIUS_RATIO,
     SAMPLED_ORDER,
-    SERIES_ORDER,
     SHARE,
     STEP_GROWTH,
 )
@@ -78,7 +78,7 @@ class LineProblem:
         self.analytic = uniform and has_formulas(start.model)
         exact = self.analytic and is_exponential(start.law)
         self.certain = exact or (self.analytic and start.law is not None and misfit(start.law) <= NEGLIGIBLE * rtol)
-        self.order = SERIES_ORDER if self.analytic else SAMPLED_ORDER
+        self.order = MAX_DEGREE if self.analytic else SAMPLED_ORDER
         self.corrector = Corrector(self.rtol, own_inverse=True)
         self.failure: RefinedState | None = None
         self._last: tuple[State, Inverse] | None = None

@@ -22,9 +22,9 @@ from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.numerics.settings import (
     INNER_PLACES,
+    MAX_DEGREE,
     NEGLIGIBLE,
     SAFETY,
-    SERIES_ORDER,
     STEP_GROWTH,
 )
 from stribeck.quantities.lazy import cached_property
@@ -146,7 +146,7 @@ class Interval:
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials of observables without a series, their errors and columns, and whether they are accurate enough."""
-        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(SERIES_ORDER))
+        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(MAX_DEGREE))
         with np.errstate(invalid="ignore"):  # of values that are not finite no polynomial is good enough
             form = chebyshev_form(values)
         tails = SAFETY * np.abs(form[-3:]).max(axis=0, initial=0.0)
@@ -158,7 +158,7 @@ class Interval:
     @cached_property
     def values_at_checks(self) -> tuple[Array, Array]:
         """Observables and their errors at the checked places."""
-        return self.at(chebyshev_nodes(SERIES_ORDER))
+        return self.at(chebyshev_nodes(MAX_DEGREE))
 
     @cached_property
     def largest_error(self) -> float:
@@ -169,7 +169,7 @@ class Interval:
     def _beyond_ends(self) -> Array:
         """How far errors exceed those of the ends, which do not fall with the length."""
         values, errors = self.values_at_checks
-        scales = self.problem.scales(values, self.left.coordinate + chebyshev_nodes(SERIES_ORDER) * self.length)
+        scales = self.problem.scales(values, self.left.coordinate + chebyshev_nodes(MAX_DEGREE) * self.length)
         with np.errstate(over="ignore"):  # series that lead to no number count as wrong
             return np.asarray(errors - np.where(self.problem.sign_changing, self.at_ends[1] / scales, self.at_ends[0]))
 
@@ -205,7 +205,7 @@ class _Pieces:
         self.intervals, self.problem = intervals, intervals[0].problem
         self.count = intervals[0].left.series.shape[1]
         self.orders = np.array([one.order for one in intervals])
-        self.degree = max(SERIES_ORDER, 2 * int(self.orders.max()) + 2)
+        self.degree = max(MAX_DEGREE, 2 * int(self.orders.max()) + 2)
         self.forms = [one.form for one in intervals]
         self.interpolation_error = np.stack([one.interpolation_error for one in intervals])
         with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
@@ -270,7 +270,7 @@ class _Pieces:
                 continue
             mine = np.nonzero(where == k)[0][:, None]
             if is_smooth:
-                found[mine, columns] = basis[mine[:, 0], :SERIES_ORDER] @ form
+                found[mine, columns] = basis[mine[:, 0], :MAX_DEGREE] @ form
             else:
                 found[mine, columns], errors, _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
             written.append((mine, columns, errors))
