@@ -40,6 +40,7 @@ APART = {
     "explorer_memory",
     "house",
     "instructions",
+    "profiles",
 }
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -20,6 +21,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.numerics.trace import act, pointwise
+from stribeck.quantities.lazy import cached_property
 
 __all__ = ["Departure", "Parabola", "Profile", "Undeformed"]
 
@@ -144,7 +146,7 @@ class Departure:
         """Minus one of a shape that is reversed, which then is seen from behind."""
         return -1.0 if getattr(self.shape, "reversed", False) else 1.0
 
-    @property
+    @cached_property
     def places(self) -> Array:
         """Kinks of the shape, and where it begins and ends to go over into the parabola."""
         own = (self.direction * np.asarray(self.shape.places, dtype=float) - self.origin) / self.length
@@ -157,7 +159,7 @@ class Departure:
 
     def departure(self, mesh: Mesh, exit: Any) -> Any:
         """Return the gap beyond the parabola: on each panel that between the kinks amid which it was made."""
-        return pointwise(lambda x: self._on_panels(mesh, x)[:2], mesh.nodes if exit is None else mesh.nodes + exit)
+        return pointwise(partial(self._on_panels, mesh), mesh.nodes if exit is None else mesh.nodes + exit)
 
     def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
         """Return the departure between the nodes less their polynomials."""
@@ -166,21 +168,32 @@ class Departure:
 
     def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
         """Return the integral of the departure's slope times pressure."""
-        slope = pointwise(lambda x: self._on_panels(mesh, x)[1:], exit + mesh.nodes)
+        slope = pointwise(lambda x: (self._on_panels(mesh, x)[1], self._curvature(mesh, x)), exit + mesh.nodes)
         return act(mesh.inner_weights, slope * pressure)
 
-    def _on_panels(self, mesh: Mesh, x: Any) -> tuple[Any, Any, Any]:
-        """Return the departure, its slope and its curvature at the nodes of a mesh, which now lie at ``x``."""
-        # A kink moves through the panels with the exit: each goes on, as a parabola, with what it has up to the kink, so that
-        # Newton's iteration meets none, and the next mesh has the kink between panels.
+    def _between_kinks(self, mesh: Mesh, x: Any) -> Any:
+        """Return the places nearest to ``x`` between the kinks amid which the panels of a mesh were made."""
         places = np.concatenate([[-np.inf], self.places, [np.inf]])
         after = np.repeat(np.searchsorted(places, mesh.origin + mesh.middles), mesh.order)
-        at = np.clip(x, places[after - 1] + HALF_DIGITS, places[after] - HALF_DIGITS)
+        return np.clip(x, places[after - 1] + HALF_DIGITS, places[after] - HALF_DIGITS)
+
+    def _curvature(self, mesh: Mesh, x: Any) -> Any:
+        """Return the curvature of the departure there, no more exact than half of the digits."""
+        at = self._between_kinks(mesh, x)
         inwards = np.where(x > at, -HALF_DIGITS, HALF_DIGITS)
+        return (self._gap_and_slope(at + inwards)[1] - self._gap_and_slope(at)[1]) / inwards
+
+    def _on_panels(self, mesh: Mesh, x: Any) -> tuple[Any, Any]:
+        """Return the departure and its slope at the nodes of a mesh, which now lie at ``x``."""
+        # A kink moves through the panels with the exit: each goes on, as a parabola, with what it has up to the kink, so that
+        # Newton's iteration meets none, and the next mesh has the kink between panels.
+        at = self._between_kinks(mesh, x)
         gap, slope = self._gap_and_slope(at)
-        curvature = (self._gap_and_slope(at + inwards)[1] - slope) / inwards  # no more exact than half of the digits
         beyond = x - at
-        return gap + beyond * (slope + 0.5 * curvature * beyond), slope + curvature * beyond, curvature
+        if not beyond.any():
+            return gap, slope
+        bend = self._curvature(mesh, x) * beyond
+        return gap + beyond * (slope + 0.5 * bend), slope + bend
 
     def _gap_and_slope(self, x: Any) -> tuple[Any, Any]:
         """Return the departure and its slope at positions in the contact."""
