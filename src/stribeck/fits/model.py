@@ -30,6 +30,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import models_at_both_sides, refuse_fixed_memory
 from stribeck.equations.sensitivity import Change
@@ -38,6 +39,7 @@ from stribeck.fits.measurements import Measurements
 from stribeck.fits.states import Changes, FrictionParts, States, places, together
 from stribeck.numerics.dual import Dual
 from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.units import InputError
 
 __all__ = ["FrictionModel", "Prediction"]
 
@@ -65,6 +67,9 @@ class FrictionModel:
 
     def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
+        for name in (name for each in free for name in each.names if contact.profile is not None):
+            if name in ("load", "modulus") or name in PART_INPUTS and PART_INPUTS[name].table == "profile":
+                raise InputError(f"{name} is free, but with a profile the dry width follows from it; free other inputs.")
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         groups = [each.groups for each in self.contacts]
         self.physics, self.model = [each.physics for each in groups], contact.groups.model
