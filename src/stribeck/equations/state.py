@@ -225,6 +225,7 @@ def solve_state(
     guess: Guess,
     tolerance: float,
     kept: Inverse | None = None,
+    max_steps: int = MAX_STEPS,
 ) -> State:
     """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
     # ``kept`` is a neighbour's inverse on the same mesh, used while the steps contract with it.
@@ -234,7 +235,7 @@ def solve_state(
     if thinnest < MIN_GAP:  # steps of that size are rounding
         tolerance = max(tolerance, min(ROUNDING / thinnest, NEGLIGIBLE))
     # Where a wall is not sheared the viscosity of a thinning fluid turns sharply: full steps may go to and fro.
-    control = StepControl(tolerance, MAX_STEPS, NEGLIGIBLE, monotone=is_thinning(equations.film))
+    control = StepControl(tolerance, max_steps, NEGLIGIBLE, monotone=is_thinning(equations.film))
     root = root_find(equations, start, control, kept)
     gap = equations.layout.gap
     with np.errstate(all="ignore"):  # a root that was not found need not be finite

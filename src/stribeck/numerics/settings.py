@@ -56,6 +56,7 @@ MODES_RATIO = 1.4  # Ratio of the modes of a pair of meshes
 COARSE_RTOL = 1e-3  # Tolerance of meshes and states that only start others; with more, these do not start them
 COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration towards such a state; smaller ones may be rounding
 COARSE_ORDER = 10  # Nodes per panel of such a state; with eight, a golden state of the line leaves its stated error
+MAX_STEPS_ON_PATH = 15  # Newton steps towards such a state; with more, a golden film that ends, of Barus' fluid, is not found
 MAX_PANELS = 128  # Panels of a mesh of the line
 # Nodes that panels gain for the error estimate, and places of a sampled function over its order: what lies beyond the
 # polynomial would count as part of it.  With two the estimate sees a fifth of errors on wide panels; even.

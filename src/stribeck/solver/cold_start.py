@@ -46,6 +46,7 @@ from stribeck.numerics.settings import (
     COARSE_STEP,
     HALF_DIGITS,
     MAX_LOG_STEP,
+    MAX_STEPS_ON_PATH,
     MIN_LOG_STEP,
     NEGLIGIBLE,
 )
@@ -159,7 +160,7 @@ def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
         mesh = mesh_for(guess, groups, contact_law(groups), COARSE_ORDER, COARSE_RTOL, anew=False)
     except MeshTooLargeError:
         return None
-    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP)
+    return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP, max_steps=MAX_STEPS_ON_PATH)
 
 
 def cold_start(groups: Groups) -> Path[State]:
