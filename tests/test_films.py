@@ -191,7 +191,7 @@ def test_a_cavity_at_ambient_pressure_reaches_to_infinity():
 
 
 def test_the_dry_smooth_contact_on_a_layer_is_refused():
-    with pytest.raises(sb.InputError, match="closed form on the half-plane alone"):
+    with pytest.raises(sb.InputError, match="closed form of a cylinder on the half-plane alone"):
         sb.solve(sb.Groups(0.0, 0.1, 0.0), solid=sb.solids.Layer(3.0))
 
 
