@@ -17,7 +17,7 @@ def follows_surface(contact: Contact, errors: Collection[str]) -> bool:
 
 def typical_errors(contact: Contact, known: Collection[str]) -> dict[str, float]:
     """Return the usual standard error over the value of each input that has none."""
-    rows = {name: row for name, row in contact.INPUTS.rows.items() if row.typical_error}
+    rows = {name: row for name, row in contact.INPUTS.rows.items() if row.typical_error and name not in known}
     found = {name: row.typical_error for name, row in rows.items() if getattr(contact, name, None)}
     if hasattr(contact.law, "fixed_alpha"):
         found.pop("alpha", None)
