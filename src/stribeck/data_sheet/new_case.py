@@ -28,6 +28,7 @@ MODEL_TEXT = """
 # model = {flow_factors}
 # [solid]
 {bodies}
+
 # A line contact may have a profile in the place of its radius.
 # [profile]
 {shapes}

@@ -66,7 +66,7 @@ DIMENSIONS = {
 }
 
 # What pint may find in the text, so that a sentence can name it; wider than what the package accepts.
-_NOUNS = {kind.unit: kind.noun for kind in DIMENSIONS.values() if kind.unit} | {
+_NOUNS = {kind.unit: kind.noun for kind in DIMENSIONS.values() if kind.unit not in ("", "rad")} | {
     "m^2": "an area",
     "Pa*s": "a dynamic viscosity",
     "m^2/s": "a kinematic viscosity",
