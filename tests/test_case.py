@@ -314,7 +314,7 @@ def number_in_comments(path, name):
 
 
 def test_the_examples_are_there():
-    cylinders = ["lip_seal", "nitrile_seal", "pdms_cylinder", "pdms_fit", "rod_seal", "wiper_blade"]
+    cylinders = ["lip_seal", "nitrile_seal", "pdms_cylinder", "pdms_fit", "rod_seal", "wiper_blade", "worn_rod_seal"]
     assert [path.stem for path in CYLINDERS] == cylinders
     assert {"pdms_ball", "contact_lens"} <= {path.stem for path in BALLS}
 

@@ -73,6 +73,15 @@ def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_p
                 found.plot(ax="here")
 
 
+RATE = np.geomspace(0.1, 1000, 13)
+
+
+def film_of_a_parabola():
+    x = np.linspace(-1.0, 1.0, 201)
+    pressure = np.sqrt(np.maximum(1 - x**2, 0))
+    return sb.asymptotics.film_of_pressure(1e-3 * x, 1e6 * pressure, modulus=7e6, viscosity=0.05, speed=0.1)
+
+
 @pytest.fixture(scope="module")
 def parts(results, tmp_path_factory):
     """Return what results are made of, and what belongs to no contact alone."""
@@ -91,6 +100,9 @@ def parts(results, tmp_path_factory):
         "design": sb.load_sweep(path),
         "sweep": done,
         "progress": told[-1],
+        "model of a simulator": results["curve"].to_stribeck_model(),
+        "film of a pressure": film_of_a_parabola(),
+        "flow curve": sb.fluids.flow_curve(RATE, 2.0 * (1 + (5 * RATE) ** 2) ** -0.3),
     }
 
 
@@ -105,6 +117,9 @@ OTHERS = (
     "design",
     "sweep",
     "progress",
+    "model of a simulator",
+    "film of a pressure",
+    "flow curve",
 )
 
 
@@ -126,7 +141,8 @@ def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(
 def test_the_results_above_are_all_that_have_numbers(parts):
     kinds = {type(each) for each in parts.values()}
     names = {name for name in dir(sb.results) if getattr(sb.results, name) not in kinds}
-    assert names == {"Explanation", "FitOutcome"}  # which are words
+    # Words, and the parts of a film of a pressure, which its dataset holds.
+    assert names == {"Explanation", "FitOutcome", "Films", "Inlet"}
 
 
 def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp_path_factory):

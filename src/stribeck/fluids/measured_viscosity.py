@@ -15,12 +15,13 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.files.datasets import Column
+from stribeck.files.results import Labelled, Tabled
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
@@ -57,7 +58,7 @@ class _Fit:
 
 
 @dataclass(frozen=True, repr=False)
-class FlowCurve(Told):
+class FlowCurve(Told, Tabled):
     """A viscosity measured over the shear rate, and the law through it.
 
     Attributes
@@ -120,6 +121,17 @@ class FlowCurve(Told):
             given["infinite_viscosity"] /= self.viscosity
         x = x * self.law.time
         return np.asarray(self.viscosity * type(self.law)(**given).stress(x) / x)
+
+    def _labelled(self) -> Labelled:
+        columns: dict[str, Column] = {
+            "measured": ("rate", self.measured, "Pa s", "measured viscosity"),
+            "fitted": ("rate", self.at(self.rate), "Pa s", "viscosity of the law"),
+            "viscosity": ((), self.viscosity, "Pa s", "viscosity of the contact"),
+            "viscosity_error": ((), self.errors["viscosity"], "Pa s", "estimated absolute error of viscosity"),
+            "misfit": ((), self.misfit, "1", "rms relative deviation of the measured values"),
+        }
+        about = {"title": "A measured viscosity and the law through it", "law": self.fluid.name, **self.fluid.parameters}
+        return columns, {"rate": ("rate", self.rate, "s-1", "shear rate")}, about
 
     @property
     def headline(self) -> str:
@@ -209,8 +221,9 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     """
     from stribeck.files.cells import is_named  # slow to import, and most fluids have no file
     from stribeck.files.text_table import read_table, values_of
+    from stribeck.files.writing import path_of
 
-    file = Path(path)
+    file = path_of(path)
     advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]', with the units of the file"
     columns = {
         "rate": r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d",

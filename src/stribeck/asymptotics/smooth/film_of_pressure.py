@@ -28,6 +28,8 @@ import numpy as np
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import OutOfRangeWarning
 from stribeck.asymptotics.smooth.dry_pressure import DryPressure, rows_of
+from stribeck.files.datasets import Column
+from stribeck.files.results import Labelled, Tabled
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Shown, Told
 from stribeck.quantities.units import InputError, show, to_si
@@ -47,6 +49,21 @@ MAX_LAW_ERROR = 0.07  # Largest error of the laws in their range.
 EDGE_ZONE = 2.0  # Inlet lengths from the edge within which a rise belongs to the edge.
 MAX_EDGE_ZONE = 0.5  # Largest part of the way to the peak that this zone takes.
 MAX_RESOLUTION_ERROR = 0.25  # Largest relative error of a film that a table may leave.
+
+
+NUMBERS = {
+    "forward": "gap at the highest pressure as the surface goes towards larger x",
+    "backward": "gap at the highest pressure as the surface goes towards smaller x",
+    "net": "what a stroke to and fro leaves, per length of the stroke and of the seal",
+}
+INLET_NUMBERS = {
+    "edge": ("m", "where the contact begins"),
+    "edge_coefficient": ("Pa m-1/2", "pressure over the root of the distance from the edge"),
+    "edge_coefficient_error": ("Pa m-1/2", "estimated absolute error of edge_coefficient"),
+    "steepest_rise": ("Pa m-1", "steepest rise of the pressure inside the contact"),
+    "steepest_rise_error": ("Pa m-1", "estimated absolute error of steepest_rise"),
+    "inlet_length": ("m", "length over which the edge makes the film"),
+}
 
 
 class Films(NamedTuple):
@@ -116,7 +133,7 @@ class Inlet(ByValue, Shown):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PressureFilm(ByValue, Told):
+class PressureFilm(ByValue, Told, Tabled):
     """Films of both directions and what a stroke leaves outside.
 
     Attributes
@@ -137,6 +154,16 @@ class PressureFilm(ByValue, Told):
     net: float
     error: Films
     inlets: tuple[Inlet, Inlet]
+
+    def _labelled(self) -> Labelled:
+        columns: dict[str, Column] = {}
+        for name, meaning in NUMBERS.items():
+            columns[name] = ((), getattr(self, name), "m", meaning)
+            columns[f"{name}_error"] = ((), getattr(self.error, name), "m", f"estimated absolute error of {name}")
+        for name, (unit, meaning) in INLET_NUMBERS.items():
+            columns[name] = ("direction", [getattr(each, name) for each in self.inlets], unit, meaning)
+        directions = {"direction": ("direction", ["forward", "backward"], "1", "direction in which the surface moves")}
+        return columns, directions, {"title": "Film of a dry pressure", "notes": "\n".join(self.notes)}
 
     @property
     def range(self) -> str:
