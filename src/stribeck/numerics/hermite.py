@@ -20,6 +20,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.dual import Dual
+from stribeck.numerics.settings import INNER_PLACES
 
 __all__ = [
     "chebyshev_basis",
@@ -27,9 +28,15 @@ __all__ = [
     "chebyshev_nodes",
     "hermite_form",
     "hermite_weights",
+    "inner_places",
     "missed_by",
     "weights_through",
 ]
+
+
+def inner_places() -> Array:
+    """Return the parts of an interval at which it is checked."""
+    return np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
 
 
 @lru_cache(maxsize=64)

@@ -15,9 +15,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.numerics.hermite import weights_through
+from stribeck.numerics.hermite import inner_places, weights_through
 from stribeck.numerics.settings import (
-    INNER_PLACES,
     MAX_LOG_STEP,
     SAFETY,
     SHARE,
@@ -119,7 +118,7 @@ class HermitePath(Path):
         """
         # On long intervals the errors of both are alike, so that their difference shows about a half of either.
         left, right = self.coordinates[k : k + 2]
-        parts = np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
+        parts = inner_places()
         s = left + parts * (right - left)
         best = self._through(*self._window(k, WINDOW), s)
         if len(self.knots) > 2:

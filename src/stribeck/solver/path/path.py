@@ -19,9 +19,8 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.dual import Dual, value_of
-from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
+from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, inner_places, missed_by
 from stribeck.numerics.settings import (
-    INNER_PLACES,
     MAX_DEGREE,
     NEGLIGIBLE,
     SAFETY,
@@ -140,7 +139,7 @@ class Interval:
             self._alone.read(found, where, places, basis)
             return found
 
-        places = np.arange(1, INNER_PLACES + 1) / (INNER_PLACES + 1)
+        places = inner_places()
         return self.problem.checked_error(self.left, self.right, places, values)
 
     @cached_property
