@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from stribeck import Outcome
+from stribeck.numerics.continuation import follow
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.series import radius
-from stribeck.solver.path.follow import follow
 from stribeck.solver.path.path import Expansion, Interval, SolvedPath
 
 pytestmark = pytest.mark.quick
@@ -148,8 +148,8 @@ def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
 
 
 def test_a_path_that_halves_without_end_ends(monkeypatch):
-    monkeypatch.setattr("stribeck.solver.path.follow.MAX_STATES", 50)
-    monkeypatch.setattr("stribeck.solver.path.follow.MAX_LOG_STEP", 0.2)
+    monkeypatch.setattr("stribeck.numerics.continuation.MAX_STATES", 50)
+    monkeypatch.setattr("stribeck.numerics.continuation.MAX_LOG_STEP", 0.2)
 
     class Doubted(Known):
         def checked_error(self, left, right, parts, values):

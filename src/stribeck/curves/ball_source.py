@@ -17,10 +17,10 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.line_source import PathSource
 from stribeck.curves.source import Coefficients, Parts, Progress
 from stribeck.equations.point.observables import OBSERVABLES
+from stribeck.numerics.continuation import follow
 from stribeck.numerics.settings import MAX_LOG_STEP, WINDOW
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.follow import follow
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.knots import BallKnots
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of

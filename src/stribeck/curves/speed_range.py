@@ -16,12 +16,12 @@ from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.regime import friction_share
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
+from stribeck.numerics.continuation import follow
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.events import first_zero
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
 from stribeck.solver.neighbours import Neighbours
-from stribeck.solver.path.follow import follow
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.point.solution import solution_of

@@ -26,11 +26,11 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.continuation import follow
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cavities.reforming_line import line_problem
-from stribeck.solver.path.follow import follow
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.refinement import RefinedState

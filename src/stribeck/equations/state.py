@@ -136,7 +136,7 @@ class State:
 
     @property
     def effort(self) -> float:
-        """Measure of the work by which :func:`continuation.march` steers; 4 for a cubic prediction as good as wanted."""
+        """Measure of the work by which :class:`continuation.StepPath` steers; 4 for a cubic prediction as good as wanted."""
         return 4.0 + 0.5 * math.log2(max(SAFETY * self.prediction_error, HALF_DIGITS))
 
     @cached_property

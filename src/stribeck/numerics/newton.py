@@ -163,7 +163,7 @@ class Root:
 
     @property
     def effort(self) -> int:
-        """The factorisations, under the name that :func:`stribeck.numerics.continuation.march` asks for."""
+        """The factorisations, under the name that :class:`stribeck.numerics.continuation.StepPath` asks for."""
         return self.factorisations
 
 

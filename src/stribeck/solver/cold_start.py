@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -37,7 +38,7 @@ from stribeck.equations.state import MIN_GAP, State, solve_state
 from stribeck.fluids.blend import blend
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.numerics.continuation import Path, Steps, march
+from stribeck.numerics.continuation import StepPath, Steps
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.numerics.settings import (
@@ -45,19 +46,15 @@ from stribeck.numerics.settings import (
     COARSE_RTOL,
     COARSE_STEP,
     HALF_DIGITS,
-    MAX_LOG_STEP,
     MAX_STEPS_ON_PATH,
-    MIN_LOG_STEP,
     NEGLIGIBLE,
 )
 from stribeck.quantities.units import InputError
 
-__all__ = ["coarse_state", "cold_start", "first_path", "is_lost_to_rounding", "next_state"]
+__all__ = ["coarse_path", "coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
 
 MIN_RIGID = NEGLIGIBLE**-2  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
-STEPS = Steps(NEGLIGIBLE * MAX_LOG_STEP, MAX_LOG_STEP, NEGLIGIBLE**2 * MIN_LOG_STEP)
-"""Steps along ln of a group or of the suction of a cavity, and in the part of a fluid."""
 
 
 @dataclass(frozen=True)
@@ -146,12 +143,28 @@ def coarse_state(groups: Groups, guess: Guess) -> State | None:
     return replace(found, prediction_error=state.prediction_error)
 
 
-def next_state(groups: Groups, history: Sequence[tuple[float, State]], place: float) -> State | None:
-    """Return the coarse state of groups at a place of a path: predicted from the states before it, else from the last two."""
-    found = coarse_state(groups, extrapolate(history, place))
-    if len(history) > 2 and (found is None or not found.outcome.ok):  # a polynomial through many amplifies their errors
-        found = coarse_state(groups, extrapolate(history[-2:], place))
-    return found
+def coarse_path(
+    groups_at: Callable[[float], Groups | None],
+    start: float | tuple[float, State],
+    end: float,
+    seed: Callable[[Groups], State | None],
+    seeds: int = 1,
+    **options: float,
+) -> StepPath[State]:
+    """Return the path of coarse states to ``end``, whose first ``seeds`` states come from a seed."""
+
+    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
+        groups = groups_at(s)
+        if groups is None:
+            return None
+        if len(history) < seeds:
+            return seed(groups)
+        found = coarse_state(groups, extrapolate(history, s))
+        if len(history) > 2 and (found is None or not found.outcome.ok):  # a polynomial through many amplifies their errors
+            found = coarse_state(groups, extrapolate(history[-2:], s))
+        return found
+
+    return Steps(correct, **options).to(end, start)
 
 
 def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
@@ -163,7 +176,7 @@ def _on_mesh_of_guess(groups: Groups, guess: Guess) -> State | None:
     return solve_state(groups, Operators(mesh, groups.model), guess, COARSE_STEP, max_steps=MAX_STEPS_ON_PATH)
 
 
-def cold_start(groups: Groups) -> Path[State]:
+def cold_start(groups: Groups) -> StepPath[State]:
     """Return the path from the rigid cylinder to the coarse state of a Newtonian fluid."""
     if groups.model != BASE_MODEL:
         ends = groups.model.cavitation is not Cavitation.NONE and groups.speed > 0
@@ -179,24 +192,22 @@ def cold_start(groups: Groups) -> Path[State]:
     if unloads:
         top = max(0.0, min(0.5 * top, math.log(MIN_RIGID / kappa)))
 
-    def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
+    def groups_at(log_factor: float) -> Groups | None:
         factor = math.exp(log_factor)
-        try:
+        with suppress(InputError):  # lifted out of the range of groups
             if unloads:
-                here = replace(groups, speed=groups.speed * factor**2, load=groups.load / factor)
-            else:
-                here = replace(groups, **{name: factor * getattr(groups, name)})
-        except InputError:  # lifted out of the range of groups
-            return None
-        if history:
-            return next_state(here, history, log_factor)
+                return replace(groups, speed=groups.speed * factor**2, load=groups.load / factor)
+            return replace(groups, **{name: factor * getattr(groups, name)})
+        return None
+
+    def seed(here: Groups) -> State | None:
         guess = rigid_guess(here)
         return None if guess is None else _under_profile(here, guess)
 
-    return march(correct, top, 0.0, STEPS)
+    return coarse_path(groups_at, top, 0.0, seed)
 
 
-def first_path(groups: Groups) -> Path[State]:
+def first_path(groups: Groups) -> StepPath[State]:
     """Return the path from cold to a coarse state of ``groups``, whose film does not re-form."""
     path, film = cold_start(groups), groups.model.film
     if not path.outcome.ok or film == Newtonian() or is_rough(film):
@@ -217,15 +228,11 @@ def _under_profile(groups: Groups, guess: Guess) -> State | None:
     return path.states[-1] if path.outcome.ok else None
 
 
-def _homotopy(start: State, groups_at: Callable[[float], Groups]) -> Path[State]:
+def _homotopy(start: State, groups_at: Callable[[float], Groups]) -> StepPath[State]:
     """Return the path from a state of groups at zero to that at one."""
-
-    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        return next_state(groups_at(part), history, part)
-
-    return march(correct, 0.0, 1.0, replace(STEPS, first=1.0), history=[(0.0, start)])
+    return coarse_path(groups_at, (0.0, start), 1.0, lambda groups: None, 0, first=1.0)
 
 
-def is_lost_to_rounding(path: Path[State]) -> bool:
+def is_lost_to_rounding(path: StepPath[State]) -> bool:
     """Return whether a path ends before its end, at a film of which rounding leaves few digits."""
     return not path.outcome.ok and bool(path.states) and float(path.states[-1].gap.min()) < MIN_GAP

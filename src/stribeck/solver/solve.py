@@ -23,7 +23,7 @@ from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.continuation import Path
+from stribeck.numerics.continuation import StepPath
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import MAX_RTOL, MIN_RTOL, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
@@ -184,7 +184,7 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
         return _solve_by_path(first_path(base), groups, rtol)
 
 
-def _solve_by_path(path: Path[State], groups: Groups, rtol: float) -> RefinedState:
+def _solve_by_path(path: StepPath[State], groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from the end of a path from cold; raise if it does not arrive."""
     if path.outcome.ok:
         return _refined(path.states[-1], groups, rtol)

@@ -7,7 +7,6 @@ suction that is needed to fill the gap again says where the film reforms.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,14 +15,14 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.numerics.continuation import Path, march
+from stribeck.numerics.continuation import StepPath
 from stribeck.numerics.settings import COARSE_ORDER, MAX_REFINEMENTS, NEGLIGIBLE
-from stribeck.solver.cold_start import STEPS, coarse_state, first_path, next_state
+from stribeck.solver.cold_start import coarse_path, coarse_state, first_path
 
 __all__ = ["path_to_cavity"]
 
 
-def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> Path[State]:
+def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> StepPath[State]:
     """Return the path to a film that reforms; ``deepest`` is the lowest pressure of the full film, which closes the cavity."""
     path = first_path(replace(groups, model=replace(groups.model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)))
     if not path.outcome.ok:
@@ -35,14 +34,15 @@ def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> Path[State]:
     def place(pressure: float) -> float:
         return math.log(-pressure) - math.log1p(-pressure / deepest)
 
-    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, model=replace(groups.model, cavity_pressure=-1 / (math.exp(-s) - 1 / deepest)))
-        if len(history) > 1:  # the frame moves with the cavity: one state alone does not start another
-            return next_state(here, history, s)
+    def groups_at(s: float) -> Groups:
+        return replace(groups, model=replace(groups.model, cavity_pressure=-1 / (math.exp(-s) - 1 / deepest)))
+
+    def seed(here: Groups) -> State | None:
         return coarse_state(here, _behind_exit(ending, -here.model.cavity_pressure))
 
     for _ in range(MAX_REFINEMENTS):  # a longer cavity disturbs the film less
-        found = march(correct, place(-suction), place(groups.model.cavity_pressure), STEPS)
+        # Two seeds, as the frame moves with the cavity: one state alone does not start another.
+        found = coarse_path(groups_at, place(-suction), place(groups.model.cavity_pressure), seed, seeds=2)
         if found.states:
             break
         suction *= NEGLIGIBLE

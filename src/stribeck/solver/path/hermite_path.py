@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.continuation import Path, PathProblem
 from stribeck.numerics.hermite import inner_places, weights_through
 from stribeck.numerics.settings import (
     MAX_LOG_STEP,
@@ -25,7 +26,6 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.follow import Path, PathProblem
 
 __all__ = ["HermitePath", "Knot", "KnotProblem"]
 

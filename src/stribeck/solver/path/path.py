@@ -18,6 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.continuation import Path, PathProblem
 from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, inner_places, missed_by
 from stribeck.numerics.settings import (
@@ -28,7 +29,6 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.path.follow import Path, PathProblem
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,7 +67,7 @@ class Level:
 
     @property
     def effort(self) -> float:
-        """Measure by which :func:`stribeck.numerics.continuation.march` chooses its steps."""
+        """Measure by which :class:`stribeck.numerics.continuation.StepPath` chooses its steps."""
         return 0.6 * self.iterated.steps
 
     @property

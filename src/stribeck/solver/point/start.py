@@ -29,14 +29,12 @@ from stribeck.equations.point.mesh_choice import (
 )
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.blend import blend
-from stribeck.numerics.continuation import Steps, extrapolation_weights, march
+from stribeck.numerics.continuation import Steps, extrapolation_weights
 from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, MAX_REFINEMENTS, NEGLIGIBLE, SAFETY
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
 TOLERANCE = NEGLIGIBLE * COARSE_RTOL  # Relative error of the gap that the iteration of a first state may leave
-
-HOMOTOPY_STEPS = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)  # Steps in the part of the fluid's own flow
 
 
 @dataclass(frozen=True)
@@ -130,7 +128,7 @@ def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Lev
         guess = extrapolate_levels(weights, [level for _, level in history], mesh)
         return solve_level(on, speed, law, guess, mesh, TOLERANCE)
 
-    found = march(correct, 0.0, 1.0, HOMOTOPY_STEPS)
+    found = Steps(correct).to(1.0, 0.0)
     if found.outcome.ok:
         last = found.states[-1]
         yield replace(last, resolution=replace(last.resolution, model=model))

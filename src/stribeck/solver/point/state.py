@@ -100,7 +100,7 @@ class PointState:
 
     @property
     def effort(self) -> float:
-        """Measure by which :func:`stribeck.numerics.continuation.march` chooses its steps."""
+        """Measure by which :class:`stribeck.numerics.continuation.StepPath` chooses its steps."""
         return float(self.newton_steps)
 
 
