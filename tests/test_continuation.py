@@ -47,7 +47,7 @@ def test_a_path_follows_a_branch_to_its_end():
 
 def test_a_path_halts_before_a_fold_and_keeps_the_branch_behind_it():
     path = heated(0.5)
-    assert not path.outcome.ok
+    assert path.outcome is Outcome.PATH_LOST
     assert EXPLOSION - 1e-3 < path.coordinates[-1] < EXPLOSION
     for p, root in zip(path.coordinates, path.states, strict=True):
         np.testing.assert_allclose(root.x, temperature(p), atol=1e-6)
@@ -124,9 +124,9 @@ def test_a_state_that_is_none_counts_as_a_failure():
     assert path.outcome is Outcome.PATH_LOST
 
 
-def test_a_path_with_no_way_on_ends_next_to_its_end_and_says_why():
+def test_a_path_with_no_way_on_is_lost_next_to_its_end():
     path = Steps(Corrector(fails=lambda s, before: s > 1.0), first=0.1).to(2.0, 0.0)
-    assert path.outcome is Outcome.STEP_LIMIT
+    assert path.outcome is Outcome.PATH_LOST
     assert 1.0 - 2e-3 < path.coordinates[-1] <= 1.0
 
 

@@ -10,6 +10,7 @@ from stribeck import Outcome
 from stribeck.numerics.continuation import follow
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.series import radius
+from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.path.path import Expansion, Interval, SolvedPath
 
 pytestmark = pytest.mark.quick
@@ -160,6 +161,38 @@ def test_a_path_that_halves_without_end_ends(monkeypatch):
     assert path.outcome is Outcome.STATE_LIMIT
     assert len(problem.solved) < 150
     assert path.coordinates[-1] == 3.0 and path.coordinates[0] < 3.0
+
+
+class Noisy:
+    """A parabola whose values have errors that no more states reduce."""
+
+    path, names, shares, summands = HermitePath, ("one", "other", "third"), (0, 1), (1, 2)
+    one_signed, controlled = np.zeros(3, dtype=bool), np.ones(3, dtype=bool)
+
+    def __init__(self, noise):
+        self.noise, self.rng, self.solved = noise, np.random.default_rng(1), 0
+
+    def units(self, s):
+        return np.ones((len(s), 3))
+
+    def scales(self, values, s):
+        return np.ones((len(s), 3))
+
+    def solve(self, s, near=()):
+        self.solved += 1
+        values = s * s + self.noise * self.rng.choice([-1.0, 1.0], 3)
+        return Knot(s, values, np.full(3, 2.0 * s), np.full(3, self.noise), None)
+
+
+def test_no_interval_is_halved_for_what_the_errors_of_its_states_explain():
+    exact, noisy = Noisy(0.0), Noisy(8e-4)
+    for problem in (exact, noisy):
+        path = follow(problem, 1.0, -1.0, 1e-3)
+        assert path.outcome.ok
+    assert noisy.solved <= exact.solved + 4
+    s = np.linspace(-1.0, 1.0, 101)
+    found, errors = path.at(s)
+    assert (np.abs(found - (s * s)[:, None]) <= errors + 1e-12).all()
 
 
 def test_an_interrupted_path_keeps_what_was_reported():

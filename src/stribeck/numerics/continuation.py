@@ -262,7 +262,7 @@ class Steps(Generic[S]):
         state = self.correct(s, [(each.coordinate, each.state) for each in near])
         if state is None or not state.outcome.ok:
             self._failed = True
-            return Outcome.PATH_LOST if state is None else state.outcome
+            return Outcome.PATH_LOST if near or state is None else state.outcome
         # The step after one that failed is no longer than this.
         longest, self._failed = 1.0 if self._failed else STEP_GROWTH, False
         return Step(s, state, min(longest, max(1.0 / STEP_GROWTH, 2.0 ** (0.5 * (self.aim - state.effort)))))

@@ -117,18 +117,24 @@ class HermitePath(Path):
         That is the error of the polynomial through two states less, as the whole one shows it.
         """
         # On long intervals the errors of both are alike, so that their difference shows about a half of either.
+        apart, shape = self._apart(k)[:2]
+        return np.asarray((SAFETY**2 * apart / shape).max(axis=0))
+
+    def _apart(self, k: int) -> tuple[Array, Array, Array]:
+        """Return how far both polynomials of interval k are apart, the shape, and how far errors of states set them apart."""
         left, right = self.coordinates[k : k + 2]
         parts = inner_places()
         s = left + parts * (right - left)
-        best = self._through(*self._window(k, WINDOW), s)
+        window, narrow = self._window(k, WINDOW), self._window(k, max(2, min(WINDOW, len(self.knots)) - 2))
+        best = self._through(*window, s)
         if len(self.knots) > 2:
-            less = self._through(*self._window(k, max(2, min(WINDOW, len(self.knots)) - 2)), s)
+            less = self._through(*narrow, s)
         else:  # by the slopes alone
             ends = np.stack([self.knots[k].values, self.knots[k + 1].values])
             less = (ends[:1] + parts[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
         with np.errstate(all="ignore"):
-            found = SAFETY**2 * np.abs(best - less) / self.problem.scales(best, s) / _shape(parts)[:, None]
-        return np.asarray(np.nan_to_num(found, nan=math.inf).max(axis=0))
+            apart = np.nan_to_num(np.abs(best - less) / self.problem.scales(best, s), nan=math.inf)
+        return apart, _shape(parts)[:, None], self._propagated(*window, s) + self._propagated(*narrow, s)
 
     @cached_property
     def _between(self) -> Array:
@@ -190,12 +196,15 @@ class HermitePath(Path):
         """Return the numbers of the intervals whose error is larger than allowed, once states on both sides are there."""
         count = len(self.knots) - 1
         tested = range(count) if is_whole else sorted({1, count - 2}) if count >= WINDOW else []
-        return [k for k in tested if self.excess(k, rtol) > 1.0]
+        return [k for k in tested if self.excess(k, rtol, unexplained=True) > 1.0]
 
-    def excess(self, k: int, rtol: float) -> float:
+    def excess(self, k: int, rtol: float, unexplained: bool = False) -> float:
         """Return the error of interval k over what is allowed: what its ends leave of the tolerance, or their errors."""
-        between, ends = self.interpolation_error(k), np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
-        return float((between / np.maximum(rtol - ends, ends))[self.problem.controlled].max())
+        apart, shape, explained = self._apart(k)
+        if unexplained:  # What errors of the states explain grows no smaller with more of them
+            apart = np.maximum(apart - explained, 0.0)
+        between, ends = SAFETY**2 * apart / shape, np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
+        return float((between.max(axis=0) / np.maximum(rtol - ends, ends))[self.problem.controlled].max())
 
 
 def _shape(parts: Array) -> Array:
