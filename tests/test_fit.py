@@ -479,8 +479,11 @@ MISUSE = {
     "unknown input": ([MEASURED, CASE, "--free", "stiffness"], "'stiffness'"),
     "wrong ending": ([MEASURED, CASE, "--out", "fitted.json"], "must end in .toml"),
     "case as data": ([CASE, CASE], "pdms_fit.toml"),
-    "swapped": ([CASE, MEASURED], f"look swapped: {CASE} is a case file and {MEASURED} is not"),
-    "data twice": ([MEASURED, MEASURED], "is not valid TOML"),
+    "no case among two": ([MEASURED, MEASURED], "CASE is missing"),
+    "two cases": ([MEASURED, CASE, CASE.with_name("pdms_cylinder.toml")], "fit takes one of them"),
+    "misspelt": ([MEASURED.with_name("pdms_mesured.csv"), CASE], f"did you mean {MEASURED}?"),
+    "glob of nothing": (["nothing_*.csv", CASE], "nothing_*.csv matches no file"),
+    "per file": ([MEASURED, CASE, "--free", "roughness", "--per-file", "beta"], "not fitted; add it to free"),
     "posterior": ([MEASURED, CASE, "--posterior", "many"], "not a whole number"),
 }
 

@@ -20,7 +20,7 @@ _HOMES = {
     "experiments.compare": ("compare",),
     "experiments.next_runs": ("next_runs",),
     "fits.fit": ("fit",),
-    "fits.measurements": ("read_measurements",),
+    "fits.reading": ("read_measurements",),
     "quantities.outcome": ("Outcome",),
     "quantities.units": ("InputError",),
     "regimes.phase_diagram": ("phase_diagram",),

@@ -5,6 +5,7 @@ Only what can be said without the data is checked here; what a column holds is f
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields
 from functools import partial
@@ -17,6 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import INPUT_TABLES, LINE
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PART_INPUTS, PURE_SLIDING, Parts
+from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import InputError, show
@@ -152,6 +154,76 @@ def _number(name: str, dimension: str, typical: str) -> Check:
     return lambda name, value: row.checked(value)
 
 
+def _file(table: str, name: str, entry: Any, inputs: InputTable) -> tuple[str, dict[str, Any]]:
+    """Return what a file or a glob of files has for itself as it is written; :func:`inputs_of_file` reads it."""
+    if not isinstance(entry, dict):
+        raise InputError(f'{name} = {show(entry)} must be a table of inputs, [fit.files."{name}"].')
+    return name, entry
+
+
+def inputs_of_file(name: str, entry: dict[str, Any], inputs: InputTable, liquid: dict[str, Any]) -> dict[str, Any]:
+    """Return the inputs of a file as :func:`_curve` does those of a curve; a temperature gives the viscosity of its liquid."""
+    entry = dict(entry)
+    if "temperature" in entry:
+        fluid = entry.get("fluid", {})
+        if "viscosity" in entry:
+            raise InputError(f"{name}: viscosity and temperature are both given; remove one of them.")
+        known = fluid if isinstance(fluid, dict) and "preset" in fluid else liquid
+        if "temperature" not in getattr(PRESETS.get(known.get("preset", "")), "conditions", ()):
+            raise InputError(
+                f"{name}: temperature = {show(entry['temperature'])} needs a liquid of known viscosity over temperature; "
+                'give it as preset in [fluid] of the case, as in preset = "water", or give the viscosity itself.'
+            )
+        entry["fluid"] = known | {"temperature": entry.pop("temperature")}
+    return _curve("files", name, entry, inputs)[1]
+
+
+def read_pattern(key: str, text: Any) -> FileNames:
+    """Return the pattern of file names that a key has, such as ``"{load}_{temperature [degC]}_*.csv"``."""
+    if not isinstance(text, str) or not text.strip():
+        raise InputError(f'{key} = {show(text)} must be text such as "{{load}}_{{temperature}}_*.csv".')
+    names = (*(each for each in LINE.names if each != "speed"), *PART_INPUTS, "slide_to_roll", "temperature")
+    parts: list[str] = []
+    units: dict[str, str] = {}
+    for piece in re.split(r"(\{[^{}]*\}|\*|\?)", text):
+        found = _PLACEHOLDER.fullmatch(piece)
+        if found is None:
+            parts.append({"*": ".*?", "?": "."}.get(piece, re.escape(piece)))
+            continue
+        if found[1] not in names:
+            unknown(found[1], piece, names)
+        if found[1] in units:
+            raise InputError(f"{key} = {show(text)} has {found[1]} twice; name each input once, and write * for the rest.")
+        units[found[1]] = found[2] or ""
+        parts.append(rf"(?P<{found[1]}>{_NUMBER_IN_NAME if found[2] else '.+?'})")
+    if not units:
+        raise InputError(f'{key} = {show(text)} names no input; write, for example, "{{load}}_{{temperature}}_*.csv".')
+    return FileNames(text, "".join(parts), units)
+
+
+_PLACEHOLDER = re.compile(r"\{\s*(\w+)\s*(?:\[(.+)\])?\s*\}")
+
+_NUMBER_IN_NAME = r"[-+]?[0-9]+(?:[.,][0-9]+)?"
+
+
+@dataclass(frozen=True)
+class FileNames:
+    """What the names of files say: inputs between braces, with the unit where the name leaves it out."""
+
+    text: str  # The pattern as it is written
+    regex: str  # The same as a regular expression with a group for each input
+    units: dict[str, str]  # Input -> its unit; empty where the name has it
+
+    def values(self, name: str) -> dict[str, str]:
+        """Return the inputs in the name of a file as text with units."""
+        stem = name.rpartition(".")[0] or name
+        found = re.fullmatch(self.regex, stem) or re.fullmatch(self.regex, name)
+        if found is None:
+            raise InputError(f"the name does not follow file_names = {show(self.text)} of [fit]; rename it, or change that.")
+        texts = {key: value.replace(",", ".").replace("_", " ").strip() for key, value in found.groupdict().items()}
+        return {key: f"{text} {self.units[key]}".strip() for key, text in texts.items()}
+
+
 @dataclass(frozen=True)
 class FitSettings:
     """What the ``[fit]`` table of a case asks for."""
@@ -201,6 +273,15 @@ class FitSettings:
     units: dict[str, str] = _key("What a column is -> its unit.", entry=_column)
     bounds: dict[str, tuple[float, float]] = _key("Input -> lowest and highest value in SI units.", entry=_bounds)
     priors: dict[str, Prior] = _key("Input -> :class:`Prior`.", entry=_prior)
+    per_file: tuple[str, ...] = _key(
+        "Inputs that each file has for itself, one for all of its curves, where several files are fitted.", _names, ()
+    )
+    file_names: FileNames | None = _key(
+        'What the names of the data files say, such as ``"{load}_{temperature [degC]}_*.csv"``.', read_pattern
+    )
+    files: dict[str, dict[str, Any]] = _key(
+        "Name of a file, or glob of several -> inputs in which they differ from the case, as they are written.", entry=_file
+    )
     curves: dict[str, dict[str, Any]] = _key(
         "Name of a curve -> inputs in SI units in which it differs from the case, and its own fluid or solid.", entry=_curve
     )
@@ -208,6 +289,11 @@ class FitSettings:
     slide_to_roll: float = _key(
         "Slide-to-roll ratio of the contact: but at 2 and -2 both surfaces move, and a speed may be their mean or their sum.",
         default=PURE_SLIDING,
+    )
+    liquid: dict[str, Any] = field(
+        default_factory=dict,
+        compare=False,
+        metadata={"words": "The table ``[fluid]`` of a case with a preset, whose viscosity a temperature of a file gives."},
     )
     scales_surface: bool = field(
         default=False,
@@ -253,8 +339,8 @@ FitSettings.__doc__ = complete_docstring(
 )
 
 
-def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
-    """Return the settings that a ``[fit]`` table asks for."""
+def check_fit_table(table: Any, geometry: str = "line", liquid: Any = None) -> FitSettings:
+    """Return the settings that a ``[fit]`` table asks for, in a case with a table ``[fluid]``."""
     problems: list[str] = []
     keys: dict[str, Key] = {}
     for each in fields(FitSettings):
@@ -265,8 +351,18 @@ def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
     found = read_tables({"fit": table}, {"fit": keys}, problems).get("fit", {})
     if problems:
         raise InputError("\n".join(problems))
-    settings = FitSettings(geometry=geometry, **found)
-    extra = [name for name in settings.per_curve if name not in (settings.free or DEFAULT_FREE)]
-    if extra:
-        raise InputError(f"[fit] per_curve has {extra[0]}, which is not in free; add it there.")
+    known = liquid if isinstance(liquid, dict) and "preset" in liquid else {}
+    settings = FitSettings(geometry=geometry, liquid=known, **found)
+    for key in ("per_curve", "per_file"):
+        extra = [name for name in getattr(settings, key) if name not in (settings.free or DEFAULT_FREE)]
+        if extra:
+            raise InputError(f"[fit] {key} has {extra[0]}, which is not in free; add it there.")
+    both = [name for name in settings.per_file if name in settings.per_curve]
+    if both:
+        raise InputError(f"[fit] has {both[0]} in per_curve and in per_file; choose one.")
+    for name, entry in settings.files.items():
+        with noted(problems, "fit.files"):
+            inputs_of_file(name, entry, settings.inputs, known)
+    if problems:
+        raise InputError("\n".join(problems))
     return settings

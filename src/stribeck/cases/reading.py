@@ -70,7 +70,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     problems += wrong
     fit = FitSettings(geometry=geometry)
     with noted(problems):
-        fit = check_fit_table(table.pop("fit", {}), geometry)
+        fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
     found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)
     facts: dict[str, float] = {}

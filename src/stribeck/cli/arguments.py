@@ -38,6 +38,7 @@ Number = Annotated[float | None, _read_by(read_number)]
 Whole = Annotated[int, _read_by(_read_whole)]
 Quantity = Annotated[float | str | None, Parameter(allow_leading_hyphen=True)]  # A bare number is in SI units
 Quantities = Annotated[list[float | str] | None, Parameter(consume_multiple=True)]
+Names = Annotated[list[str] | None, Parameter(consume_multiple=True)]
 Pair = Annotated[tuple[float | str, float | str] | None, Parameter(allow_leading_hyphen=True)]
 Triple = Annotated[tuple[float | str, float | str, float | str] | None, Parameter(allow_leading_hyphen=True)]
 Verbose = Annotated[bool, Parameter(alias="-v", help="Print everything, not the answer alone.")]

@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 import stribeck as sb
-from stribeck.cli.arguments import Quantities, Whole, check_outputs
+from stribeck.cli.arguments import Names, Quantities, Whole, check_outputs
+from stribeck.cli.data_files import read_arguments
 from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
 from stribeck.cli.progress import interruptible
 
 
 def fit_command(
-    data: Path,
-    case: Path,
-    /,
-    *,
-    free: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
+    *files: Path,
+    free: Names = None,
+    per_file: Names = None,
     out: Path | None = None,
     plot: Path | None = None,
     no_notes: bool = False,
@@ -34,10 +31,14 @@ def fit_command(
     Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
 
     Example: stribeck fit measured.csv case.toml --free boundary_friction roughness modulus --robust
-    """
-    from stribeck.fits.case_file import check_fitted_case, load_fit_case, write_fitted_case
 
-    loaded = load_fit_case(data, case)
+    Example: stribeck fit oil_*.csv water.csv case.toml --free boundary_friction roughness --per-file roughness
+
+    Several data files are fitted together; [fit.files] of the case says in what they differ.
+    """
+    from stribeck.fits.case_file import check_fitted_case, write_fitted_case
+
+    data, loaded = read_arguments("fit", files)
     check_outputs(force, plot, out)
     from stribeck.fits.fit import names_to_fit
     from stribeck.fits.posterior import check_posterior, draw_posterior
@@ -47,7 +48,7 @@ def fit_command(
     if out is not None:
         check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)
     with interruptible() as progress:
-        found = sb.fit(data, loaded, free=free, robust=True if robust else None, on_step=progress.of_fit)
+        found = sb.fit(data, loaded, free=free, per_file=per_file, robust=True if robust else None, on_step=progress.of_fit)
         drawn = None
         if posterior is not None:
             drawn = draw_posterior(found, steps=posterior, on_step=lambda n, m: progress(n, m, "posterior"))
@@ -72,10 +73,7 @@ def fit_command(
 
 
 def next_command(
-    data: Path,
-    case: Path,
-    /,
-    *,
+    *files: Path,
     count: Whole = 3,
     speeds: Quantities = None,
     loads: Quantities = None,
@@ -90,9 +88,7 @@ def next_command(
 
     Example: stribeck next measured.csv case.toml --loads "10 N/m" "100 N/m"
     """
-    from stribeck.fits.case_file import load_fit_case
-
-    loaded = load_fit_case(data, case)
+    data, loaded = read_arguments("next", files)
     check_outputs(force, plot)
     with interruptible() as progress:
         found = sb.fit(data, loaded, intervals=False, on_step=progress.of_fit)
@@ -106,22 +102,20 @@ def next_command(
         )
     if plot is not None:
         plan.plot(plot, force=force, title=loaded.title)
-    files = {"files": [str(plot)] if plot is not None else []}
+    written = {"files": [str(plot)] if plot is not None else []}
     said = filter(None, [found.checks.first_line, str(plan)])
-    answer(json, lambda: plan.to_dict() | files, lambda: said, found.checks, None, [plot])
+    answer(json, lambda: plan.to_dict() | written, lambda: said, found.checks, None, [plot])
     return 0
 
 
-def compare_command(data: Path, case: Path, /, *, models: str | None = None, json: bool = False) -> int:
+def compare_command(*files: Path, models: str | None = None, json: bool = False) -> int:
     """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
 
     Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
 
     Example: stribeck compare measured.csv case.toml --models cavitation
     """
-    from stribeck.fits.case_file import load_fit_case
-
-    loaded = load_fit_case(data, case)
+    data, loaded = read_arguments("compare", files)
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, on_step=progress.of_fit)
     answer(json, found.to_dict, lambda: filter(None, [found.candidates[0].fit.checks.first_line, str(found)]))

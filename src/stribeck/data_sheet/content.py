@@ -15,7 +15,8 @@ from stribeck.checks.check import Checks
 from stribeck.contacts.contact import model_words
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
-from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.reading import read_measurements
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.regimes.levers import MAX_FACTOR, cheapest_levers
 from stribeck.regimes.overview import Overview, overview_of

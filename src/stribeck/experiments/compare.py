@@ -20,7 +20,8 @@ from stribeck.contacts.contact import Contact
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
-from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.reading import Data, measurements_of
 from stribeck.fits.result import Fit
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau
@@ -108,7 +109,7 @@ class Comparison(Exported, Told):
 
 @answers_typos
 def compare(
-    data: PathLike | Measurements,
+    data: Data,
     case: PathLike | Case | Contact,
     *,
     laws: Mapping[str, AsperityLaw | None] | None = None,
@@ -120,7 +121,7 @@ def compare(
 
     Parameters
     ----------
-    data : path-like or Measurements
+    data : path-like or Measurements, or sequence of these
         Measured friction.
     case : path-like, Case or Contact
         The contact.
@@ -155,7 +156,7 @@ def compare(
     loaded = case if isinstance(case, Case | Contact) else load_case(case)
     contact = loaded.contact if isinstance(loaded, Case) else loaded
     settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
-    rows = data if isinstance(data, Measurements) else read_measurements(data, settings)
+    rows = measurements_of(data, settings)
     names = tuple(free or settings.free or DEFAULT_FREE)
     if models is not None and laws is not None:
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")

@@ -252,7 +252,8 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
             friction = solution.friction(definition=fit.definition).total
     except (SolveError, InputError):
         return None
-    row = [slopes.get(each.name, 0.0) if each.curve in (None, curve) else 0.0 for each in fit.inputs]
+    at = fit.data.curves.index(curve)
+    row = [slopes.get(each.name, 0.0) if each.acts_on(at) else 0.0 for each in fit._minimum.objective.model.free]
     return (np.array(row), friction) if np.isfinite(row).all() else None
 
 

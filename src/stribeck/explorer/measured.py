@@ -14,7 +14,8 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs
 from stribeck.fits.fit import fit
-from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.reading import read_measurements
 from stribeck.quantities.units import InputError
 
 

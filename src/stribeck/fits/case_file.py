@@ -75,10 +75,15 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
     if not fit.converged:
         raise InputError(f"no fitted case is written. {fit.outcome.value}")
     said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
-    about = [f"# Fitted by stribeck {version('stribeck')} to {Path(fit.data.path).name}. {fit.outcome.value} {said}"]
+    about = [f"# Fitted by stribeck {version('stribeck')} to {_sources(fit)}. {fit.outcome.value} {said}"]
     names = list(dict.fromkeys(each.name for each in fit.inputs))
     with atomic_write(path, (".toml",), force=force) as temporary:
         _write(case, fit.contact, names, lambda name: _comments(name, fit), about, temporary, path)
+
+
+def _sources(fit: Fit) -> str:
+    names = dict.fromkeys(fit.data.files)
+    return ", ".join(names) if names else Path(fit.data.path).name
 
 
 Comments = Callable[[str], list[str]]

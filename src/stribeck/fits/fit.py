@@ -25,11 +25,12 @@ from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.identifiability import undetermined
 from stribeck.fits.least_squares import Minimum, effective_parameters, minimise, settle
-from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.notes import notes_of, outcome_of
 from stribeck.fits.objective import Objective, objective
 from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
+from stribeck.fits.reading import Data, measurements_of
 from stribeck.fits.residuals import excess_of, judge_residuals
 from stribeck.fits.result import Fit, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
@@ -63,10 +64,11 @@ Step = Callable[[str, int, int], object]
 
 @one_blas_thread
 def fit(
-    data: str | os.PathLike[str] | Measurements,
+    data: Data,
     case: str | os.PathLike[str] | Case | Contact,
     *,
     free: Sequence[str] | None = None,
+    per_file: Sequence[str] | None = None,
     robust: bool | None = None,
     intervals: bool = True,
     on_step: Step | None = None,
@@ -81,12 +83,14 @@ def fit(
 
     Parameters
     ----------
-    data : str or path-like or Measurements
-        Measured friction, or the file that holds it, see :func:`read_measurements`.
+    data : str or path-like or Measurements, or sequence of these
+        Measured friction, or the file or files that hold it, see :func:`read_measurements`; several are fitted together.
     case : str or path-like or Case or LineContact
         What is known of the contact, where the fit begins, and in the table ``[fit]`` of a file what is asked.
     free : sequence of str, optional
         Inputs to fit; those of the case, else friction coefficient and roughness.
+    per_file : sequence of str, optional
+        Those of them that each file has for itself, where there are several; as the case says by default.
     robust : bool, optional
         Whether outliers are kept from steering the fit; as the case says by default.
     intervals : bool
@@ -115,12 +119,11 @@ def fit(
     """
     problem = _problem(data, case)
     contact, settings, definition = problem.contact, problem.settings, problem.definition
-    if not isinstance(data, Measurements):
-        data = read_measurements(data, settings)
+    data = measurements_of(data, settings)
     names = names_to_fit(free, settings)
     if robust is not None:
         settings = replace(settings, robust=robust)
-    settings = replace(settings, per_curve=tuple(name for name in settings.per_curve if name in names))
+    settings = _with_owners(settings, names, per_file)
     wanted = free_inputs(contact, data, names, settings)
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
@@ -157,6 +160,19 @@ def names_to_fit(free: Sequence[str] | None, settings: FitSettings) -> tuple[str
     if not names:
         raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
     return names
+
+
+def _with_owners(settings: FitSettings, names: Sequence[str], per_file: Sequence[str] | None) -> FitSettings:
+    """Return the settings with the inputs that curves and files have for themselves, of those that are fitted."""
+    if per_file is None:
+        of_files = tuple(name for name in settings.per_file if name in names)
+    else:
+        of_files = free_names(per_file, "per_file")
+        extra = [name for name in of_files if name not in names]
+        if extra:
+            raise InputError(f"per_file has {extra[0]}, which is not fitted; add it to free.")
+    of_curves = tuple(name for name in settings.per_curve if name in names and name not in of_files)
+    return replace(settings, per_curve=of_curves, per_file=of_files)
 
 
 @dataclass
@@ -358,7 +374,7 @@ def _result(
     inputs = tuple(
         FittedInput(
             name=free.name,
-            curve=None if free.curve is None else data.curves[free.curve],
+            curve=free.owner,
             value=free.value(float(at.theta[i])),
             unit=unit_of(free.name, free.is_factor, contact.INPUTS),
             start=free.start,
@@ -383,7 +399,7 @@ def _result(
     factors = {each.name: each.value for each in inputs if each.is_factor}
     first = [(each.name, getattr(contact, each.name, None)) for each in inputs if each.is_factor]
     shared |= {name: value * factors[name] for name, value in first if value is not None}
-    of_first = [each.names for each in model.free if each.curve is not None or each.also]
+    of_first = [each.names for each in model.free if each.curves is not None or each.also]
     shared |= {name: getattr(contacts[0], name, None) for names in of_first for name in names}
     errors = at.prediction.error / at.prediction.friction
     return Fit(

@@ -23,18 +23,23 @@ class FreeInput:
     """An input that is fitted, as the logarithm of a factor on what it starts from."""
 
     name: str  # Name of the input of the contact
-    curve: int | None  # The curve that has it for itself; None where all share it
+    curves: tuple[int, ...] | None  # The curves that have it for themselves; None where all share it
     start: float  # Value of factor one, in SI units; 1 where curves that share it have different values
     low: float  # Bounds of the logarithm of the factor
     high: float  # Bounds of the logarithm of the factor
     prior: tuple[float, float] | None = None  # Mean and standard deviation of that logarithm before the data
     is_factor: bool = False  # Whether what is fitted is a common factor on values that differ
     also: tuple[str, ...] = ()  # Inputs on which the same factor acts
+    owner: str | None = None  # Name of the curve or file that has it for itself
 
     @property
     def names(self) -> tuple[str, ...]:
         """All inputs on which the factor acts."""
         return (self.name, *self.also)
+
+    def acts_on(self, curve: int) -> bool:
+        """Return whether a curve has it."""
+        return self.curves is None or curve in self.curves
 
     def value(self, theta: float) -> float:
         """Return the input in SI units, or the factor, at a logarithm of the factor."""
@@ -42,7 +47,7 @@ class FreeInput:
 
 
 def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], settings: FitSettings) -> tuple[FreeInput, ...]:
-    """Return the inputs to fit, one for each name, or one for each curve where the settings say so."""
+    """Return the inputs to fit, one for each name, or one for each curve or file where the settings say so."""
     found = []
     contacts = [contact.replace(**inputs) for inputs in data.inputs]
     for name in names:
@@ -52,19 +57,28 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
         values = {curve: value for curve, each in enumerate(contacts) if (value := getattr(each, name, None)) is not None}
         if not values:
             raise InputError(f"{name} is free, but no curve has one: it belongs to {_owner(name)}; give it in the case.")
-        alone = name in settings.per_curve and len(data.inputs) > 1
-        differ = max(values.values()) > min(values.values())
-        for curve in values if alone else (None,):
-            start = values[curve] if curve is not None else 1.0 if differ else next(iter(values.values()))
+        for owner, curves in _owners(name, data, settings).items():
+            own = [value for curve, value in values.items() if curves is None or curve in curves]
+            if not own:
+                continue
+            differ = max(own) > min(own)
+            start = 1.0 if differ else own[0]
             if start == 0:
                 raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
-            largest = start if curve is not None else max(values.values())
-            smallest = start if curve is not None else min(values.values())
-            each_free = _free_input(name, curve, start, differ and not alone, settings, contact)
+            each_free = replace(_free_input(name, curves, start, differ, settings, contact), owner=owner)
+            smallest, largest = min(own), max(own)
             if name == "roughness" and settings.scales_surface and "beta" not in names:
                 each_free = replace(each_free, also=("beta",))
             found.append(_in_range(each_free, smallest, largest))
     return tuple(found)
+
+
+def _owners(name: str, data: Measurements, settings: FitSettings) -> dict[str | None, tuple[int, ...] | None]:
+    """Return the curves or files that have an input for themselves, with their curves; None has all."""
+    labels = data.curves if name in settings.per_curve else data.files if name in settings.per_file else ()
+    if len(set(labels)) < 2:
+        return {None: None}
+    return {label: tuple(i for i, each in enumerate(labels) if each == label) for label in labels}
 
 
 def _owner(name: str) -> str:
@@ -83,7 +97,7 @@ def _in_range(free: FreeInput, smallest: float, largest: float) -> FreeInput:
 
 
 def _free_input(
-    name: str, curve: int | None, start: float, is_factor: bool, settings: FitSettings, contact: Contact
+    name: str, curves: tuple[int, ...] | None, start: float, is_factor: bool, settings: FitSettings, contact: Contact
 ) -> FreeInput:
     low, high = -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
     prior = settings.priors.get(name)
@@ -99,7 +113,7 @@ def _free_input(
             raise InputError(f"{name} starts at {_text(name, start, contact)}, outside its bounds {limits}.")
         low, high = math.log(ends[0] / start), math.log(ends[1] / start)
     mean_and_width = (math.log(prior.value / start), math.log(prior.factor)) if prior else None
-    return FreeInput(name, curve, start, low, high, mean_and_width, is_factor)
+    return FreeInput(name, curves, start, low, high, mean_and_width, is_factor)
 
 
 def _text(name: str, value: float, contact: Contact) -> str:

@@ -6,8 +6,8 @@ Every value that is refused is named with its row and column; what is left out o
 from __future__ import annotations
 
 import math
-import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,18 +18,21 @@ from stribeck.files.cells import rows_listed, split_header
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.text_table import TextTable, read_table
-from stribeck.files.writing import path_of
+from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats
 from stribeck.fits.table.rig import prepared, temperature_note
+from stribeck.fits.table.stated import inputs_said
 from stribeck.fits.table.strokes import without_stops
 from stribeck.fits.table.values import Values
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
-from stribeck.quantities.units import InputError, checked_kind, show
+from stribeck.quantities.units import InputError, show
 
-__all__ = ["Measurements", "read_measurements"]
+__all__ = ["Measurements", "read_file", "with_inputs_of_curves"]
+
+# Around what each column was taken for
+READ, CHANGE_READ = "Read: ", ". To change this, name the columns in [fit.columns] of the case."
 
 UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "hersey_per_length": "m-1"}
 
@@ -65,6 +68,8 @@ class Measurements(Exported, Shown, ByValue):
         What each column was taken for, and how to change that.
     run_in : tuple of int
         Rows of the file that look like run-in.
+    files : tuple of str
+        For each curve the file that it is from, where several files were read; empty otherwise.
     """
 
     _picture = "stribeck.plot.fit.plot_measurements"
@@ -81,6 +86,7 @@ class Measurements(Exported, Shown, ByValue):
     notes: tuple[str, ...] = field(default=())
     taken: str = ""
     run_in: tuple[int, ...] = ()
+    files: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -94,8 +100,9 @@ class Measurements(Exported, Shown, ByValue):
         dict of str to tuple
             Dimension, values, unit and long name of each, as of :func:`stribeck.files.datasets.new_dataset`.
         """
-        names = np.array(self.curves, dtype=object)
+        names, files = (np.array(each, dtype=object) for each in (self.curves, self.files))
         found: dict[str, Column] = {
+            **({"file": ("row", files[self.curve], "1", "file of the row")} if self.files else {}),
             "curve": ("row", names[self.curve], "1", "name of the curve"),
             self.abscissa: ("row", self.values, UNITS[self.abscissa], self.abscissa.replace("_", " ")),
             "friction": ("row", self.friction, "1", "measured friction coefficient"),
@@ -109,32 +116,8 @@ class Measurements(Exported, Shown, ByValue):
         return self.columns(), rows, {"title": "Measured friction", "file": self.path}
 
 
-@answers_typos
-def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None = None) -> Measurements:
-    """Read measured friction curves from a text file or a workbook.
-
-    Parameters
-    ----------
-    path : str or path-like
-        Columns apart by tab, semicolon, comma or spaces, with a header such as ``speed [mm/s];friction [%]``: friction, one of
-        speed (the sum of both surfaces', twice a mean or entrainment speed), viscosity times speed and Hersey number, and
-        where wanted its standard error, the name of the curve, and inputs of the contact in which curves differ.
-    settings : FitSettings, optional
-        The ``[fit]`` table of a case: columns in another language, units that no header gives.
-
-    Returns
-    -------
-    Measurements
-        The rows that hold speed and friction.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or a value be used; the sentence names row and column.
-    """
-    settings = (
-        FitSettings() if settings is None else checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
-    )
+def read_file(path: PathLike, settings: FitSettings) -> Measurements:
+    """Return the measured friction curves of one file, with what its name and the settings say of it."""
     table = with_errors_named(read_table(path_of(path), settings.header_row, knows=known_name, sheet=settings.sheet))
     written = table.header
     asked = settings
@@ -171,6 +154,8 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         averaged = average_repeats(rows, runs, settings.run_in == "keep")
         rows = rows if averaged is None else averaged.rows
     names, of_row, differing = _curves(table.path, rows, settings, "curve" in columns or len(frictions) > 1)
+    said, of_file = inputs_said(table, settings, Path(path).name, given)
+    differing = tuple({**of_file, **inputs} for inputs in differing)
     order = sorted(range(len(rows)), key=lambda i: (of_row[i], rows[i][2], rows[i][1]))
     found = Measurements(
         path=str(path),
@@ -188,7 +173,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
             *temperature_note(table),
             *(() if averaged is None else averaged.notes),
         ),
-        taken=_taken(columns, written, made, run),
+        taken=_taken(columns, written, (*made, *said), run),
         run_in=() if averaged is None else averaged.run_in,
     )
     _check_spread(found, frictions)
@@ -215,12 +200,17 @@ def _curves(
                 )
         of_row.append(at)
     labels = list(keys) if named else [_label(each, [inputs for _, inputs in first], settings) for _, each in first]
-    unknown = [name for name in settings.curves if name not in labels]
+    return tuple(labels), of_row, tuple(inputs for _, inputs in first)
+
+
+def with_inputs_of_curves(data: Measurements, settings: FitSettings) -> Measurements:
+    """Return the measurements with the inputs that the settings have for each curve."""
+    unknown = [name for name in settings.curves if name not in data.curves]
     if unknown:
-        known = ", ".join(labels)
-        raise InputError(f"{path}: no curve is called {show(unknown[0])}, as [fit.curves] has it; there are {known}.")
-    inputs_of = tuple({**first[i][1], **settings.curves.get(label, {})} for i, label in enumerate(labels))
-    return tuple(labels), of_row, inputs_of
+        known = ", ".join(data.curves)
+        raise InputError(f"{data.path}: no curve is called {show(unknown[0])}, as [fit.curves] has it; there are {known}.")
+    pairs = zip(data.curves, data.inputs, strict=True)
+    return replace(data, inputs=tuple({**inputs, **settings.curves.get(label, {})} for label, inputs in pairs))
 
 
 def _label(inputs: dict[str, float], of_all: list[dict[str, float]], settings: FitSettings) -> str:
@@ -238,7 +228,7 @@ def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[
         if set(names) <= set(written)
     ]
     parts = [*made, *parts, *([f"{show(run)} as run"] if run else [])]
-    return f"Read: {'; '.join(parts)}. To change this, name the columns in [fit.columns] of the case."
+    return f"{READ}{'; '.join(parts)}{CHANGE_READ}"
 
 
 def _notes(

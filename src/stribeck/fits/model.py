@@ -125,7 +125,7 @@ class FrictionModel:
         contact, found = self.contact_of(curve, theta, speed), dict[int, Change]()
         for k in of:
             free = self.free[k]
-            if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
+            if not free.acts_on(curve) or getattr(contact, free.name, None) is None:
                 continue
             beside = models_at_both_sides(contact, free.name)
             if beside is not None:
@@ -179,7 +179,7 @@ class FrictionModel:
         rows = []
         for free in self.free:
             row = np.sum([self._exponents_of(name) for name in free.names], axis=0)
-            rows.append((row * (free.curve in (None, curve))).tolist())
+            rows.append((row * free.acts_on(curve)).tolist())
         return rows
 
     def _exponents_of(self, free: str) -> list[float]:
@@ -210,7 +210,7 @@ class FrictionModel:
         """Return the contact of a curve at a set of free inputs, at a speed, by default that of the case."""
         factors: dict[str, float] = {}
         for free, t in zip(self.free, theta.tolist(), strict=True):
-            if free.curve in (None, curve):
+            if free.acts_on(curve):
                 factors |= dict.fromkeys(free.names, math.exp(t))
         contact = self.contacts[curve]
         values = {name: getattr(contact, name, None) for name in factors}

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import LINE
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.least_squares import Minimum
+from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import FitOutcome, FittedInput
 from stribeck.quantities.formats import format_si
 
@@ -68,9 +69,20 @@ def notes_of(
     if at.objective.robust:
         far = np.abs(at.residuals) > 4
         if far.any():
-            rows = ", ".join(map(str, sorted(at.objective.model.data.rows[far].tolist())[:10]))
-            notes.append(f"Rows beyond four standard errors, which have little weight in the fit: {rows}.")
+            notes.append(
+                "Rows beyond four standard errors, which have little weight in the fit: "
+                f"{_rows(at.objective.model.data, np.nonzero(far)[0])}."
+            )
     return notes
+
+
+def _rows(data: Measurements, which: Indices) -> str:
+    """Return the rows of files, with the names of the files where there are several."""
+    rows_of: dict[str, list[int]] = {}
+    for i in which.tolist():
+        rows_of.setdefault(data.files[data.curve[i]] if data.files else "", []).append(int(data.rows[i]))
+    texts = {name: ", ".join(map(str, sorted(rows)[:10])) for name, rows in rows_of.items()}
+    return ", ".join(f"{rows} of {name}" if name else rows for name, rows in texts.items())
 
 
 def _implausible(each: FittedInput) -> bool:

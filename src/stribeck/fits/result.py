@@ -52,7 +52,7 @@ class FittedInput(Record):
     name : str
         Name of the input of the contact.
     curve : str or None
-        The curve that has it for itself; None where all share it.
+        The curve or file that has it for itself; None where all share it.
     value : float
         Fitted value in SI units, or the fitted factor.
     unit : str
@@ -85,7 +85,7 @@ class FittedInput(Record):
 
     _labels = {
         "name": ("1", "input of the contact"),
-        "curve": ("1", "curve that has it for itself"),
+        "curve": ("1", "curve or file that has it for itself"),
         "value": ("", "fitted value, or fitted factor"),
         "unit": ("1", "SI unit; empty for numbers and factors"),
         "start": ("", "where the fit began"),
