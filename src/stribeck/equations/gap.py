@@ -117,8 +117,8 @@ def _brackets(order: int) -> Array:
 def _powers(t: Array, count: int) -> Array:
     """Return the first powers of numbers, shape (len(t), count)."""
     found = np.ones((len(t), count))
-    np.cumprod(np.broadcast_to(t[:, None], (len(t), count - 1)), axis=1, out=found[:, 1:])
-    return found
+    found[:, 1:] = t[:, None]
+    return np.multiply.accumulate(found, axis=1, out=found)
 
 
 @lru_cache(maxsize=32)

@@ -205,10 +205,15 @@ def matrix_of(trace: Trace, name: str, out: Array) -> None:
             factors[operator] = factors[operator] + factor if operator in factors else factor
     if not factors:
         out[...] = 0.0
-    for k, (operator, factor) in enumerate(factors.items()):
-        if k:
-            out += operator.matrix * factor
-        else:
-            np.multiply(operator.matrix, factor, out=out)
+    width = -(-out.shape[1] // 4)
+    for start in range(0, out.shape[1], width):  # parts of the columns stay in the cache, and need no other matrix
+        columns = slice(start, start + width)
+        part = out[:, columns]
+        for k, (operator, factor) in enumerate(factors.items()):
+            own = factor[columns] if np.ndim(factor) else factor
+            if k:
+                part += operator.matrix[:, columns] * own
+            else:
+                np.multiply(operator.matrix[:, columns], own, out=part)
     if np.any(diagonal):
         np.einsum("ii->i", out)[...] += diagonal
