@@ -18,6 +18,7 @@ _HOMES = {
     "data_sheet.new_case": ("new_case",),
     "data_sheet.report": ("write_report",),
     "experiments.compare": ("compare",),
+    "experiments.master_curve": ("master_curve",),
     "experiments.next_runs": ("next_runs",),
     "fits.fit": ("fit",),
     "fits.reading": ("read_measurements",),

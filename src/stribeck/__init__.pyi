@@ -15,6 +15,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.data_sheet.new_case import new_case
 from stribeck.data_sheet.report import write_report
 from stribeck.experiments.compare import compare
+from stribeck.experiments.master_curve import master_curve
 from stribeck.experiments.next_runs import next_runs
 from stribeck.fits.fit import fit
 from stribeck.fits.reading import read_measurements
@@ -48,6 +49,7 @@ __all__ = [
     "fluids",
     "load_case",
     "load_sweep",
+    "master_curve",
     "new_case",
     "next_runs",
     "open_sweep",

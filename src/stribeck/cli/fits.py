@@ -108,6 +108,25 @@ def next_command(
     return 0
 
 
+def master_command(
+    *files: Path, plot: Path | None = None, no_notes: bool = False, json: bool = False, force: bool = False
+) -> int:
+    """Put all fluids and loads over viscosity times speed and over the Hersey number, and report what breaks one curve.
+
+    Example: stribeck master oil_*.csv water.csv case.toml --plot master.png
+
+    Prints the scatter about one curve relative to the errors, and which file, load or fluid breaks it.
+    """
+    data, loaded = read_arguments("master", files)
+    check_outputs(force, plot)
+    found = sb.master_curve(data, loaded)
+    if plot is not None:
+        found.plot(plot, force=force, title=loaded.title, notes=not no_notes)
+    written = [str(plot)] if plot is not None else []
+    answer(json, lambda: found.to_dict() | {"files": written}, lambda: [loaded.title, str(found)], None, None, written)
+    return 0
+
+
 def compare_command(*files: Path, models: str | None = None, json: bool = False) -> int:
     """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
 

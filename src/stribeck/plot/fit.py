@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit
 from stribeck.plot import style
@@ -69,8 +70,13 @@ def plot_measurements(data: Measurements, *, ax: Axes | None = None, title: str 
 
 
 def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, Any]]:
-    """Draw each measured curve with error bars, if there are any, and return the styles."""
-    make_logarithmic(axes, "x", data.values)
+    """Draw each measured curve over what it was measured against."""
+    return draw_points(axes, data, data.values, bars)
+
+
+def draw_points(axes: Axes, data: Measurements, values: Array, bars: Any) -> list[dict[str, Any]]:
+    """Draw each measured curve over an abscissa with error bars, if there are any, and return the styles."""
+    make_logarithmic(axes, "x", values)
     make_logarithmic(axes, "y", data.friction)
     axes.set_ylabel(style.FRICTION)
     styles = []
@@ -80,7 +86,7 @@ def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, 
         form: dict[str, Any] = {"color": colour, "ls": "none", "marker": marker, "ms": 4.0, "mfc": "white", "mew": 1.1}
         label = "measured" if len(data.curves) == 1 else f"measured: {name}"
         error = None if bars is None else bars[rows]
-        axes.errorbar(data.values[rows], data.friction[rows], error, lw=0.9, zorder=4, label=label, **form)
+        axes.errorbar(values[rows], data.friction[rows], error, lw=0.9, zorder=4, label=label, **form)
         styles.append(form)
     return styles
 

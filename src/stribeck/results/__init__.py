@@ -13,6 +13,7 @@ _HOMES = {
     "curves.result": ("StribeckCurve",),
     "curves.simulator_model": ("StribeckModel",),
     "experiments.compare": ("Comparison",),
+    "experiments.master_curve": ("MasterCurve",),
     "experiments.next_runs": ("Plan",),
     "fits.measurements": ("Measurements",),
     "fits.result": ("Fit", "FitOutcome", "FittedInput"),

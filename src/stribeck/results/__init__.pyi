@@ -10,6 +10,7 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.simulator_model import StribeckModel
 from stribeck.experiments.compare import Comparison
+from stribeck.experiments.master_curve import MasterCurve
 from stribeck.experiments.next_runs import Plan
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
@@ -36,6 +37,7 @@ __all__ = [
     "HertzScales",
     "Inlet",
     "Landmark",
+    "MasterCurve",
     "Measurements",
     "Plan",
     "PointSolution",
