@@ -44,6 +44,7 @@ CONTENTS = {
         "explorer",
         "surfaces",
         "fluids",
+        "bench",
         "fitting",
         "contact_laws",
         "sweep",

@@ -33,7 +33,7 @@ LAYERS = (
     ("__init__", "__main__", "cli", "results"),
     ("explorer", "figures", "data_sheet"),
     ("plot",),
-    ("experiments",),
+    ("bench", "experiments"),
     ("fits", "sweeps", "regimes"),
     ("checks", "uncertainty"),
     ("curves", "batches"),
@@ -212,7 +212,7 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
     lazy = ["stribeck.quantities", "stribeck.quantities.lazy"]  # what finds the others
     assert json.loads(run.stdout) == [lazy, sorted(stribeck.__all__), True]
     text = pydoc.plaintext.document(stribeck)
-    assert len(dir(stribeck)) <= 37
+    assert len(dir(stribeck)) <= 38
     for name in ("solve", "LineContact", "results", "phase_diagram"):
         assert name in text
     for name in ("import_module", "HOMES"):
@@ -221,7 +221,9 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
         stribeck.__getattr__("stribek_curve")
 
 
-NAMESPACES = [stribeck, stribeck.contact_laws, stribeck.fluids, stribeck.profiles, stribeck.results, stribeck.solids]
+NAMESPACES = [
+    *(stribeck, stribeck.bench, stribeck.contact_laws, stribeck.fluids, stribeck.profiles, stribeck.results, stribeck.solids)
+]
 
 
 def test_the_stub_of_a_package_has_its_names(subtests):

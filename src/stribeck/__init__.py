@@ -2,7 +2,7 @@
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_PACKAGES = ("asymptotics", "atlas", "contact_laws", "fluids", "profiles", "results", "solids", "surfaces")
+_PACKAGES = ("asymptotics", "atlas", "bench", "contact_laws", "fluids", "profiles", "results", "solids", "surfaces")
 _HOMES = {
     "batches.executors": ("SweepError",),
     "batches.solve_batch": ("solve_batch",),

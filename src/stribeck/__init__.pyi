@@ -1,6 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
-from stribeck import asymptotics, atlas, contact_laws, fluids, profiles, results, solids, surfaces
+from stribeck import asymptotics, atlas, bench, contact_laws, fluids, profiles, results, solids, surfaces
 from stribeck.batches.executors import SweepError
 from stribeck.batches.solve_batch import solve_batch
 from stribeck.cases.case import Case
@@ -41,6 +41,7 @@ __all__ = [
     "SweepError",
     "asymptotics",
     "atlas",
+    "bench",
     "check",
     "compare",
     "contact_laws",

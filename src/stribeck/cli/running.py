@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
 import stribeck as sb
+from stribeck.cli.bench import bench_command
 from stribeck.cli.exits import (
     EXIT_BAD_INPUT,
     EXIT_BROKEN_PIPE,
@@ -42,7 +43,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     command.__name__.removesuffix("_command"): command
     for command in (
         *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
-        *(surface_command, leak_command, fit_command, next_command, compare_command),
+        *(surface_command, leak_command, bench_command, fit_command, next_command, compare_command),
         *(master_command, report_command, explore_command),
     )
 }

@@ -2,6 +2,7 @@
 
 from stribeck.asymptotics.smooth.film_of_pressure import Films, Inlet, PressureFilm
 from stribeck.batches.result import BatchSolution
+from stribeck.bench.result import BenchCurve
 from stribeck.checks.check import Check, Checks
 from stribeck.cli.reports.regimes import Explanation
 from stribeck.contacts.contact import HertzScales
@@ -24,6 +25,7 @@ from stribeck.uncertainty.result import Spread, Uncertainty
 
 __all__ = [
     "BatchSolution",
+    "BenchCurve",
     "Check",
     "Checks",
     "Comparison",

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.files.cells import rows_listed
+from stribeck.fits.table.correlated import FEWEST, errors_of_means
 
-__all__ = ["Averaged", "Row", "average_repeats"]
+__all__ = ["Averaged", "Row", "average_repeats", "counted", "run_in"]
 
 SAME_SPEED = 0.01  # Relative difference up to which speeds are the same point
 
@@ -26,12 +26,6 @@ DEVIATIONS = 4.0  # Standard deviations of the noise of a speed within which row
 
 # Way from end to end over the way from row to row, from which a speed is ramped: 1 on a ramp, 1/2 for three rows of noise.
 RAMP_SHARE = 0.75
-
-FEWEST = 3  # Repeats from which their scatter is an error, and rows from which a setting is one
-
-FEWEST_BLOCKS = 8  # Blocks of a series from which the correlation of neighbours is estimated
-
-SMALL_PROBABILITY = 0.01  # Probability below which the scatter of one step is its own and not that of all
 
 # Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in.
 RUN_IN, CLEAR = 0.03, 3.0
@@ -68,7 +62,7 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
     r"""Average rows at the same speed of a curve: their mean and its standard error."""
     steps, starting, ramped = _steps(rows, runs)
     means = [step.mean for step in steps]
-    marked, sentences = _run_in(means, _counted(means, [step.run for step in steps]))
+    marked, sentences = run_in(means, counted(means, [step.run for step in steps]))
     numbers = {row[1] for step in steps for row in step.rows if step.rows[0][1] in marked}
     kept = [step for step in steps if keep_run_in or step.rows[0][1] not in marked]
     groups = _at_same_speed(kept, _tolerance(rows, runs))
@@ -104,7 +98,7 @@ def _together(group: Sequence[_Step], error: float) -> Row:
 def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     """Return the relative standard errors of the means of steps at one speed, and what they are from."""
     series = [np.array([row[3] for row in step.rows]) / step.mean[3] - 1 for group in groups for step in group]
-    within = iter(_errors_of_means(series))
+    within = iter(errors_of_means(series))
     own, spread, freedom = [], 0.0, 0
     for group in groups:
         sizes = np.array([len(step.rows) for step in group], float)
@@ -133,78 +127,6 @@ def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     return found, (
         f"the error of a mean is that of {count:.2g} independent rows in {rows:.3g}, by the correlation of neighbouring rows;"
     )
-
-
-def _errors_of_means(series: Sequence[Array]) -> list[float]:
-    """Return the standard errors of the means of series that share variance and correlation, given their deviations."""
-    best = [0.0] * len(series)
-    block = 1
-    # Blocks show slow changes of long steps; steps too short for blocks may remember longer than themselves.
-    short = bool(np.median([len(each) for each in series]) < 2 * FEWEST_BLOCKS)
-    while True:
-        blocks = [each[: len(each) // block * block].reshape(-1, block).mean(axis=1) for each in series]
-        blocks = [each - each.mean() if len(each) else each for each in blocks]
-        if block > 1 and np.median([len(each) for each in blocks]) < FEWEST_BLOCKS:
-            return best
-        others = [[*blocks[:i], *blocks[i + 1 :]] for i in range(len(blocks))]
-        own = [
-            len(each) >= FEWEST_BLOCKS and _is_its_own(each, _memory(rest)) for each, rest in zip(blocks, others, strict=True)
-        ]
-        common = _memory([each for each, apart in zip(blocks, own, strict=True) if not apart], short)
-        for i, (each, apart) in enumerate(zip(blocks, own, strict=True)):
-            error = _error_of_mean(max(1.0, len(series[i]) / block), *common)
-            best[i] = max(best[i], error, _error_of_mean(len(each), *_memory([each])) if apart else 0.0)
-        block *= 2
-
-
-def _memory(series: Sequence[Array], as_pass: bool = False) -> tuple[float, float]:
-    """Return variance and correlation of neighbours of series about their means, without the bias of these means."""
-    long = [each for each in series if len(each) >= FEWEST]
-    squares = sum(float(each @ each) for each in series)
-    freedom = sum(max(len(each) - 1, 0) for each in series)
-    if not squares or not freedom:
-        return 0.0, 0.0
-    if not long:
-        return squares / freedom, 0.0
-    rows = float(np.mean([len(each) for each in long]))
-    products = sum(float(each[1:] @ each[:-1]) for each in long)
-    found = products / sum(float(each @ each) for each in long)
-    # What never forgets, a step or a pass, is a single row.
-    longest = sum(len(each) for each in series) if as_pass else rows
-    low, high = 0.0, (longest - 1) / (longest + 1)
-    for _ in range(40):
-        rho = 0.5 * (low + high)
-        low, high = (rho, high) if _expected(rows, rho) < found else (low, rho)
-    expected = sum(len(each) * (1 - _share(len(each), rho)) for each in series if len(each) > 1)
-    return float(squares / expected), rho
-
-
-def _expected(rows: float, rho: float) -> float:
-    """Return the expected correlation of neighbours about the mean of a series."""
-    share, first = _share(rows, rho), (1 - rho**rows) / (rows * (1 - rho))
-    return float(((rows - 1) * rho - (rows + 1) * share + 2 * first) / (rows * (1 - share)))
-
-
-def _share(rows: float, rho: float) -> float:
-    """Return the variance of the mean of a series over that of its rows."""
-    if rows <= 1:
-        return 1.0
-    sums = (1 + rho) / (1 - rho) - 2 * rho * (1 - rho**rows) / (rows * (1 - rho) ** 2)
-    return float(min(1.0, sums / rows))
-
-
-def _error_of_mean(rows: float, variance: float, rho: float) -> float:
-    return math.sqrt(variance * _share(rows, rho))
-
-
-def _is_its_own(series: Array, common: tuple[float, float]) -> bool:
-    """Return whether a series scatters or remembers more than chance lets one of the common kind."""
-    from scipy.stats import chi2
-
-    rows, alone = len(series), _memory([series])
-    freedom = max(1.0, 1 / _share(rows, common[1]) - 1)
-    scatters = alone[0] > common[0] * float(chi2.ppf(1 - SMALL_PROBABILITY, freedom)) / freedom
-    return bool(scatters) or alone[1] - common[1] > 2 / math.sqrt(rows)
 
 
 def _steps(rows: Sequence[Row], runs: Sequence[str]) -> tuple[list[_Step], list[int], bool]:
@@ -284,7 +206,7 @@ def _at_same_speed(steps: Sequence[_Step], tolerance: float) -> list[list[_Step]
     return groups
 
 
-def _counted(rows: Sequence[Row], runs: Sequence[str]) -> Sequence[str]:
+def counted(rows: Sequence[Row], runs: Sequence[str]) -> Sequence[str]:
     """Return the runs; where each row has a label of its own, as steps have, the k-th row at a speed is of run k."""
     if len(set(runs)) < len(runs):
         return runs
@@ -297,7 +219,7 @@ def _counted(rows: Sequence[Row], runs: Sequence[str]) -> Sequence[str]:
     return found
 
 
-def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[str]]:
+def run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[str]]:
     """Return the rows of first runs that differ from later ones, and a note on them."""
     marked: set[int] = set()
     said = []

@@ -17,11 +17,11 @@ import numpy as np
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING_CELLS, is_called, is_named, normalised_header, number_of, split_header
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.repeats import FEWEST
+from stribeck.fits.table.correlated import FEWEST
 from stribeck.fits.table.units import BARE, has_dimension, si_factor
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["MADE_SPEED", "RIG", "prepared", "temperature_note"]
+__all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
 
 # What a column of a rig may be beside those of a friction curve.
 RIG = (
@@ -108,13 +108,13 @@ class Prepared(NamedTuple):
     found: tuple[str, ...]  # What columns of a rig there are
 
 
-def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> Prepared:
-    """Return a table with friction and speed computed from what a rig measured."""
+def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False) -> Prepared:
+    """Return a table with friction and speed computed from what a rig measured, ``signed`` with the direction of the force."""
     found = _rig_columns(table, settings)
     said = []
     ours = set()
     if not known("friction") or (settings.columns.keys() & FORCES and "friction" not in settings.columns):
-        made = _friction(table, _declared_first(found, FORCES, settings), settings)
+        made = _friction(table, _declared_first(found, FORCES, settings), settings, signed)
         if made is not None:
             values, sentence = made
             table = _with_column(table, MADE_FRICTION, values)
@@ -155,15 +155,19 @@ def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], setti
 
 def temperature_note(table: TextTable) -> tuple[str, ...]:
     """Return a sentence on the measured temperature, for which the viscosity of a case has to be; none without it."""
-    names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
-    names.sort(key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", normalised_header(name)) is None)
-    for name in names:
+    for name in _temperature_columns(table):
         values = [value for value in _cells_or_none(table, name) if value is not None]
         if values:
             low, high, unit = min(values), max(values), TEMPERATURES[table.unit(name)]
             said = f"{low:g} {unit}" if high - low < TEMPERATURE_TOLERANCE else f"{low:g} to {high:g} {unit}"
             return (f"Temperature by {show(name)}: {said}; the viscosity of the case must be that at this temperature.",)
     return ()
+
+
+def _temperature_columns(table: TextTable) -> list[str]:
+    """Return the columns of temperatures, that of the liquid first."""
+    names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
+    return sorted(names, key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", normalised_header(name)) is None)
 
 
 def _levelled(
@@ -272,8 +276,34 @@ def _rounded(value: float) -> float:
     return rough if abs(rough / value - 1) < 0.01 else float(f"{value:.3g}")
 
 
-def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
+def column_of(table: TextTable, meaning: str, settings: FitSettings) -> str:
+    """Return the header of a column of a rig, such as its normal force; empty where there is none with a unit."""
+    names = _rig_columns(table, settings).get(meaning, ())
+    return next((name for name in names if unit_in(table, name, meaning, settings)), "")
+
+
+def measured(table: TextTable, meaning: str, settings: FitSettings) -> list[float | None] | None:
+    """Return the numbers [SI] of a column of a rig, such as its normal force; None where there is none with a unit."""
+    name = column_of(table, meaning, settings)
+    return _numbers(table, name, meaning, settings) if name else None
+
+
+def temperatures(table: TextTable) -> tuple[list[float | None], str] | None:
+    """Return the temperatures [degC] of a column, that of the liquid if there are several, and its header; None if none."""
+    for name in _temperature_columns(table):
+        values = _cells_or_none(table, name)
+        if any(value is not None for value in values):
+            unit = TEMPERATURES[table.unit(name)]
+            zero, factor = {"K": (273.15, 1.0), "°F": (32.0, 5 / 9)}.get(unit, (0.0, 1.0))
+            return [None if value is None else (value - zero) * factor for value in values], name
+    return None
+
+
+def _friction(
+    table: TextTable, found: dict[str, list[str]], settings: FitSettings, signed: bool
+) -> tuple[list[float | None], str] | None:
     """Return friction coefficients and how they were obtained; None if the rig gives none."""
+    size = float if signed else abs
     if "friction_force" in found:
         force = found["friction_force"][0]
         if "normal_force" not in found:
@@ -283,16 +313,16 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
             value, number, name = stated
             values = _numbers(table, force, "friction_force", settings)
             return [
-                None if each is None else abs(each / value) for each in values
+                None if each is None else size(each / value) for each in values
             ], f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
         normal = found["normal_force"][0]
         units = {unit_in(table, force, "friction_force", settings), unit_in(table, normal, "normal_force", settings)}
         if len(units) == 1 and units != {""}:
-            return _quotients(zip(_cells(table, force), _cells(table, normal), strict=True)), _ratio_of(force, normal)
+            pairs = zip(_cells(table, force), _cells(table, normal), strict=True)
+            return _quotients(pairs, size), _ratio_of(force, normal)
         tangential = _numbers(table, force, "friction_force", settings)
-        return _quotients(zip(tangential, _numbers(table, normal, "normal_force", settings), strict=True)), _ratio_of(
-            force, normal
-        )
+        pairs = zip(tangential, _numbers(table, normal, "normal_force", settings), strict=True)
+        return _quotients(pairs, size), _ratio_of(force, normal)
     if "torque" in found and "normal_force" in found:
         normal = found["normal_force"][0]
         torque = found["torque"][0]
@@ -307,7 +337,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
         moments = zip(_numbers(table, torque, "torque", settings), lengths, strict=True)
         values = [None if moment is None or not length else moment / length for moment, length in moments]
         pairs = zip(values, _numbers(table, normal, "normal_force", settings), strict=True)
-        return _quotients(pairs), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
+        return _quotients(pairs, size), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
     return None
 
 
@@ -315,8 +345,8 @@ def _ratio_of(force: str, normal: str) -> str:
     return f"friction = |{show(force)} / {show(normal)}|"
 
 
-def _quotients(pairs: Iterable[tuple[float | None, float | None]]) -> list[float | None]:
-    return [abs(f / n) if f is not None and n else None for f, n in pairs]
+def _quotients(pairs: Iterable[tuple[float | None, float | None]], size: Callable[[float], float]) -> list[float | None]:
+    return [size(f / abs(n)) if f is not None and n else None for f, n in pairs]
 
 
 def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[float | None], str] | None:

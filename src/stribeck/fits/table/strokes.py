@@ -13,7 +13,7 @@ from stribeck.files.cells import MISSING_CELLS, number_of, rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["without_stops"]
+__all__ = ["without_codes", "without_stops"]
 
 REST_SPEED = 1e-9  # Speed over the largest of the file below which it is zero but for rounding
 
@@ -31,22 +31,27 @@ class _Kind:
     at_rest: bool = False
 
 
-def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
-    """Return the table without rows at rest and reversals, if its signs are directions of strokes."""
-    speeds = _numbers(table, abscissa)
-    frictions = {name: _numbers(table, name) for name in friction}
-    coded = np.isin(speeds, CODES)
+def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> TextTable:
+    """Return the table with empty cells for friction that programs write as missing; refuse a speed like that."""
+    coded = np.isin(_numbers(table, abscissa), CODES)
     if coded.any():
         code = table.column(abscissa)[int(np.flatnonzero(coded)[0])]
         raise InputError(
             f"{table.path}: column {show(abscissa)} has {show(code)} in row {_listed(table, coded)}, which programs write "
             "where a value is missing; leave such cells empty."
         )
-    for name, mu in frictions.items():
-        coded = np.isin(mu, CODES)
+    for name in friction:
+        coded = np.isin(_numbers(table, name), CODES)
         if coded.any():
             table = _emptied(table, name, coded)
-            frictions[name] = np.where(coded, np.nan, mu)
+    return table
+
+
+def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
+    """Return the table without rows at rest and reversals, if its signs are directions of strokes."""
+    table = without_codes(table, abscissa, friction)
+    speeds = _numbers(table, abscissa)
+    frictions = {name: _numbers(table, name) for name in friction}
     largest = np.nanmax(np.abs(speeds), initial=0.0)
     rest = np.abs(speeds) <= REST_SPEED * largest
     if settings.magnitudes:

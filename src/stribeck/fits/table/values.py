@@ -27,10 +27,16 @@ class Values:
         self.factors: dict[tuple[str, str], float] = {}
 
     def value(self, i: int, column: str, meaning: str) -> float | None:
-        """Return a value in SI units, None where it is missing."""
+        """Return a value in SI units, None where it is missing; refuse one that is impossible."""
+        value = self.number(i, column, meaning)
+        if value is None:
+            return None
+        return self._checked(value, self.table.rows[i][self.table.header.index(column)], meaning, self._where(i, column))
+
+    def number(self, i: int, column: str, meaning: str) -> float | None:
+        """Return a number in SI units as it stands, None where it is missing."""
         at = self.table.header.index(column)
         cell = self.table.rows[i][at]
-        where = f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
         if cell.lower() in MISSING_CELLS:
             return None
         if column not in self.decimals:
@@ -39,10 +45,12 @@ class Values:
         if found is None:
             thousands = "write it without marks between thousands"
             advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
-            raise InputError(f"{where}: {show(cell)} is not a number; {advice}.")
+            raise InputError(f"{self._where(i, column)}: {show(cell)} is not a number; {advice}.")
         number, unit = found
-        value = number * (self._factor(unit, meaning, where) if unit else self._unit(column, at, meaning))
-        return self._checked(value, cell, meaning, where)
+        return number * (self._factor(unit, meaning, self._where(i, column)) if unit else self._unit(column, at, meaning))
+
+    def _where(self, i: int, column: str) -> str:
+        return f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
 
     def _unit(self, column: str, at: int, meaning: str) -> float:
         """Return the SI value of the unit of a column: that of [fit.units], of the header, or of a row of units."""

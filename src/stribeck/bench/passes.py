@@ -1,0 +1,242 @@
+"""Passes: what a series holds of one speed, load and direction, with its mean and the error of that mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from stribeck._types import Array, Flags, Indices
+from stribeck.bench.raw import Raw
+from stribeck.bench.segments import Part, directions, parts_of
+from stribeck.bench.start_up import common_memory, drift_of, start_of
+from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, errors_of_means, memory
+from stribeck.fits.table.repeats import SAME_SPEED
+from stribeck.quantities.formats import format_percent, format_si
+
+__all__ = ["KEPT", "LEFT_OUT", "Pass", "Series", "passes_of"]
+
+# What becomes of a row.
+KEPT, AT_REST, CHANGING, STARTING, RUN_IN = range(5)
+LEFT_OUT = ("kept", "at rest", "speed changes", "start of a step", "run-in")
+
+TURNING = 0.1  # Length over that of the usual stroke below which a stretch of one direction is noise around rest
+
+
+@dataclass(frozen=True)
+class Pass:
+    """The rows of one speed, load and direction, or the strokes, one after the other."""
+
+    curve: int  # Of the file
+    direction: int
+    speed: float  # [m/s]
+    time: float  # Mean time [s]
+    rows: Indices = field(repr=False)  # Places of the rows that are kept
+    values: Array = field(repr=False)  # Friction of each row, or of each stroke
+    strokes: bool  # Whether the values are means of strokes
+    starting: Indices = field(repr=False)  # Places of the rows of its start
+    error: float = 0.0  # Standard error of the mean of the values [-]
+    independent: float = 1.0  # Number of independent values that have this error
+
+    @property
+    def mean(self) -> float:
+        """The mean of its values."""
+        return float(self.values.mean())
+
+
+@dataclass(frozen=True)
+class Series:
+    """A file with its passes."""
+
+    raw: Raw
+    friction: Array  # Positive along the motion [-]
+    passes: tuple[Pass, ...]
+    status: Indices  # What became of each row
+    notes: tuple[str, ...]
+
+
+def passes_of(raw: Raw, per_decade: float) -> Series:
+    """Return the passes of a file, with what was left out and why."""
+    speed, friction, _ = directions(raw.speed, raw.friction)
+    changes = np.zeros(len(speed), dtype=bool)
+    changes[1:] = raw.curve[1:] != raw.curve[:-1]
+    if raw.steps:
+        steps = np.array(raw.steps)
+        changes[1:] |= steps[1:] != steps[:-1]
+    parts = parts_of(speed, changes)
+    status = np.full(len(speed), CHANGING)
+    for part in parts:
+        status[part.first : part.end] = KEPT if part.steady else AT_REST if part.direction == 0 else CHANGING
+    notes: list[str] = []
+    held = int((status == KEPT).sum())
+    if held >= int((status == CHANGING).sum()):
+        found = _of_steps([part for part in parts if part.steady], raw, friction)
+    else:
+        found, said = _of_ramps(parts, raw, speed, friction, per_decade)
+        notes.append(said)
+        status[np.concatenate([each.rows for each in found])] = KEPT
+    notes += _rest_and_changes(raw, status)
+    common = {strokes: common_memory([p.values for p in found if p.strokes == strokes]) for strokes in (False, True)}
+    found = [_settled(each, common[each.strokes], raw, notes) for each in found]
+    for each in found:
+        status[each.starting] = STARTING
+    found = _with_errors(found, raw.resolution)
+    found = [_with_drift(each, common[each.strokes], raw, notes) for each in found]
+    return Series(raw, friction, tuple(found), status, tuple(notes))
+
+
+def _of_steps(parts: Sequence[Part], raw: Raw, friction: Array) -> list[Pass]:
+    """Return the passes of steps; many strokes at one speed, one after the other, are two passes of strokes."""
+    blocks: list[list[Part]] = []
+    for part in parts:
+        last = blocks[-1][-1] if blocks else None
+        same = last is not None and raw.curve[last.first] == raw.curve[part.first]
+        if same and last is not None and abs(math.log(part.speed / last.speed)) <= SAME_SPEED:
+            blocks[-1].append(part)
+        else:
+            blocks.append([part])
+    return [each for block in blocks for each in _passes([(part.rows, part.direction) for part in block], raw, friction)]
+
+
+def _of_ramps(parts: Sequence[Part], raw: Raw, speed: Array, friction: Array, per_decade: float) -> tuple[list[Pass], str]:
+    """Return the passes of a speed that does not rest: rows of neighbouring speeds in bins, and a sentence on these."""
+    stretches: list[list[int]] = []
+    for part in parts:
+        if part.direction and stretches and stretches[-1][1] == part.first and stretches[-1][2] == part.direction:
+            stretches[-1][1] = part.end
+        elif part.direction:
+            stretches.append([part.first, part.end, part.direction])
+    lengths = np.array([end - first for first, end, _ in stretches])
+    order = np.argsort(lengths)
+    usual = lengths[order][int(np.searchsorted(np.cumsum(lengths[order]), lengths.sum() / 2))]
+    stretches = [each for each in stretches if each[1] - each[0] >= TURNING * usual]
+    moving = np.concatenate([np.arange(first, end) for first, end, _ in stretches])
+    y = np.log(np.abs(speed[moving]))
+    decades = max(float(np.ptp(y)) / math.log(10), 1 / per_decade)
+    count = max(1, round(per_decade * decades))
+    if len(moving) < FEWEST * count:  # each row is a mean that the rig made
+        single = [pass_ for i in moving for pass_ in _passes([(np.array([i]), int(np.sign(speed[i])))], raw, friction)]
+        return (
+            single,
+            "Each row is a point, as there are fewer than three for each speed: no error can be made of single rows.",
+        )
+    bins = np.minimum(((y - y.min()) / max(float(np.ptp(y)), 1e-300) * count).astype(int), count - 1)
+    of_row = np.full(len(speed), -1)
+    of_row[moving] = bins
+    level = friction.copy()
+    found: list[Pass] = []
+    for curve in np.unique(raw.curve):
+        for k in range(count):
+            mine = np.flatnonzero((of_row == k) & (raw.curve == curve))
+            if not len(mine):
+                continue
+            level[mine] = _at_mean_speed(np.log(np.abs(speed[mine])), friction[mine])
+            new = (np.diff(mine) > 1) | (np.diff(np.sign(speed[mine])) != 0)
+            pieces = np.split(mine, np.flatnonzero(new) + 1)
+            found += _passes([(each, int(np.sign(speed[each[0]]))) for each in pieces], raw, level, together=True)
+    said = (
+        f"The speed never rests: its rows are put together in {count} bins, {per_decade:g} for each decade of the speed; "
+        "friction while the speed changes may differ from that of a steady speed."
+    )
+    return found, said
+
+
+def _at_mean_speed(y: Array, friction: Array) -> Array:
+    """Return friction of a bin brought to its mean speed along a straight line over the logarithm of the speed."""
+    place = y - y.mean()
+    spread = float(place @ place)
+    slope = float(place @ friction) / spread if len(y) >= FEWEST and spread > 0 else 0.0
+    level: Array = friction - slope * place
+    return level
+
+
+def _passes(pieces: Sequence[tuple[Indices, int]], raw: Raw, friction: Array, *, together: bool = False) -> list[Pass]:
+    """Return the passes that pieces at one speed are: each by itself, or, where they are many, those of a direction."""
+    ways = {way: [rows for rows, each in pieces if each == way] for way in dict.fromkeys(way for _, way in pieces)}
+    many = min(map(len, ways.values())) >= FEWEST_BLOCKS
+
+    def made(rows: Sequence[Indices], way: int, strokes: bool) -> Pass:
+        places = np.concatenate(rows)
+        values = np.array([friction[each].mean() for each in rows]) if strokes else friction[places]
+        speed = math.exp(float(np.log(np.abs(raw.speed[places])).mean()))
+        time = float(raw.time[places].mean())
+        return Pass(int(raw.curve[places[0]]), way, speed, time, places, values, strokes, np.array([], int))
+
+    if many:
+        return [made(rows, way, True) for way, rows in ways.items()]
+    if together:  # of a bin through which few strokes pass
+        return [made(rows, way, False) for way, rows in ways.items()]
+    return [made([rows], way, False) for rows, way in pieces]
+
+
+def _settled(each: Pass, common: tuple[float, float], raw: Raw, notes: list[str]) -> Pass:
+    """Return a pass without its start, and add a sentence where there is one."""
+    cut, apart = start_of(each.values, common)
+    if not cut:
+        return each
+    if each.strokes:
+        strokes = np.split(each.rows, np.flatnonzero(np.diff(each.rows) > 1) + 1)
+        gone = np.concatenate(strokes[:cut]) if len(strokes) == len(each.values) else each.rows[:0]
+        what = f"first {cut} strokes"
+    else:
+        gone = each.rows[:cut]
+        long = float(raw.time[each.rows[cut]] - raw.time[each.rows[0]])
+        what = f"first {format_si(long, 'time') if raw.timed else f'{cut} rows'}"
+    kept = each.rows[~np.isin(each.rows, gone)]
+    numbers = raw.numbers[gone] if len(gone) else raw.numbers[each.rows[:1]]
+    notes.append(
+        f"Left out: {what} of the step at {format_si(each.speed, 'speed')} (rows {numbers[0]} to {numbers[-1]}), as the "
+        f"running mean still drifted, {format_percent(abs(apart))} {'above' if apart > 0 else 'below'} the rest."
+    )
+    return replace(each, rows=kept, values=each.values[cut:], starting=gone, time=float(raw.time[kept].mean()))
+
+
+def _with_drift(each: Pass, common: tuple[float, float], raw: Raw, notes: list[str]) -> Pass:
+    """Return a pass whose error counts a drift that goes on to its end, which a sentence names."""
+    drift = drift_of(each.values, common)
+    if not drift:
+        return each
+    # A value at an unknown place of a straight line of this height, twice the difference of its halves.
+    wide = abs(2 * drift * each.mean) / math.sqrt(12)
+    if wide <= each.error:
+        return each
+    notes.append(
+        f"Friction drifts by {format_percent(2 * abs(drift))} along the step at {format_si(each.speed, 'speed')}: its error "
+        "counts that; measure longer, or look for wear, warming or the zero of the force."
+    )
+    return replace(each, error=wide)
+
+
+def _with_errors(found: Sequence[Pass], resolution: float) -> list[Pass]:
+    """Return passes with the error of their means: that of correlated values, and at least that of the last digit."""
+    errors, scatter = dict.fromkeys(range(len(found)), 0.0), dict.fromkeys(range(len(found)), 0.0)
+    for strokes in (False, True):
+        mine = [i for i, each in enumerate(found) if each.strokes == strokes]
+        if mine:
+            sizes = [abs(found[i].mean) or 1.0 for i in mine]
+            series = [(found[i].values - found[i].mean) / size for i, size in zip(mine, sizes, strict=True)]
+            alone = math.sqrt(memory(series)[0])
+            for i, size, error in zip(mine, sizes, errors_of_means(series), strict=True):
+                errors[i], scatter[i] = size * error, size * alone
+    done = []
+    for i, each in enumerate(found):
+        count = len(each.values)
+        independent = min(count, max(1.0, (scatter[i] / errors[i]) ** 2)) if errors[i] > 0 else 1.0
+        rounding = resolution / math.sqrt(12) if errors[i] > 0 or count > 1 else 0.0
+        done.append(replace(each, error=max(errors[i], rounding), independent=independent))
+    return done
+
+
+def _rest_and_changes(raw: Raw, status: Flags | Indices) -> list[str]:
+    """Return how many rows are left out at rest and while the speed changes."""
+    from stribeck.files.cells import rows_listed
+
+    said = []
+    for kind, what in ((AT_REST, "at rest"), (CHANGING, "in which the speed changes from step to step")):
+        rows = np.flatnonzero(status == kind)
+        if len(rows):
+            listed = rows_listed(raw.numbers[rows], 5)
+            said.append(f"Left out: {len(rows)} row{'s' * (len(rows) > 1)} {what}: {listed}.")
+    return said

@@ -1,0 +1,268 @@
+r"""Points of a curve from the passes of all files: one weighted least squares for friction, force zero and its drift.
+
+A pass in direction s = +-1 at time t under the load N has the mean friction
+
+.. math::
+
+    m = \mu + s \left( \frac{a + b t}{N} + c \right)
+
+with the force zero a of its file, the drift b of it and the misalignment c; these are known only where both directions were
+measured, c only where loads differ too.  The drift is taken off if it exceeds three standard errors, and c likewise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array, Flags, Indices
+from stribeck.bench.passes import Pass, Series
+from stribeck.fits.table.correlated import FEWEST
+from stribeck.fits.table.repeats import CLEAR, SAME_SPEED, Row, counted, run_in
+from stribeck.quantities.formats import format_error, format_si
+
+__all__ = ["Point", "points_of", "run_in_of"]
+
+UNLIKELY = 0.05  # Probability below which passes differ by more than the noise within them
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a curve."""
+
+    curve: int
+    speed: float  # [m/s]
+    friction: float
+    half_width: float  # Half of the 95 % interval; NaN where nothing shows the error
+    rows: int  # Rows of the files
+    independent: float  # Independent values among them
+    difference: float  # Friction one way less that the other way; NaN where only one was measured
+    difference_error: float  # Its standard error
+    temperature: float  # [degC]; NaN where it was not measured
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A pass with the file and the curve it belongs to."""
+
+    file: int
+    curve: int
+    each: Pass
+
+
+def run_in_of(series: Sequence[Series], curve_of: Sequence[Sequence[int]], names: Sequence[str]) -> list[tuple[int, int]]:
+    """Return file and number of each pass of a first run that differs from the later ones."""
+    rows: list[Row] = []
+    runs: list[str] = []
+    places: list[tuple[int, int]] = []
+    files_of = {curve: {f for f, of in enumerate(curve_of) if curve in of} for of in curve_of for curve in of}
+    for f, one in enumerate(series):
+        for k, each in enumerate(one.passes):
+            curve = curve_of[f][each.curve]
+            if each.mean > 0:
+                rows.append((f"{names[curve]} {each.direction}", len(places), each.speed, each.mean, 1.0, {}))
+                runs.append(str(f) if len(files_of[curve]) > 1 else "")
+                places.append((f, k))
+    single = [i for i, run in enumerate(runs) if not run]
+    if single:
+        for i, run in zip(single, counted([rows[i] for i in single], [str(i) for i in single]), strict=True):
+            runs[i] = f"pass {run}"
+    marked, _ = run_in(rows, runs)
+    return [places[i] for i in sorted(marked)]
+
+
+def points_of(
+    series: Sequence[Series], curve_of: Sequence[Sequence[int]], left_out: set[tuple[int, int]], paths: Sequence[str]
+) -> tuple[list[Point], list[str]]:
+    """Return the points of all curves, and what is to be said of force zeros and of the scatter of passes."""
+    rows = [
+        _Row(f, curve_of[f][each.curve], each)
+        for f, one in enumerate(series)
+        for k, each in enumerate(one.passes)
+        if (f, k) not in left_out
+    ]
+    level = _levels(rows)
+    means = np.array([row.each.mean for row in rows])
+    errors = np.array([row.each.error for row in rows])
+    usable = errors > 0
+    errors = np.where(usable, errors, np.median(errors[usable]) if usable.any() else 1.0)
+    base = np.equal.outer(level, np.arange(level.max() + 1)).astype(float)
+    shift, said, extra = _force_zeros(series, rows, level, base, means, errors, paths)
+    design = np.hstack([base, extra])
+    covariance = _inverse(design, errors)
+    friction = covariance @ (design.T @ (means / errors**2))
+    residuals = (means - design @ friction) / errors
+    points, widened = [], list[float]()
+    curves = np.array([row.curve for row in rows])
+    for curve in range(max(curves) + 1):
+        mine = curves == curve
+        if not mine.any():
+            continue
+        levels = np.unique(level[mine])
+        freedom = int(mine.sum()) - len(levels) - extra.shape[1] * (curve == curves[0])
+        scale = math.sqrt(float(residuals[mine] @ residuals[mine]) / freedom) if freedom >= FEWEST - 1 else 0.0
+        own = [row.each for row, one in zip(rows, mine, strict=True) if one]
+        within = sum(each.independent - 1 for each in own) if any(np.ptp(each.values) for each in own) else math.inf
+        apart = scale > 1 and _chance_of(scale**2, freedom, within) < UNLIKELY
+        factor, quantile = (scale, _student(freedom)) if apart else (1.0, _student(within))
+        widened += [scale] * apart
+        for k in levels:
+            of = [row for row, at in zip(rows, level, strict=True) if at == k]
+            error = math.sqrt(float(covariance[k, k])) * factor if usable[level == k].any() else math.nan
+            points.append(_point(curve, of, series, float(friction[k]), quantile * error))
+    if widened:
+        said.append(
+            f"Passes at the same speed differ by {max(widened):.2g} times what the noise within them allows, and errors are "
+            "larger by that."
+        )
+    return points, said
+
+
+def _point(curve: int, of: Sequence[_Row], series: Sequence[Series], friction: float, half_width: float) -> Point:
+    """Return the point of passes at one speed."""
+    weights = np.array([len(row.each.rows) for row in of], float)
+    speed = math.exp(float(np.average([math.log(row.each.speed) for row in of], weights=weights)))
+    ways = {way: [row.each for row in of if row.each.direction == way] for way in (1, -1)}
+    difference = error = math.nan
+    if ways[1] and ways[-1]:
+        difference = float(np.mean([each.mean for each in ways[1]]) - np.mean([each.mean for each in ways[-1]]))
+        error = math.sqrt(sum(sum(each.error**2 for each in way) / len(way) ** 2 for way in ways.values()))
+    warm = [series[row.file].raw.temperature[row.each.rows] for row in of if series[row.file].raw.temperature is not None]  # type: ignore[index]
+    known = np.concatenate(warm) if warm else np.array([])
+    known = known[np.isfinite(known)]
+    return Point(
+        curve=curve,
+        speed=speed,
+        friction=friction,
+        half_width=half_width,
+        rows=int(weights.sum()),
+        independent=float(sum(row.each.independent for row in of)),
+        difference=difference,
+        difference_error=error,
+        temperature=float(known.mean()) if len(known) else math.nan,
+    )
+
+
+def _levels(rows: Sequence[_Row]) -> Indices:
+    """Return the number of the speed of each pass; passes of a curve within one per cent have the same."""
+    order = sorted(range(len(rows)), key=lambda i: (rows[i].curve, rows[i].each.speed))
+    found = np.zeros(len(rows), dtype=int)
+    number, first = -1, None
+    for i in order:
+        row = rows[i]
+        if first is None or row.curve != first.curve or row.each.speed > (1 + SAME_SPEED) * first.each.speed:
+            number, first = number + 1, row
+        found[i] = number
+    return found
+
+
+def _force_zeros(
+    series: Sequence[Series],
+    rows: Sequence[_Row],
+    level: Indices,
+    base: Array,
+    means: Array,
+    errors: Array,
+    paths: Sequence[str],
+) -> tuple[Array, list[str], Array]:
+    """Return the columns of force zeros, drifts and misalignment that the passes show, with a sentence on each."""
+    ways = np.array([row.each.direction for row in rows], float)
+    files = np.array([row.file for row in rows])
+    loads = np.array([_load(series[row.file], row.each) for row in rows])
+    times = np.array([row.each.time for row in rows])
+    both = [bool({1, -1} <= set(ways[level == k].tolist())) for k in range(base.shape[1])]
+    said: list[str] = []
+    extra = np.empty((len(rows), 0))
+    for file in np.unique(files):
+        mine = files == file
+        paired = {k for k in np.unique(level[mine]) if both[k] and {1, -1} <= set(ways[mine & (level == k)].tolist())}
+        if not paired:
+            continue
+        extra, sentence = _zero_of(mine, ways, loads, times, base, extra, means, errors)
+        said.append(f"{paths[file]}: {sentence}" if len(paths) > 1 else sentence)
+    one_way = [k for k, there in enumerate(both) if not there]
+    if one_way and np.abs(ways).any():
+        several = "all" if len(one_way) == len(both) else str(len(one_way))
+        said.append(
+            f"Measured in one direction at {several} speed{'s' * (several != '1')}: a zero of the force that is off, or a "
+            "misalignment, is in the friction there"
+            + ("." if not extra.shape[1] else ", less that of the others.")
+            + (" Measure both directions, or the force without load." if not extra.shape[1] else "")
+        )
+    return ways, said, extra
+
+
+def _zero_of(
+    mine: Flags, ways: Array, loads: Array, times: Array, base: Array, extra: Array, means: Array, errors: Array
+) -> tuple[Array, str]:
+    """Return the columns with those of the force zero of a file, and of its drift and misalignment where these are clear."""
+    measured = np.isfinite(loads)
+    force = np.where(mine, ways / np.where(measured, loads, 1.0), 0.0)
+    long = float(np.ptp(times[mine]))
+    later = (times - times[mine].mean()) / long if long > 0 else np.zeros(len(times))
+    candidates = [("drift", force * later)]
+    if measured.all() and np.ptp(loads[mine]) > SAME_SPEED * loads[mine].max():
+        candidates.append(("misalignment", np.where(mine, ways, 0.0)))
+    taken, names = np.column_stack([extra, force]), ["zero"]
+    for name, column in candidates:
+        tried = np.column_stack([base, taken, column])
+        if np.linalg.matrix_rank(tried / errors[:, None]) < tried.shape[1] or tried.shape[1] >= tried.shape[0]:
+            continue
+        covariance = _inverse(tried, errors)
+        found = covariance @ (tried.T @ (means / errors**2))
+        if abs(found[-1]) > CLEAR * math.sqrt(float(covariance[-1, -1])):
+            taken, names = np.column_stack([taken, column]), [*names, name]
+    design = np.column_stack([base, taken])
+    covariance = _inverse(design, errors)
+    found = (covariance @ (design.T @ (means / errors**2)))[-len(names) :]
+    doubts = np.sqrt(np.diag(covariance))[-len(names) :]
+    known = bool(measured[mine].all())
+    parts = []
+    for name, value, doubt in zip(names, found.tolist(), doubts.tolist(), strict=True):
+        if name == "misalignment":
+            parts.append(f"the load is misaligned by {math.degrees(value):.2g} ± {math.degrees(doubt):.2g} degrees")
+            continue
+        text = (
+            f"{format_si(value, 'force')} ± {format_error(doubt, 'force')}"
+            if known
+            else f"{value:.2g} ± {doubt:.2g} of friction"
+        )
+        parts.append(
+            f"the zero of the force is off by {text}"
+            if name == "zero"
+            else f"it drifts by {text} from the first pass to the last"
+        )
+    several = ""
+    if known and len(candidates) == 1:
+        angle = math.degrees(found[0] / float(np.median(loads[mine])))
+        several = f" (or the load is misaligned by {angle:.2g} degrees: two loads would tell)"
+    return taken, f"Both directions: {', '.join(parts)}{several}; taken off."
+
+
+def _load(one: Series, each: Pass) -> float:
+    """Return the mean load of a pass [N], NaN where the file has none."""
+    return math.nan if one.raw.load is None else float(np.nanmean(one.raw.load[each.rows]))
+
+
+def _inverse(design: Array, errors: Array) -> Array:
+    """Return the covariance of the parameters of a weighted least squares."""
+    weighted = design / errors[:, None]
+    found: Array = np.asarray(np.linalg.pinv(weighted.T @ weighted, hermitian=True), float)
+    return found
+
+
+def _chance_of(ratio: float, between: float, within: float) -> float:
+    """Return the probability that chance lets passes scatter by more than this ratio of variances."""
+    from scipy.stats import f
+
+    return float(f.sf(ratio, between, min(max(within, 1.0), 1e6)))
+
+
+def _student(freedom: float) -> float:
+    """Return half of the 95 % interval of Student's distribution, over its scale."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.975, max(freedom, 1.0)))

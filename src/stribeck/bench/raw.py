@@ -1,0 +1,285 @@
+"""A rig's file as series in SI units: time, speed and friction with their signs, load and temperature of each row."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from stribeck._types import Array, Flags, Indices
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.cells import is_named, number_of, rows_listed
+from stribeck.files.text_table import TextTable, read_table
+from stribeck.fits.table.columns import columns_of, has_column, known_name, with_errors_named
+from stribeck.fits.table.correlated import FEWEST, errors_of_means
+from stribeck.fits.table.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
+from stribeck.fits.table.strokes import without_codes
+from stribeck.fits.table.units import has_dimension, si_factor
+from stribeck.fits.table.values import LARGEST_FRICTION, Values
+from stribeck.quantities.formats import format_error, format_si
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["Raw", "read_raw"]
+
+TIME = r"(?:(?:elapsed|test|total|run|running|measuring|cycle|relative) )?(?:time|zeit)|time ?stamp|t"  # Headers of a time
+
+UNLOADED = 0.05  # Part of the usual load below which the surfaces are apart
+
+SAME_FRICTION = 0.02  # Relative difference up to which forces agree with the friction coefficient beside them
+
+
+@dataclass(frozen=True)
+class Raw:
+    """The series of one file."""
+
+    path: str
+    numbers: Indices  # Row of the file
+    time: Array  # Time [s]; rows where the file has none
+    timed: bool  # Whether the file has a time
+    speed: Array  # Sum of the surface speeds with the sign of the direction [m/s]
+    friction: Array  # Friction coefficient with the sign of the force [-]
+    load: Array | None  # Size of the normal force [N]
+    temperature: Array | None  # [degC]
+    curve: Indices  # Curve of each row
+    curves: tuple[tuple[str, dict[str, float]], ...]  # Name and inputs [SI] of each curve
+    steps: tuple[str, ...]  # The step that the file says of each row; empty where it says none
+    resolution: float  # Last digit of a friction coefficient [-]
+    notes: tuple[str, ...]
+    taken: str  # What each column was taken for
+
+
+def read_raw(path: Path, settings: FitSettings) -> Raw:
+    """Return the series of a file; refuse one that has none in a sentence."""
+    settings = replace(settings, geometry="point")  # a rig measures forces
+    table = with_errors_named(read_table(path, settings.header_row, knows=known_name, sheet=settings.sheet))
+    written = table.header
+    table, zero = _zero_of_force(table, settings)
+    own, load = settings, measured(table, "normal_force", settings)
+    table, made, run, settings, _ = prepared(
+        table,
+        settings,
+        lambda meaning: has_column(table, own, meaning) if meaning != "friction" else _uses_coefficient(table, own),
+        signed=True,
+    )
+    columns = columns_of(table, replace(settings, columns=own.columns))
+    if "speed" not in columns:
+        raise InputError(
+            f"{table.path}: {show(next(iter(columns.values()))[0])} is no speed; a series needs a column of speed."
+        )
+    if len(columns["friction"]) > 1:
+        raise InputError(
+            f"{table.path} has curves side by side, which are no series in time; 'stribeck fit' reads it as it is."
+        )
+    speed_name, friction_name = columns["speed"][0], columns["friction"][0]
+    table = without_codes(table, speed_name, [friction_name])
+    values = Values(table, settings)
+    speed, friction = (_array(values, name, meaning) for name, meaning in ((speed_name, "speed"), (friction_name, "friction")))
+    time, timed, time_note = _time(table, table.header.index(run) if run else None)
+    warm = temperatures(table)
+    there = np.isfinite(speed) & np.isfinite(friction) & np.isfinite(time)
+    if not there.any():
+        raise InputError(f"{table.path}: no row holds both speed and friction; check the columns.")
+    notes = [*table.notes, *time_note]
+    if zero is not None:
+        sizes = _floats(load or [])
+        friction = friction - zero.at(np.array(table.numbers, float)) / np.abs(sizes)
+        notes.append(zero.said)
+    if not there.all():
+        missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
+        notes.append(f"{len(missing)} row{'s' * (len(missing) > 1)} without a value left out: {rows_listed(missing)}.")
+    if np.median(np.abs(friction[there])) > LARGEST_FRICTION:
+        raise InputError(
+            f"{table.path}: column {show(friction_name)}: a friction coefficient of {np.median(np.abs(friction[there])):.3g} "
+            'is not plausible; if it is in percent, write [%] in the header or friction = "%" in [fit.units].'
+        )
+    curve, curves = _curves(table, columns, values, settings)
+    labels = table.column(run) if run else ()
+    kept = np.flatnonzero(there)
+    parts = [f"{show(names[0])} as {meaning.replace('_', ' ')}" for meaning, names in columns.items() if names[0] in written]
+    if warm is not None:
+        parts.append(f"{show(warm[1])} as temperature")
+    return Raw(
+        path=table.path,
+        numbers=np.array(table.numbers)[kept],
+        time=time[kept],
+        timed=timed,
+        speed=speed[kept],
+        friction=friction[kept],
+        load=None if load is None else np.abs(_floats(load))[kept],
+        temperature=None if warm is None else _floats(warm[0])[kept],
+        curve=curve[kept],
+        curves=curves,
+        steps=tuple(labels[i] for i in kept) if labels else (),
+        resolution=_resolution(table, friction_name, own) * float(np.median(np.abs(friction[there]))),
+        notes=tuple(notes),
+        taken="; ".join([*made, *parts]),
+    )
+
+
+def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
+    """Return whether the friction coefficient of the file is taken, and not the forces, which keep the sign."""
+    if not has_column(table, settings, "friction"):
+        return False
+    force, load = measured(table, "friction_force", settings), measured(table, "normal_force", settings)
+    if "friction" in settings.columns or force is None or load is None:
+        return True
+    columns = columns_of(table, settings)
+    values = Values(table, settings)
+    given = _array(values, columns["friction"][0], "friction")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.abs(_floats(force) / _floats(load))
+        apart = np.abs(found / np.abs(given) - 1)
+    apart = apart[np.isfinite(apart)]
+    return not apart.size or float(np.median(apart)) > SAME_FRICTION
+
+
+@dataclass(frozen=True)
+class _Zero:
+    """The friction force while the surfaces are apart."""
+
+    rows: Array  # Mean row of each stretch without load
+    forces: Array  # Mean force there [N]
+    said: str
+
+    def at(self, numbers: Array) -> Array:
+        """Return the zero of the force at rows [N]: between two stretches on the straight line, else that of the nearest."""
+        found: Array = np.interp(numbers, self.rows, self.forces)
+        return found
+
+
+def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, _Zero | None]:
+    """Return the table without rows in which the surfaces are apart, and the zero of the force by these rows."""
+    load = measured(table, "normal_force", settings)
+    if load is None:
+        return table, None
+    sizes = np.abs(_floats(load))
+    loaded = sizes[sizes > UNLOADED * np.nanmax(sizes, initial=0.0)]
+    apart = sizes <= UNLOADED * (np.median(loaded) if loaded.size else 0.0)
+    if not apart.any() or apart.all():
+        return table, None
+    force = measured(table, "friction_force", settings)
+    numbers = np.array(table.numbers, float)
+    shorter = _only(table, ~apart)
+    stretches = [each for each in _stretches(apart) if len(each) >= FEWEST] if force is not None else []
+    stretches = [each[np.isfinite(_floats(force or [])[each])] for each in stretches]
+    stretches = [each for each in stretches if len(each) >= FEWEST]
+    if not stretches:
+        note = f"{int(apart.sum())} rows without load left out."
+        return replace(shorter, notes=(*shorter.notes, note)), None
+    series = [_floats(force or [])[each] for each in stretches]
+    errors = errors_of_means([each - each.mean() for each in series])
+    means = np.array([float(each.mean()) for each in series])
+    texts = " and ".join(f"{format_si(m, 'force')} ± {format_error(e, 'force')}" for m, e in zip(means, errors, strict=True))
+    drift = (
+        ", on a straight line between the two"
+        if len(means) == 2
+        else ", on straight lines between them"
+        if len(means) > 2
+        else ""
+    )
+    said = f"Zero of the force by {int(apart.sum())} rows without load: {texts}, taken off{drift}."
+    return shorter, _Zero(np.array([float(numbers[each].mean()) for each in stretches]), means, said)
+
+
+def _stretches(rows: Flags) -> list[Indices]:
+    """Return the rows that are set, each stretch of neighbours by itself."""
+    places = np.flatnonzero(rows)
+    return [each for each in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if len(each)]
+
+
+def _only(table: TextTable, kept: Flags) -> TextTable:
+    """Return the table with some of its rows."""
+    places = np.flatnonzero(kept).tolist()
+    return replace(table, rows=tuple(table.rows[i] for i in places), numbers=tuple(table.numbers[i] for i in places))
+
+
+def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
+    """Return the time of each row [s], whether the file has one, and what is to be said; refuse one that runs backwards."""
+    rows = np.arange(len(table.rows), dtype=float)
+    for name in filter(None, dict.fromkeys(table.header)):
+        unit = table.unit(name)
+        bare = not unit and re.search("time|zeit", name, re.IGNORECASE)
+        if not is_named(name, TIME) or not (bare or has_dimension(unit or "-", "time")):
+            continue
+        decimal = "," if table.decimal_comma([name]) else "."
+        read = [number_of(cell, decimal) for cell in table.column(name)]
+        if not any(read):
+            continue
+        time = np.array([np.nan if each is None else each[0] for each in read]) * (
+            si_factor(unit, "time", name) if unit else 1.0
+        )
+        if np.ptp(time[np.isfinite(time)]) == 0:
+            continue  # the length of a step, the same in all rows
+        said = [] if unit else [f"{show(name)} was read in seconds, as its header has no unit."]
+        return _going_on(table, name, time, step), True, said
+    return rows, False, ["The file has no time; rows count as evenly spaced."] if len(rows) > FEWEST else []
+
+
+def _going_on(table: TextTable, name: str, time: Array, step: int | None) -> Array:
+    """Return a time that goes on where it begins again with a step, as many rigs write it."""
+    found = time.copy()
+    known = np.flatnonzero(np.isfinite(time))
+    steps = np.diff(time[known])
+    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else 1.0
+    shift, first = 0.0, time[known[0]]
+    for before, after in zip(known[:-1], known[1:], strict=True):
+        if time[after] < time[before]:
+            again = step is not None and table.rows[after][step] != table.rows[before][step]
+            if not again and time[after] > first + usual:
+                raise InputError(
+                    f"{table.path}: row {table.numbers[after]}, column {show(name)}: time runs backwards, from "
+                    f"{time[before]:g} s to {time[after]:g} s, and does not begin again; sort the rows, or take out those "
+                    "that do not belong to the series."
+                )
+            shift += time[before] - time[after] + usual
+            first = time[after]
+        found[after] = time[after] + shift
+    return found
+
+
+def _curves(
+    table: TextTable, columns: dict[str, list[str]], values: Values, settings: FitSettings
+) -> tuple[Indices, tuple[tuple[str, dict[str, float]], ...]]:
+    """Return the curve of each row, and name and inputs of each curve."""
+    given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
+    labels = table.column(columns["curve"][0]) if "curve" in columns else ("",) * len(table.rows)
+    series = {name: [values.value(i, columns[name][0], name) for i in range(len(table.rows))] for name in given}
+    keys: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
+    found = []
+    last: dict[str, float] = {}
+    for i, label in enumerate(labels):
+        last = last | {name: value for name, each in series.items() if (value := each[i]) is not None}
+        found.append(keys.setdefault((label, tuple(sorted(last.items()))), len(keys)))
+    return np.array(found), tuple((label, dict(inputs)) for label, inputs in keys)
+
+
+def _resolution(table: TextTable, friction: str, settings: FitSettings) -> float:
+    """Return the last digit of what friction was read from, over its usual size."""
+    sources = (column_of(table, meaning, settings) for meaning in ("friction_force", "torque"))
+    name = friction if friction != MADE_FRICTION else next(filter(None, sources), "")
+    if not name:
+        return 0.0
+    decimal = "," if table.decimal_comma([name]) else "."
+    read = [number_of(cell, decimal) for cell in table.column(name)]
+    sizes = [abs(each[0]) for each in read if each is not None and each[0]]
+    return _last_digit(table.column(name)) / float(np.median(sizes)) if sizes else 0.0
+
+
+def _last_digit(cells: Sequence[str]) -> float:
+    """Return the last digit that cells have after the decimal sign; zero where some have an exponent."""
+    digits = [re.fullmatch(r"[+-]?\d*(?:[.,](\d*))?", cell.strip()) for cell in cells]
+    counts = [len(each[1] or "") for each in digits if each]
+    return 10.0 ** -max(counts) if counts and 2 * len(counts) > len(cells) else 0.0
+
+
+def _array(values: Values, column: str, meaning: str) -> Array:
+    """Return a column in SI units, NaN where a value is missing."""
+    return _floats([values.number(i, column, meaning) for i in range(len(values.table.rows))])
+
+
+def _floats(values: Sequence[float | None]) -> Array:
+    """Return numbers as an array, NaN where there is none."""
+    return np.array([np.nan if value is None else value for value in values], float)

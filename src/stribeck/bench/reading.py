@@ -1,0 +1,270 @@
+"""Raw files of a rig read into one Stribeck curve, or one for each fluid and load, with the error of each point."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck.bench.names import Named, NamePattern
+from stribeck.bench.passes import RUN_IN, Series, passes_of
+from stribeck.bench.points import Point, points_of, run_in_of
+from stribeck.bench.raw import read_raw
+from stribeck.bench.result import BenchCurve
+from stribeck.bench.segments import directions
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.contacts.geometries import INPUT_TABLES
+from stribeck.files.writing import path_of
+from stribeck.fluids.presets import PRESETS, Preset
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.units import InputError, checked_kind, checked_word, show, to_si
+
+__all__ = ["read"]
+
+PER_DECADE = 10  # Bins for a decade of a speed that never rests: friction is nearly straight within a factor of 1.26
+
+OnFile = Callable[[int, int], Any]  # Called with the number of files read and of all
+
+
+@dataclass
+class _Curves:
+    """The curves that files belong to."""
+
+    names: list[str] = field(default_factory=list)
+    inputs: list[dict[str, float]] = field(default_factory=list)
+
+    def number(self, name: str, inputs: dict[str, float]) -> int:
+        """Return the number of the curve of a name and inputs, a new one if there is none yet."""
+        for k, known in enumerate(zip(self.names, self.inputs, strict=True)):
+            if known == (name, inputs):
+                return k
+        self.names.append(name)
+        self.inputs.append(inputs)
+        return len(self.names) - 1
+
+
+@answers_typos
+def read(
+    runs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    settings: FitSettings | None = None,
+    *,
+    name: str | None = None,
+    fluid: str | Mapping[str, Any] | None = None,
+    temperature: str | float | None = None,
+    per_decade: float = PER_DECADE,
+    on_file: OnFile | None = None,
+) -> BenchCurve:
+    r"""Read raw files of a rig into a Stribeck curve: what is steady, both directions averaged, with the error of each point.
+
+    Parameters
+    ----------
+    runs : str, path-like or list of them
+        Files of a tribometer or a rheometer, with columns of speed (or rotation) and friction (or forces, or torque).
+    settings : FitSettings, optional
+        The ``[fit]`` table of a case: columns in another language, units that no header gives, radius of the track, arm.
+    name : str, optional
+        Pattern of the names of the files, as ``"{fluid}_{load}N_{run}.csv"``: ``run`` numbers repeats, all else tells curves
+        apart.
+    fluid : str or mapping, optional
+        Liquid by which the temperature gives the viscosity, as ``"iso-vg grade=46"`` or ``{"preset": "iso-vg", "grade": 46}``.
+    temperature : str or float, optional
+        Temperature where the files have none, as ``"25 degC"``.
+    per_decade : float
+        Bins for a decade of a speed that never rests, in a ramp or a sine.
+    on_file : callable, optional
+        Called after each file with the number of those read and of all.
+
+    Returns
+    -------
+    BenchCurve
+        Its error is half of the 95 % interval over 1.96; in 40 simulated series, of noise with a correlation of 0.9 from row
+        to row, a drifting zero of the force and a start in each step, 90 to 99 % of the intervals hold the truth
+        (``test_bench.py``).
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or a value be used; the sentence names file, row and column.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> import pathlib, tempfile
+    >>> rows = [f"{0.1 * i};{5 if i < 60 else 10};{0.3 + 0.01 * (i % 3)}" for i in range(120)]
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "run.csv"
+    >>> _ = file.write_text("time [s];speed [mm/s];COF\n" + "\n".join(rows))
+    >>> curve = sb.bench.read(file)
+    >>> curve.speed.round(6).tolist(), curve.rows.tolist()
+    ([0.005, 0.01], [60, 60])
+    """
+    settings = (
+        FitSettings() if settings is None else checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
+    )
+    several = [runs] if isinstance(runs, str | os.PathLike) else list(runs)
+    if not several:
+        raise InputError("runs is empty; give the files of a rig.")
+    paths = [path_of(each, "runs") for each in several]
+    for i, path in enumerate(paths):
+        if path in paths[:i]:
+            raise InputError(f"{path} is given twice; a file counts once.")
+    density = to_si(per_decade, "number", "per_decade", "10")
+    if not 1 <= density <= 1000:
+        raise InputError(f"per_decade = {show(per_decade)} must lie between 1 and 1000, as 10.")
+    liquid = None if fluid is None else _liquid(fluid)
+    pattern = None if name is None else NamePattern(name, INPUT_TABLES["point"])
+    named = [Named() if pattern is None else pattern.read(path) for path in paths]
+    series: list[Series] = []
+    for i, path in enumerate(paths, 1):
+        series.append(passes_of(read_raw(path, settings), density))
+        if on_file is not None:
+            on_file(i, len(paths))
+    curves = _Curves()
+    curve_of = [
+        [curves.number(*_curve(each, label, inputs)) for label, inputs in one.raw.curves]
+        for each, one in zip(named, series, strict=True)
+    ]
+    labels = _labels(curves)
+    texts = [path.name for path in paths]
+    out = run_in_of(series, curve_of, labels) if settings.run_in == "leave" else []
+    points, said = points_of(series, curve_of, set(out), texts)
+    warm = _temperatures(points, curve_of, named, temperature)
+    found = _assembled(series, curves, labels, points, set(out))
+    viscosity = np.array([_viscosity(point, curves, liquid, warm[i]) for i, point in enumerate(points)])
+    notes = [
+        f"{text}: {note}" if len(texts) > 1 else note
+        for text, one in zip(texts, series, strict=True)
+        for note in (*one.raw.notes, *one.notes)
+    ]
+    notes += [
+        f"Left out as run-in: {texts[f]}, {format_si(series[f].passes[k].speed, 'speed')}, which differs from later passes "
+        f'(run_in = "keep" in [fit] keeps it).'
+        for f, k in out
+    ]
+    return replace(
+        found,
+        paths=tuple(map(str, paths)),
+        temperature=np.array(warm),
+        viscosity=viscosity,
+        notes=(*notes, *said, *_on_errors(points), *_on_viscosity(points, liquid, warm)),
+        taken=tuple(one.raw.taken for one in series),
+        rolls=settings.rolls or any("slide_to_roll" in each for each in curves.inputs),
+    )
+
+
+def _curve(named: Named, label: str, inputs: dict[str, float]) -> tuple[str, dict[str, float]]:
+    return " ".join(filter(None, [named.curve, label])), inputs | named.inputs
+
+
+def _labels(curves: _Curves) -> tuple[str, ...]:
+    """Return names of the curves that tell them apart, by their inputs where the files have no names."""
+    found = []
+    for name, inputs in zip(curves.names, curves.inputs, strict=True):
+        alike = [each for other, each in zip(curves.names, curves.inputs, strict=True) if other == name]
+        differing = [key for key in inputs if len({each.get(key) for each in alike}) > 1]
+        rows = INPUT_TABLES["point"].rows
+        texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], rows[key].dimension)}" for key in differing]
+        found.append(", ".join(filter(None, [name, *texts])))
+    return tuple(found)
+
+
+def _assembled(
+    series: Sequence[Series], curves: _Curves, labels: tuple[str, ...], points: Sequence[Point], out: set[tuple[int, int]]
+) -> BenchCurve:
+    """Return the curve without its texts."""
+    for f, k in out:
+        series[f].status[series[f].passes[k].rows] = RUN_IN
+    order = np.concatenate([np.full(len(one.status), f) for f, one in enumerate(series)])
+    none = np.full(len(points), np.nan)
+    return BenchCurve(
+        paths=(),
+        curves=labels,
+        inputs=tuple(curves.inputs),
+        curve=np.array([each.curve for each in points]),
+        speed=np.array([each.speed for each in points]),
+        friction=np.array([each.friction for each in points]),
+        half_width=np.array([each.half_width for each in points]),
+        rows=np.array([each.rows for each in points]),
+        independent=np.array([each.independent for each in points]),
+        difference=np.array([each.difference for each in points]),
+        difference_error=np.array([each.difference_error for each in points]),
+        temperature=none,
+        viscosity=none,
+        file=order,
+        row=np.concatenate([one.raw.numbers for one in series]),
+        time=np.concatenate([one.raw.time for one in series]),
+        row_speed=np.concatenate([directions(one.raw.speed, one.raw.friction)[0] for one in series]),
+        row_friction=np.concatenate([one.friction for one in series]),
+        status=np.concatenate([one.status for one in series]),
+    )
+
+
+def _liquid(fluid: str | Mapping[str, Any]) -> tuple[Preset, dict[str, Any]]:
+    """Return a liquid and its conditions, as ``iso-vg grade=46`` or a mapping gives them."""
+    if isinstance(fluid, str):
+        word, *rest = fluid.split()
+        if not all("=" in each for each in rest):
+            raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
+        given: dict[str, Any] = {"preset": word, **dict(each.split("=", 1) for each in rest)}
+    else:
+        given = dict(fluid)
+    preset = PRESETS[checked_word("fluid", given.pop("preset", ""), tuple(PRESETS))]
+    if "temperature" not in preset.conditions:
+        raise InputError(
+            f"fluid = {show(fluid)} has its viscosity at one temperature only; take a liquid of which more is known."
+        )
+    preset(**given)  # refuses what it does not know
+    return preset, given
+
+
+def _temperatures(
+    points: Sequence[Point], curve_of: Sequence[Sequence[int]], named: Sequence[Named], given: str | float | None
+) -> list[float]:
+    """Return the temperature of each point [degC]: measured, else of the name of its file, else as given; else NaN."""
+    from stribeck.fluids.liquids import celsius
+
+    other = np.nan if given is None else celsius(given)
+    of_curve = {k: celsius(each.temperature) for of, each in zip(curve_of, named, strict=True) if each.temperature for k in of}
+    return [each.temperature if np.isfinite(each.temperature) else of_curve.get(each.curve, other) for each in points]
+
+
+def _viscosity(point: Point, curves: _Curves, liquid: tuple[Preset, dict[str, Any]] | None, warm: float) -> float:
+    """Return the viscosity of a point [Pa s]: of its curve, else of the liquid at its temperature; else NaN."""
+    known = curves.inputs[point.curve].get("viscosity")
+    if known is not None or liquid is None:
+        return np.nan if known is None else known
+    preset, conditions = liquid
+    if np.isfinite(warm):
+        conditions = conditions | {"temperature": warm}
+    elif "temperature" not in conditions:
+        raise InputError("fluid needs a temperature: the files have none; give temperature, as '25 degC'.")
+    return preset(**conditions).viscosity
+
+
+def _on_errors(points: Sequence[Point]) -> list[str]:
+    unknown = [each for each in points if not np.isfinite(each.half_width)]
+    if not unknown:
+        return ["Errors allow for the correlation of neighbouring values; 'error' is half of the 95 % interval over 1.96."]
+    which = (
+        "Nothing shows the errors of the points"
+        if len(unknown) == len(points)
+        else f"Nothing shows the error of {len(unknown)} points"
+    )
+    return [
+        f"{which}: a file of single means for each speed has none; export the raw samples, or measure each speed more often."
+    ]
+
+
+def _on_viscosity(points: Sequence[Point], liquid: tuple[Preset, dict[str, Any]] | None, warm: Sequence[float]) -> list[str]:
+    known = [each for each in warm if np.isfinite(each)]
+    if liquid is not None and known:
+        return [f"Viscosity of {liquid[0].label} at {min(known):.1f} to {max(known):.1f} °C, of each point."]
+    if known and liquid is None:
+        return [
+            f"The temperature was {min(known):.1f} to {max(known):.1f} °C; name the liquid (fluid = 'iso-vg grade=46') to "
+            "have its viscosity there."
+        ]
+    return []

@@ -1,0 +1,56 @@
+"""The start of a step, left out where friction has not settled.
+
+The rule is that of simulations (MSER-5 [White 1997]): of all places in the first half, the cut is where the standard error of
+the mean of what remains is smallest, by means of five rows.  The cut counts only if the mean before it differs from the mean
+after it by more than three standard errors, which allow for the memory of the noise: else what looks like a start is noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.fits.table.correlated import FEWEST_BLOCKS, error_of_mean, memory
+from stribeck.fits.table.repeats import CLEAR
+
+__all__ = ["common_memory", "drift_of", "start_of"]
+
+ROWS_OF_A_MEAN = 5  # Rows of a mean, as MSER-5 has it
+
+
+def common_memory(series: Sequence[Array]) -> tuple[float, float]:
+    """Return variance and correlation of neighbours of the second halves of series, over their means."""
+    halves = [each[len(each) // 2 :] for each in series if len(each) >= 2 * FEWEST_BLOCKS]
+    return memory([each / each.mean() - 1 for each in halves if each.mean()])
+
+
+def start_of(series: Array, common: tuple[float, float]) -> tuple[int, float]:
+    """Return how many rows of a step belong to its start, and how far their mean lies from the others, over theirs."""
+    rows = len(series)
+    if rows < 2 * FEWEST_BLOCKS:
+        return 0, 0.0
+    of_mean = ROWS_OF_A_MEAN if rows >= 2 * FEWEST_BLOCKS * ROWS_OF_A_MEAN else 1
+    means = series[: rows // of_mean * of_mean].reshape(-1, of_mean).mean(axis=1)
+    left = np.arange(len(means), 0, -1)
+    sums, squares = (np.cumsum(each[::-1])[::-1] for each in (means, (means - means.mean()) ** 2))
+    deviations = squares - left * (sums / left - means.mean()) ** 2
+    cut = of_mean * int(np.argmin((deviations / left**2)[: len(means) // 2 + 1]))
+    if not cut:
+        return 0, 0.0
+    rest = float(series[cut:].mean())
+    apart = float(series[:cut].mean()) - rest
+    doubt = abs(rest) * math.hypot(error_of_mean(cut, *common), error_of_mean(rows - cut, *common))
+    return (cut, apart / rest) if rest and abs(apart) > CLEAR * doubt else (0, 0.0)
+
+
+def drift_of(series: Array, common: tuple[float, float]) -> float:
+    """Return by how much the second half of a step lies from the first, over its mean; zero where noise may do that."""
+    half = len(series) // 2
+    if len(series) < 2 * FEWEST_BLOCKS or not series.mean():
+        return 0.0
+    apart = float(series[half:].mean() - series[:half].mean()) / float(series.mean())
+    doubt = math.sqrt(2) * error_of_mean(half, *common)
+    return apart if abs(apart) > CLEAR * doubt else 0.0

@@ -1,0 +1,95 @@
+"""The command ``stribeck bench``: raw files of a rig in, a Stribeck curve with errors out."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+import stribeck as sb
+from stribeck.cli.arguments import Quantity, Verbose
+from stribeck.cli.exits import answer
+from stribeck.cli.progress import interruptible
+from stribeck.files.writing import check_writable, need_extra
+from stribeck.quantities.units import InputError
+
+SHORT_NOTES = 8  # Notes that are printed without -v, so that the answer fits a screen
+
+
+def bench_command(
+    runs: Annotated[list[str], Parameter(consume_multiple=True)],
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    plot: Path | None = None,
+    case: Path | None = None,
+    name: str | None = None,
+    fluid: str | None = None,
+    temperature: Quantity = None,
+    per_decade: float = 10.0,
+    verbose: Verbose = False,
+    json: bool = False,
+    force: bool = False,
+) -> int:
+    """Make a Stribeck curve of raw files of a rig: what is steady, both directions averaged, the error of each point.
+
+    Example: stribeck bench run_1.csv run_2.csv -o curve.csv --plot kept.png
+
+    Example: stribeck bench "runs/*.csv" -o curve.csv --name "{fluid}_{load}N_{run}.csv" --fluid "iso-vg grade=46"
+
+    The curve is read by stribeck fit as it is.  --case names columns, units, track_radius and arm in its table [fit].  --name
+    is the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
+    """
+    paths = _files(runs)
+    settings = None if case is None else sb.load_case(case).fit
+    if out is not None:
+        from stribeck.files.datasets import CSV_ENDINGS
+
+        check_writable(out, CSV_ENDINGS, force=force)
+    if plot is not None:
+        from stribeck.plot.style import PICTURE_ENDINGS
+
+        check_writable(plot, PICTURE_ENDINGS, force=force)
+        need_extra("a picture", "plot", "matplotlib")
+    with interruptible() as progress:
+        found = sb.bench.read(
+            paths,
+            settings,
+            name=name,
+            fluid=fluid,
+            temperature=temperature,
+            per_decade=per_decade,
+            on_file=lambda n, m: progress(n, m, "files"),
+        )
+    if out is not None:
+        found.to_csv(out, force=force)
+    if plot is not None:
+        found.plot(plot, force=force)
+
+    def lines() -> list[str]:
+        from stribeck.quantities.results import table_lines
+
+        card = found._card()
+        notes = card.notes if verbose or len(card.notes) <= SHORT_NOTES else card.notes[-SHORT_NOTES:]
+        more = [] if len(notes) == len(card.notes) else [f"-v shows {len(card.notes) - len(notes)} more notes."]
+        taken = [f"Read: {each}." for each in dict.fromkeys(found.taken)] if verbose else []
+        return [card.headline, *table_lines(card.table, card.right), *(f"Note: {note}" for note in notes), *more, *taken]
+
+    def content() -> dict[str, Any]:
+        return found.to_dict() | {"written": [str(each) for each in (out, plot) if each is not None]}
+
+    answer(json, content, lines, None, None, [out, plot])
+    return 0
+
+
+def _files(runs: list[str]) -> list[Path]:
+    """Return the files that names and patterns with ``*`` stand for, each once."""
+    found: list[Path] = []
+    for text in runs:
+        several = sorted(glob.glob(text)) if glob.has_magic(text) and not Path(text).exists() else [text]
+        if not several:
+            raise InputError(f"no file has the pattern {text}; check the folder.")
+        found += [Path(each) for each in several if Path(each) not in found]
+    return found

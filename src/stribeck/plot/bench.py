@@ -1,0 +1,104 @@
+"""Pictures of raw files of a rig: which rows were kept, which were left out and why, and the curve that they make."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.plot import style
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, SERIES, Axes, Figure, add_legend, make_logarithmic, new_figure
+from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    from stribeck.bench.result import BenchCurve
+
+MAX_DRAWN = 20_000  # Rows of each kind that are drawn, evenly spaced ones of more
+
+# Colour and size of the rows by what became of them.
+LOOKS = ((FLUID, 2.2), (GREY, 1.5), (GREY, 1.5), (CONTACT, 2.5), (MARK, 2.5))
+LABELS = ("kept", "at rest", "speed changes", "start of a step", "run-in")
+
+
+@style.picture("there are no points")
+def plot_bench(curve: BenchCurve, *, ax: Axes | None = None, title: str = "", notes: bool = False) -> Figure:
+    """Draw speed and friction of all rows over time, what was left out in other colours, and the curve with 95 % intervals."""
+    if not len(curve):
+        raise InputError("there are no points, so that there is nothing to draw.")
+    size = (9.0, 8.2) if ax is None else (9.0, 4.0)
+    said = [each for each in curve.notes if each.startswith("Left out")] if notes else []
+    figure, axes = new_figure(size, [], said, title=title or "What was kept, and the curve", ax=ax, rows=3)
+    if ax is None:
+        _draw_rows(axes[0], axes[1], curve)
+        box = axes[2].get_position()
+        axes[2].set_position((box.x0, box.y0, box.width, box.height * 0.82))
+    _draw_points(axes[-1], curve)
+    add_legend(figure, axes, columns=5, inside=ax is not None)
+    return figure
+
+
+def _draw_rows(above: Axes, below: Axes, curve: BenchCurve) -> None:
+    """Draw speed and friction of the rows over time, file after file."""
+    time, edges = _one_after_another(curve)
+    for k, ((colour, size), label) in enumerate(zip(LOOKS, LABELS, strict=True)):
+        rows = np.flatnonzero(curve.status == k)
+        if not len(rows):
+            continue
+        rows = rows[:: -(-len(rows) // MAX_DRAWN)]
+        for axes, values in ((above, np.abs(curve.row_speed)), (below, curve.row_friction)):
+            form: dict[str, Any] = {
+                "color": colour,
+                "ms": size,
+                "ls": "none",
+                "marker": ".",
+                "zorder": 2 + k,
+                "rasterized": True,
+            }
+            axes.plot(time[rows], values[rows], label=label, **form)
+    usual = np.abs(curve.row_friction[curve.status == 0])
+    if len(usual):
+        below.set_ylim(min(0.0, float(curve.row_friction[curve.status == 0].min())), 1.4 * float(usual.max()))
+    moving = np.abs(curve.row_speed[(curve.row_speed != 0) & (curve.status == 0)])
+    make_logarithmic(above, "y", moving)
+    above.set_ylim(float(moving.min()) / 2, 2 * float(moving.max()))
+    above.set_ylabel("size of the speed (m/s)")
+    below.set(xlabel="time (s)", ylabel="friction of the rows")
+    above.tick_params(labelbottom=False)
+    for edge in edges:
+        for axes in (above, below):
+            axes.axvline(edge, color=INK, lw=0.7)
+
+
+def _one_after_another(curve: BenchCurve) -> tuple[Array, list[float]]:
+    """Return the time of each row with the files one after another, and where a file begins."""
+    found, edges, end = curve.time.astype(float), list[float](), 0.0
+    for k in range(len(curve.paths)):
+        rows: Indices = np.flatnonzero(curve.file == k)
+        if not len(rows):
+            continue
+        found[rows] += end - curve.time[rows].min()
+        if k:
+            edges.append(end)
+        end = float(found[rows].max())
+    return found, edges
+
+
+def _draw_points(axes: Axes, curve: BenchCurve) -> None:
+    """Draw the points with their 95 % intervals."""
+    for k, name in enumerate(curve.curves):
+        mine = curve.curve == k
+        bars = np.where(np.isfinite(curve.half_width[mine]), curve.half_width[mine], 0.0)
+        form: dict[str, Any] = {
+            "ls": "none",
+            "marker": "o",
+            "ms": 4.0,
+            "mfc": "white",
+            "capsize": 2.0,
+            "color": SERIES[k % len(SERIES)],
+        }
+        axes.errorbar(curve.speed[mine], curve.friction[mine], bars, label=name or "mean and 95 % interval", **form)
+    make_logarithmic(axes, "x", curve.speed)
+    if (curve.friction > 0).all():
+        make_logarithmic(axes, "y", curve.friction)
+    axes.set(xlabel="speed $U$, sum of both surfaces (m/s)", ylabel=style.FRICTION)

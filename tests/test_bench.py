@@ -1,0 +1,219 @@
+"""Raw files of rigs become Stribeck curves: what is kept, what is left out, and intervals that hold the truth."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import call, case_text
+from scipy.signal import lfilter
+
+import stribeck as sb
+
+DATA = Path(__file__).parent / "data"
+EXAMPLE = Path(__file__).parents[1] / "examples" / "rig_raw.csv"
+SPEEDS = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0])  # [mm/s]
+
+
+def curve(speed):
+    """Return the friction of the files at a speed in mm/s."""
+    return 0.55 / (1 + (speed / 8) ** 0.9) + 0.02 + 0.0006 * speed**0.6
+
+
+def noise(rng, n, memory=0.9):
+    found = rng.normal(size=n) * (1 - memory**2) ** 0.5
+    found[0] = rng.normal()
+    return lfilter([1.0], [1.0, -memory], found)
+
+
+def stepped(rng, n=120, *, speeds=SPEEDS, ways=(1, -1), start=0.2, zero=0.04, drift=0.05, load=2.0, amplitude=0.02):
+    """Return rows of time [s], speed [mm/s], load [N] and force [N] of steps forth and back."""
+    rows = []
+    for speed in speeds:
+        for way in ways:
+            mu = curve(speed) * (1 + amplitude * noise(rng, n)) * (1 + start * np.exp(-np.arange(n) / 8))
+            there = way * speed * np.minimum(1, (np.arange(n) + 1) / 4) * (1 + 0.002 * rng.normal(size=n))
+            rows += [(u, load, way * load * each + zero) for u, each in zip(there, mu, strict=True)]
+    found = np.column_stack([0.1 * np.arange(len(rows)), np.array(rows)])
+    found[:, 3] += drift * np.linspace(0, 1, len(rows))
+    return found
+
+
+def text_of(rows, header="Time [s];Speed [mm/s];Fz [N];Fx [N]"):
+    return "\n".join([header, *(";".join(f"{each:.6g}" for each in row) for row in rows)]) + "\n"
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return a function that writes a file and returns its path."""
+
+    def write(content, name="run.csv"):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    return write
+
+
+def refusal(path, *arguments, **options):
+    with pytest.raises(sb.InputError) as caught:
+        sb.bench.read(path, *arguments, **options)
+    return str(caught.value)
+
+
+def assert_holds(found, share=0.8):
+    inside = np.abs(found.friction - curve(1e3 * found.speed)) < found.half_width
+    assert np.mean(inside) >= share
+
+
+# Reads 40 files, each of 8 steps of two directions.
+def test_of_95_per_cent_intervals_90_to_99_per_cent_hold_the_truth(written):
+    inside = []
+    for seed in range(40):
+        rows = stepped(np.random.default_rng(seed), speeds=SPEEDS[1::2])
+        found = sb.bench.read(written(text_of(rows)))
+        assert len(found) == 4
+        miss = np.abs(found.friction - curve(1e3 * found.speed))
+        inside += (miss < found.half_width).tolist()
+    assert 0.90 <= np.mean(inside) <= 0.99
+    assert np.median(sb.bench.read(written(text_of(rows))).half_width / curve(SPEEDS[1::2])) < 0.06
+
+
+@pytest.mark.quick
+def test_the_zero_of_the_force_and_its_drift_are_found_and_taken_off(written):
+    found = sb.bench.read(written(text_of(stepped(np.random.default_rng(1), amplitude=0.005))))
+    assert_holds(found)
+    [sentence] = [each for each in found.notes if each.startswith("Both directions")]
+    assert (
+        "the zero of the force is off by 6" in sentence and "drifts by 4" in sentence
+    )  # 65 mN in the middle, 47 mN between passes
+    # Two forces of 0.04 to 0.09 N each way over 2 N.
+    assert found.difference[0] == pytest.approx(0.043, abs=0.01) and found.difference[-1] == pytest.approx(0.087, abs=0.003)
+
+
+@pytest.mark.quick
+def test_the_start_of_each_step_is_left_out_with_a_sentence(written):
+    found = sb.bench.read(written(text_of(stepped(np.random.default_rng(2), amplitude=0.005))))
+    starts = [each for each in found.notes if "running mean still drifted" in each]
+    assert len(starts) >= 12 and "of the step at 300 µm/s (rows " in starts[2]
+    assert np.sum(found.status == 3) > 12 * 5
+    assert "Left out: 48 rows in which the speed changes" in " ".join(found.notes)
+
+
+def test_a_torque_a_rotation_and_a_load_that_is_off_make_the_same_curve(written):
+    rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], amplitude=0.005)
+    one = sb.bench.read(written(text_of(rows)))
+    turning = rows * [1, 60 / (2 * np.pi * 20), 1, 20]  # 20 mm of track and arm
+    settings = sb.FitSettings(track_radius=0.02, arm=0.02)
+    other = sb.bench.read(written(text_of(turning, "Time [s];Speed [rpm];Fz [N];Torque [mN m]")), settings)
+    assert other.speed == pytest.approx(one.speed, rel=1e-4) and other.friction == pytest.approx(one.friction, rel=1e-3)
+
+
+def test_the_force_without_load_is_its_zero(written):
+    rows = stepped(np.random.default_rng(4), ways=(1,), start=0, drift=0, amplitude=0.005)
+    apart = np.zeros((60, 4))
+    apart[:, 3] = 1e-3 * np.random.default_rng(5).normal(size=60)
+    everything = np.vstack([apart + [0, 0, 0, 0.04], rows, apart + [0, 0, 0.01, 0.04]])
+    everything[:, 3] += np.linspace(0, 0.05, len(everything))
+    everything[:, 0] = 0.1 * np.arange(len(everything))
+    found = sb.bench.read(written(text_of(everything)))
+    assert_holds(found)
+    assert any("Zero of the force by 120 rows without load: 41" in each for each in found.notes)
+
+
+def test_the_curve_is_read_by_fit_as_it_is(tmp_path, capsys):
+    answer = call(capsys, "bench", EXAMPLE, "-o", tmp_path / "curve.csv", "--plot", tmp_path / "kept.png")
+    assert answer.code == 0 and "7 points from 1260 rows" in answer.out and (tmp_path / "kept.png").stat().st_size > 20_000
+    found, data = sb.bench.read(EXAMPLE), sb.read_measurements(tmp_path / "curve.csv")
+    assert data.values == pytest.approx(found.speed) and data.friction == pytest.approx(found.friction)
+    assert data.error == pytest.approx(found.error, rel=1e-3)
+    case = tmp_path / "ball.toml"
+    contact = {"geometry": '"point"', "load": '"2 N"', "modulus": '"1.6 MPa"', "radius": '"9.5 mm"'}
+    case.write_text(case_text(contact, fit={"free": '["boundary_friction"]'}))
+    assert sb.read_measurements(tmp_path / "curve.csv", sb.load_case(case).fit).inputs == ({"load": 2.0},)
+    assert call(capsys, "bench", EXAMPLE, "-o", tmp_path / "curve.csv").code == 2  # kept
+    answer = call(capsys, "bench", EXAMPLE, "--json")
+    assert json.loads(answer.out)["friction"] == pytest.approx(found.friction.tolist())
+
+
+def test_a_temperature_gives_the_viscosity_of_an_oil(tmp_path):
+    found = sb.bench.read(EXAMPLE, fluid="iso-vg grade=46")
+    oil = [sb.fluids.iso_vg(46, temperature=each).viscosity for each in found.temperature]
+    assert found.viscosity == pytest.approx(oil) and np.ptp(found.temperature) > 1
+    found.to_csv(tmp_path / "warm.csv")
+    data = sb.read_measurements(tmp_path / "warm.csv")
+    assert data.abscissa == "speed_viscosity" and data.values == pytest.approx(found.speed * found.viscosity)
+    assert "no condition" in refusal(EXAMPLE, fluid="iso-vg colour=46")
+    assert "one temperature only" in refusal(EXAMPLE, fluid="xanthan")
+
+
+def test_files_are_told_apart_by_their_names_and_repeats_put_together(written):
+    rows = [stepped(np.random.default_rng(k), 40, speeds=SPEEDS[::3], amplitude=0.005) for k in range(3)]
+    names = ("water_2N_1.csv", "water_2N_2.csv", "oil_2N_1.csv")
+    paths = [written(text_of(each), name) for each, name in zip(rows, names, strict=True)]
+    found = sb.bench.read(paths, name="{fluid}_{load}N_{run}.csv")
+    assert found.curves == ("water 2 N", "oil 2 N") and found.inputs == ({"load": 2.0}, {"load": 2.0})
+    assert len(found) == 6 and np.all(found.rows[:3] > 1.3 * found.rows[3:])
+    assert "does not have the pattern" in refusal(paths[0], name="{fluid}-{run}.csv")
+    assert "given twice" in refusal([paths[0], paths[0]])
+
+
+FROM_THE_FIELD = {
+    "01_rtec_preamble_trailing_comma.csv": 8,
+    "02_umt_units_row_steps_grams.csv": 8,
+    "03_time_series_steps_with_startup.csv": 8,
+    "04_ball_on_disc_duplicate_and_blank_headers.txt": 8,
+    "05_rheometer_utf16_intervals.csv": 8,
+    "06_pin_on_disc_max_linear_speed_nominal_load.txt": 8,
+    "07_reciprocating_stops_and_reversals.txt": 28,
+    "10_header_in_comment.txt": 8,
+    "12_three_header_rows.txt": 8,
+    "13_plus_minus_cells.csv": 8,
+    "15_merged_header.xlsx": 16,
+    "16_pure_rolling_and_half_sliding.csv": 8,
+}
+
+
+def test_files_from_the_field_are_read(subtests):
+    for name, points in FROM_THE_FIELD.items():
+        with subtests.test(name=name):
+            found = sb.bench.read(DATA / name)
+            assert len(found) == points
+            doubled = 2 if name.startswith(("04", "16")) else 1
+            known = found.friction / curve(1e3 * found.speed / doubled)
+            if name.startswith("16"):  # another curve
+                continue
+            factor = np.where(found.curve == 1, 0.9, 1.0) if name.startswith("15") else 1.0
+            assert known / factor == pytest.approx(np.ones(points), rel=0.03 if name.startswith("03") else 0.011)
+
+
+REFUSED = {
+    "08_torque_instead_of_force.csv": "arm = '20 mm' in [fit]",
+    "09_hersey_number_ball.csv": "a series needs a column of speed",
+    "11_digitizer_pairs_of_columns.csv": "as in speed = 'X' and friction = 'Y'",
+    "14_log_speed.csv": "is a logarithm, which is no speed",
+}
+
+
+@pytest.mark.quick
+def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
+    for name, sentence in REFUSED.items():
+        with subtests.test(name=name):
+            assert sentence in refusal(DATA / name)
+    bad = {
+        "no speed": ("time [s];COF\n1;0.2\n2;0.3\n", "known as speed"),
+        "one line": ("time [s];speed [mm/s];COF\n", "no rows of numbers"),
+        "nothing": ("", "holds no data"),
+        "binary": (b"\x89PNG\0\0\1\2", "is not text"),
+        "only NaN": ("time [s];speed [mm/s];COF\n1;2;nan\n2;3;nan\n", "no row holds both speed and friction"),
+        "backwards": (
+            "time [s];speed [mm/s];COF\n1;2;.1\n2;2;.1\n3;2;.1\n2.5;2;.1\n3.5;2;.1\n",
+            "row 5, column 'time [s]': time runs back",
+        ),
+        "per cent": ("speed [mm/s];COF\n1;20\n2;30\n", "if it is in percent"),
+    }
+    for name, (content, sentence) in bad.items():
+        with subtests.test(name=name):
+            assert sentence in refusal(written(content))
+    assert "cannot be read" in refusal("there_is_none.csv")
+    assert "per_decade" in refusal(EXAMPLE, per_decade=0)
