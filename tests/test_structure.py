@@ -40,6 +40,7 @@ LAYERS = (
     ("solver", "surfaces"),
     ("equations", "atlas", "asymptotics", "cases"),
     ("contacts",),
+    ("asperity_friction",),
     ("solids", "contact_laws", "profiles"),
     ("fluids",),
     ("files",),
@@ -222,7 +223,8 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
 
 
 NAMESPACES = [
-    *(stribeck, stribeck.bench, stribeck.contact_laws, stribeck.fluids, stribeck.profiles, stribeck.results, stribeck.solids)
+    *(stribeck, stribeck.bench, stribeck.contact_laws, stribeck.fluids, stribeck.profiles, stribeck.results, stribeck.solids),
+    importlib.import_module("stribeck.asperity_friction"),
 ]
 
 

@@ -29,12 +29,18 @@ def without_fields(solution: Any) -> Any:
     """Return a state with its numbers alone: the fields of thousands would fill the memory."""
     # Its fluid holds what was computed of it, and those of a contact are made anew.
     groups = solution.groups if solution.contact is None else solution.contact.groups
+    if getattr(solution.contact, "asperity_friction", None) is not None:
+        _ = solution.real_contact_area  # of the fields, by which asperities rub
+    area = {name: value for name, value in vars(solution).items() if name == "_real_area"}
     if isinstance(solution, PointSolution):
         names = "mesh", "nodal_gap", "nodal_contact_pressure", "nodal_fluid_pressure", "fields", "work"
         fields: dict[str, Any] = {"groups": groups, **dict.fromkeys(names)}
         observables = replace(solution.observables, _groups=groups)
-        return replace(solution, groups=groups, observables=observables, state=replace(solution.state, **fields))
-    return replace(solution, groups=groups, mesh=None, nodal_gap=None, nodal_pressures=None)
+        found = replace(solution, groups=groups, observables=observables, state=replace(solution.state, **fields))
+    else:
+        found = replace(solution, groups=groups, mesh=None, nodal_gap=None, nodal_pressures=None)
+    vars(found).update(area)
+    return found
 
 
 @dataclass(frozen=True, eq=False, repr=False)

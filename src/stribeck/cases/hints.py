@@ -44,6 +44,10 @@ _HINTS = (
         "shear thinning is described in the table [fluid]",
     ),
     (
+        ("shear_stress", "shear_strength", "asperity_friction"),
+        "it stands in the table [asperity_friction] with model = 'shear-stress', in the place of boundary_friction",
+    ),
+    (
         ("density", "rho"),
         "density goes with kinematic_viscosity in [contact]; the number of asperities per area is density in [asperities]",
     ),

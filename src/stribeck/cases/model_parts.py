@@ -1,4 +1,4 @@
-"""The tables ``[fluid]``, ``[cavitation]``, ``[flow_factors]``, ``[solid]`` and ``[profile]`` of a case file.
+"""The tables of a case file that describe parts of a contact: ``[fluid]``, ``[solid]``, ``[asperity_friction]`` and others.
 
 Each becomes one or two arguments of the contact; what a number may be is checked by the law that it goes into.
 """
@@ -223,5 +223,10 @@ PART_TABLES = {
         _keys(KINDS["profile"]),
         _profile,
         f"add shape = {' or '.join(map(json.dumps, KINDS['profile'].laws))}",
+    ),
+    "asperity_friction": PartTable(
+        _keys(KINDS["asperity_friction"]),
+        lambda table, contact, folder: {"asperity_friction": _law(table, KINDS["asperity_friction"])},
+        f"add model = {' or '.join(map(json.dumps, KINDS['asperity_friction'].laws))}",
     ),
 }

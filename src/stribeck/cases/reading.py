@@ -16,6 +16,7 @@ from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SU
 from stribeck.cases.model_parts import in_file, preset_facts, take_parts, viscosity_source_text
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.scaled import NAMED_LAWS
+from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
@@ -66,7 +67,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
     table, parts, wrong = take_parts(table, path.parent)
-    elsewhere = ("radius",) if parts.get("profile", tables.get("profile")) is not None else ()
+    elsewhere = tuple(own for part, own in IN_PLACE_OF.items() if parts.get(part, tables.get(part)) is not None)
     problems += wrong
     fit = FitSettings(geometry=geometry)
     with noted(problems):

@@ -57,6 +57,14 @@ class WithArea(AsperityLaw, Protocol):
         """Return the real area of contact over the apparent one at the pressure Phi."""
 
 
+SMALL_PRESSURE = 1e-9  # Contact pressure over beta E* at which the real area is proportional to it
+
+
+def area_slope(law: WithArea) -> float:
+    """Return the real area of contact over the apparent one per pressure Phi where that is small."""
+    return float(law.area_fraction_at(np.array([SMALL_PRESSURE]))[0]) / SMALL_PRESSURE
+
+
 class ContactLaw(Protocol):
     """A contact law as the equations use it."""
 

@@ -16,6 +16,8 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.law import refuse_coefficient
+from stribeck.asperity_friction.shear_stress import ShearStress
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.forms import FORMS
@@ -23,10 +25,12 @@ from stribeck.contacts.groups import BETA, SCALINGS, Geometry, Groups, Scaling
 from stribeck.contacts.inputs import InputTable, check_motion, read_inputs
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import (
+    KINDS,
     LAW_NUMBERS,
     PART_INPUTS,
     PART_KEYWORDS,
     PURE_SLIDING,
+    WITHOUT_MODEL,
     Parts,
     part_parameters,
     part_value,
@@ -74,7 +78,18 @@ HertzScales.__doc__ = complete_docstring(
 )
 
 
-@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
+class Coefficient(Input):
+    """The friction coefficient of asperities, which a contact has no more where their friction is another."""
+
+    def __get__(self, law: Any, owner: type) -> float:
+        """Return the number of a contact, or refuse it where another friction stands in its place."""
+        if law is not None and law.__dict__[self.name] is None:
+            raise refuse_coefficient(law.asperity_friction)
+        return super().__get__(law, owner)
+
+
+@dataclass(frozen=True, init=False, repr=False, eq=False, kw_only=True)
 class Contact(Parts):
     """The inputs that contacts of all geometries keep, in SI units, and their parts; see the contact of a geometry."""
 
@@ -152,7 +167,7 @@ class Contact(Parts):
         typical_error=0.05,
     )
     beta: Input = BETA
-    boundary_friction: Input = Input(
+    boundary_friction: Input = Coefficient(
         label="dry friction coefficient",
         symbol=r"$\mu_0$",
         dimension="number",
@@ -175,25 +190,49 @@ class Contact(Parts):
         self._keep(law, inputs)
 
     def _keep(self, law: str | AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
+        inputs = _with_shear_stress(inputs)
         for name in inputs.keys() & PART_INPUTS.keys():
             row = PART_INPUTS[name]
             raise InputError(
-                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of sb.{row.table}s, and the law "
-                f"to the contact as {row.table}."
+                f"{name} = {show(inputs[name])} is a number of {row.of}; give it to that law of {PACKAGE_OF[row.table]}, and "
+                f"the law to the contact as {row.table}."
             )
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
         given = {name: each for name, each in inputs.items() if name not in parts}
-        shape = parts.get("profile")
-        values = read_inputs(given, self.INPUTS, elsewhere=() if shape is None else ("radius",)).checked()
+        elsewhere = [own for part, own in IN_PLACE_OF.items() if parts.get(part) is not None]
+        values = read_inputs(given, self.INPUTS, elsewhere).checked()
         super().__init__(**parts)
         if self.profile is not None:
             values = values | {"radius": self._radius_of_profile(values)}
+        if self.asperity_friction is not None and "boundary_friction" in values:
+            raise InputError(
+                f"boundary_friction = {show(values['boundary_friction'])} and asperity_friction = "
+                f"{show(self.asperity_friction)} are both given; give one of them: both are the friction of asperities."
+            )
         for name in self.INPUTS.names:
-            object.__setattr__(self, name, values.get(name))
+            if name in values or name not in elsewhere:
+                object.__setattr__(self, name, values.get(name))
+            else:
+                self.__dict__[name] = None
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
         _ = self.groups.model
+        if self.asperity_friction is not None:
+            self.asperity_friction.check(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all inputs and parts are equal."""
+        return self._kept == other._kept if isinstance(other, Contact) and type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        """Return the same for equal contacts."""
+        return hash(tuple(self._kept.values()))
+
+    @property
+    def _kept(self) -> dict[str, Any]:
+        """All inputs and parts by name, None for those in whose place others stand."""
+        return {field.name: self.__dict__[field.name] for field in fields(self)}
 
     def _radius_of_profile(self, values: Mapping[str, float]) -> float:
         """Return the radius of the cylinder with the same dry width under this load."""
@@ -271,7 +310,7 @@ class Contact(Parts):
     @property
     def groups(self) -> Groups:
         """The dimensionless groups, see :class:`Groups`."""
-        if not self.own_parts:
+        if not self.own_parts.keys() - WITHOUT_MODEL:
             return self._base_groups
         # Made anew each time: a fluid holds what is computed of it.
         origin = 0.0 if self.profile is None else _dry(self.profile, self.load, self.modulus).centre
@@ -302,6 +341,11 @@ class Contact(Parts):
         return {name: value for name, value in super().own_parts.items() if name not in self.INPUTS.names}
 
     @property
+    def _replaced(self) -> tuple[str, ...]:
+        """The inputs in whose place a part stands: under a profile the radius is none."""
+        return tuple(own for part, own in IN_PLACE_OF.items() if getattr(self, part) is not None)
+
+    @property
     def _compression(self) -> float:
         """Load over the stiffness of the contact, whose power e is the slope a/R."""
         scaling = self.scaling()
@@ -327,9 +371,7 @@ class Contact(Parts):
 
     def inputs(self) -> Iterator[tuple[str, float]]:
         """Return name and SI value of each input that the contact has, in the order in which outputs name them."""
-        # Under a profile the radius is none.
-        derived = ("radius",) if self.profile is not None else ()
-        pairs = ((name, getattr(self, name)) for name in self.INPUTS.names if name not in derived)
+        pairs = ((name, getattr(self, name)) for name in self.INPUTS.names if name not in self._replaced)
         return ((name, value) for name, value in pairs if value is not None)
 
     def to_si(self) -> dict[str, float]:
@@ -344,8 +386,8 @@ class Contact(Parts):
 
     def __repr__(self) -> str:
         """Return the inputs, and those parts that are not the article's, as keywords that make it again."""
-        derived = ("radius",) if self.profile is not None else ()
-        shown = {name: getattr(self, name) for name in (*self.INPUTS.names, "law") if name not in derived} | self.own_parts
+        names = [name for name in (*self.INPUTS.names, "law") if name not in self._replaced]
+        shown = {name: getattr(self, name) for name in names} | self.own_parts
         shown |= {"cavitation": self.cavitation.value} if "cavitation" in shown else {}
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
@@ -381,16 +423,19 @@ class Contact(Parts):
         InputError
             Where a value is impossible, or the fluid or solid has no such number.
         """
+        if self.asperity_friction is None:
+            changes = dict(_with_shear_stress(changes))
         numbers = {name: changes.pop(name) for name in PART_INPUTS if name in changes}
         if numbers:
             parts = Parts(**{**self.part_values(), **{name: changes[name] for name in PART_KEYWORDS if name in changes}})
             for name, value in numbers.items():
                 parts = with_part_value(parts, name, value)
             changes |= parts.part_values()
-        kept = {field.name: getattr(self, field.name) for field in fields(self)}
-        changed = set(changes)
-        if self.profile is not None or changes.get("profile") is not None:  # from which the radius follows
-            changed.add("radius")
+        kept, changed = self._kept, set(changes)
+        if "boundary_friction" in changes and "asperity_friction" not in changes:
+            changed.add("asperity_friction")
+        there = {part: None if part in changed - set(changes) else changes.get(part, kept[part]) for part in IN_PLACE_OF}
+        changed.update(own for part, own in IN_PLACE_OF.items() if there[part] is not None)
         if "profile" in changes:  # a film ends by default as suits the shape
             changed.add("cavitation")
         for form in self.INPUTS.forms:  # what is changed in another form is not kept beside it
@@ -431,6 +476,24 @@ def _dry(profile: Any, load: float, modulus: float) -> DryContact:
     return dry_contact(profile, load, modulus)
 
 
+PACKAGE_OF = {kind.table: ".".join(kind.package.split(".")[:2]) for kind in KINDS.values()}  # By table of a case
+
+LAW_PARTS = ("fluid", "flow_factors", "solid", "profile", "asperity_friction")  # Parts that are laws, in outputs
+
+IN_PLACE_OF = {"profile": "radius", "asperity_friction": "boundary_friction"}  # Part -> input in whose place it stands
+
+
+def _with_shear_stress(inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return inputs with the friction of asperities that numbers of a shear stress among them stand for."""
+    numbers = {name: inputs[name] for name in numbers_of(ShearStress) if inputs.get(name) is not None}
+    if "shear_stress" not in numbers:
+        return inputs
+    if inputs.get("asperity_friction") is not None:
+        raise InputError("shear_stress and asperity_friction are both given; give one of them.")
+    others = {name: value for name, value in inputs.items() if name not in numbers}
+    return others | {"asperity_friction": ShearStress(**numbers)}
+
+
 # What docstrings say of the arguments of all contacts that are no numbers.
 OTHER_ARGUMENTS = {
     "law": r"""str or AsperityLaw, optional
@@ -447,6 +510,9 @@ OTHER_ARGUMENTS = {
     "profile": """profile of sb.profiles, optional
     The shape of the rigid body in the place of ``radius``, of a line contact alone; its film ends at the exit, unless
     ``cavitation`` says otherwise.""",
+    "asperity_friction": """friction of stribeck.asperity_friction, optional
+    The friction of asperities in the place of ``boundary_friction``; ``shear_stress`` = ..., with ``speed_exponent`` and
+    ``reference_speed``, is short for ``ShearStress``.""",
     **{name: f"str or float, optional\n    {row.description}" for name, row in numbers_of(Parts).items()},
 }
 
@@ -479,13 +545,13 @@ def input_texts(contact: Contact | None, *without: str | None) -> list[str]:
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
     """Return fluid, cavitation, solid, profile and motion with their numbers, for outputs; nothing of the article's."""
     model = groups.model
-    if model == BASE_MODEL:
+    if model == BASE_MODEL and getattr(contact, "asperity_friction", None) is None:
         return {}
     if contact is None:
         laws: dict[str, Any] = {"fluid": _at_speed(model.film, np.unique(np.asarray(groups.speed))), "solid": model.solid}
         slide_to_roll, cavity_pressure = 2 * model.film.slide, model.cavity_pressure
     else:
-        laws = {"fluid": contact.fluid, "flow_factors": contact.flow_factors, "solid": contact.solid}
+        laws = {name: getattr(contact, name) for name in ("fluid", "flow_factors", "solid", "asperity_friction")}
         slide_to_roll, cavity_pressure = contact.slide_to_roll, contact.cavity_pressure
     laws["profile"] = None if model.profile.is_parabola else model.profile
     found: dict[str, float | str] = {}
@@ -505,7 +571,7 @@ def model_words(groups: Groups, contact: Contact | None) -> str:
     for name, value in part_attributes(groups, contact).items():
         if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
             continue
-        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid", "profile") if name.startswith(f"{what}_")), "")
+        owner = next((f"{what}_" for what in LAW_PARTS if name.startswith(f"{what}_")), "")
         found[name.removeprefix(owner)] = value
     return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
 

@@ -9,6 +9,7 @@ from typing import Any, Literal, Self, cast
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.regime import friction_share
 from stribeck.files.results import Record
@@ -170,15 +171,22 @@ def sliding_part(slide_to_roll: float) -> float:
     return 0.5 * t * (3 - t * t)
 
 
-def coefficients(contact: Contact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
-    """Return boundary_friction and beta as given, by default of the contact, or 1 without a contact."""
+def coefficients(contact: Contact | None, boundary_friction: Any, beta: float | None) -> tuple[Any, float]:
+    """Return boundary_friction and beta as given, by default of the contact, or 1 without a contact.
+
+    Another friction of asperities stands in the place of the coefficient.
+    """
+    own = boundary_friction
+    if own is None and contact is not None:
+        own = contact.asperity_friction
+    of_asperities = isinstance(own, AsperityFriction)
 
     def coefficient(name: str, given: float | None) -> float:
         if given is not None:
             return numbers_of(Contact)[name].checked(given)
         return 1.0 if contact is None else float(getattr(contact, name))
 
-    return coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
+    return own if of_asperities else coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
 
 
 def check_definition(definition: str) -> Definition:

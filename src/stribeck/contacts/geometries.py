@@ -22,7 +22,7 @@ from stribeck.quantities.units import InputError
 
 
 @described("line")
-@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+@dataclass(frozen=True, init=False, repr=False, eq=False, kw_only=True)
 class LineContact(Contact):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 
@@ -78,7 +78,7 @@ class LineContact(Contact):
 
 
 @described("point")
-@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+@dataclass(frozen=True, init=False, repr=False, eq=False, kw_only=True)
 class PointContact(Contact):
     r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
 

@@ -1,4 +1,4 @@
-"""What a contact has beside its inputs: fluid, cavitation, flow factors, solid and motion, as users give them.
+"""What a contact has beside its inputs: fluid, cavitation, flow factors, solid, friction of asperities and motion.
 
 The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model_in` makes them the model
 that the equations see.  Of laws nothing is listed here but the kinds: laws are found in the package of their kind and among
@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, NamedTuple
 
+from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
@@ -36,7 +37,7 @@ MIN_SUCTION = 1e-20
 
 @dataclass(frozen=True, init=False, kw_only=True)
 class Parts:
-    r"""Fluid, cavitation, flow factors, solid, profile and motion of a contact."""
+    r"""Fluid, cavitation, flow factors, solid, profile, friction of asperities and motion of a contact."""
 
     fluid: Fluid  # The fluid; Newtonian, of constant viscosity and density, without it
     cavitation: Cavitation  # How the film ends behind the contact
@@ -54,6 +55,7 @@ class Parts:
     flow_factors: FlowFactors | None  # What roughness does to the flow
     solid: Solid | None  # The soft body; a half-space without it
     profile: Profile | None  # The shape of the rigid body; a cylinder without it
+    asperity_friction: AsperityFriction | None  # Friction of asperities; the coefficient boundary_friction without it
     slide_to_roll: Input = Input(
         label="slide-to-roll ratio",
         symbol="$S$",
@@ -78,6 +80,7 @@ class Parts:
         flow_factors: Any = None,
         solid: Solid | None = None,
         profile: Profile | None = None,
+        asperity_friction: AsperityFriction | None = None,
         slide_to_roll: float | None = PURE_SLIDING,
     ) -> None:
         values = {
@@ -87,6 +90,7 @@ class Parts:
             "flow_factors": as_flow_factors(flow_factors),
             "solid": None if solid is None else as_solid("solid", solid),
             "profile": None if profile is None else as_profile(profile),
+            "asperity_friction": _asperity_friction(asperity_friction),
             "slide_to_roll": slide_to_roll,
         }
         for name, value in values.items():
@@ -114,7 +118,7 @@ class Parts:
 
     def model_in(self, units: FilmUnits, length: float = 1.0, speed: float | None = None, origin: float = 0.0) -> Model:
         """Return the model in Hertz units."""
-        if not self.own_parts:
+        if not self.own_parts.keys() - WITHOUT_MODEL:
             return BASE_MODEL
         if self.solid is not None and self.slide < -1 and getattr(self.solid, "uses_speed", False):
             raise InputError(
@@ -134,6 +138,16 @@ class Parts:
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure, profile)
 
 
+def _asperity_friction(given: Any) -> AsperityFriction | None:
+    """Return the friction of asperities that is given, or refuse what is none; None stands for a coefficient."""
+    if given is None or isinstance(given, AsperityFriction):
+        return given
+    raise InputError(
+        f"asperity_friction = {show(given)}; give one of stribeck.asperity_friction such as ShearStress('0.2 MPa'), or "
+        "boundary_friction, a coefficient, in its place."
+    )
+
+
 def _cavitation(given: Any, profile: Any) -> Cavitation:
     """Return how the film ends: where that is not given, at the exit of a shape that is no cylinder."""
     if given is None and profile is not None:
@@ -149,6 +163,8 @@ def part_parameters(without: Collection[str]) -> list[inspect.Parameter]:
 
 
 PART_KEYWORDS = tuple(field.name for field in fields(Parts))  # The keywords of contacts and solvers that are parts
+
+WITHOUT_MODEL = frozenset({"asperity_friction"})  # Parts that change no field: the model does not know them
 
 BASE_PARTS = Parts()  # Parts of the article's model
 
@@ -179,6 +195,9 @@ KINDS = {
     "flow_factors": Kind("flow_factors", "model", "Flow factors", "none", "stribeck.fluids", FlowFactors),
     "solid": Kind("solid", "model", "Soft body", "half-space", "stribeck.solids", Solid),
     "profile": Kind("profile", "shape", "Shape of the body", "cylinder", "stribeck.profiles", Shape),
+    "asperity_friction": Kind(
+        "asperity_friction", "model", "Friction of asperities", "coulomb", "stribeck.asperity_friction", AsperityFriction
+    ),
 }
 
 
@@ -212,7 +231,8 @@ def part_value(parts: Any, name: str) -> float | None:
         return None
     if name in numbers_of(type(parts)):
         return float(getattr(parts, name))
-    return next((value for each in fields(parts) if (value := part_value(getattr(parts, each.name), name)) is not None), None)
+    inner = (getattr(parts, each.name) for each in fields(parts) if each.name not in numbers_of(type(parts)))
+    return next((value for each in inner if (value := part_value(each, name)) is not None), None)
 
 
 def with_part_value(parts: Any, name: str, value: str | float) -> Any:

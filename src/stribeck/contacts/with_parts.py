@@ -38,6 +38,11 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
                 f"cavity_pressure = {show(given['cavity_pressure'])} is text; with groups it is a plain number, the pressure "
                 "over the Hertz pressure, such as -0.05."
             )
+        if "asperity_friction" in given:
+            raise InputError(
+                f"asperity_friction = {show(given['asperity_friction'])} needs a contact in SI units: groups alone hold no "
+                "pressure and no speed. Give a LineContact or PointContact, or boundary_friction with groups."
+            )
         return replace(problem, model=Parts(**given).model_in(hertz_units(problem)))
     return problem
 

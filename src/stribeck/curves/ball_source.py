@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -61,7 +62,7 @@ class BallReadings:
         """Largest error of all solutions."""
         return max((one.error_estimate for one in self.solutions), default=math.nan)
 
-    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
         """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
         found = [one.friction(boundary_friction, beta, definition) for one in self.solutions]
         return np.array([[f.asperities, f.fluid, f.total, f.error] for f in found]).reshape(-1, 4)
@@ -155,13 +156,14 @@ def ball_source(
     beta: float,
     on_point: Callable[[int, int], object] | None = None,
     ends: Array | None = None,
+    has_area: bool = False,
 ) -> tuple[BallSource, Array, BallReadings]:
     """Return the path of a ball from fast to slow, which may be continued to ``ends``, and the points that it has."""
     # The film is smooth at high speed.
     start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
     ends = values[[0, -1]] if ends is None else ends
     is_closed = _has_closed_friction(coordinate, ends)
-    problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta))
+    problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta), has_area)
     fastest, failure = _first_state(problem, float(places[-1]), float(places[0]))
     path = HermitePath(problem, (), failure)
     if fastest is not None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
 from stribeck.contacts.regime import friction_share
 from stribeck.curves.landmarks import Landmark
@@ -43,7 +44,7 @@ class FrictionPath:
     """The friction along a source of numbers, for given coefficients."""
 
     source: Source
-    boundary_friction: float
+    boundary_friction: Any  # A coefficient, or another friction of asperities
     beta: float
     definition: Definition
 
@@ -56,7 +57,7 @@ class FrictionPath:
         """Return the friction of readings, which may be called for other coefficients."""
 
         def friction(
-            boundary_friction: float | None = None, beta: float | None = None, definition: Definition | None = None
+            boundary_friction: Any = None, beta: float | None = None, definition: Definition | None = None
         ) -> Friction | FrictionArray:
             given = coefficients(
                 None,
@@ -176,7 +177,7 @@ class FrictionPath:
             near = self.source.read(event.place + LOG_STEP * np.array([-1.0, 1.0]))
             before, after = near.friction_terms(*self.coefficients)[:, 3].tolist()
             return float(2 * friction.error / length + abs(after - before) / (2 * LOG_STEP))
-        of_contact = abs(self.source.sliding * self.boundary_friction) * at.errors["contact_load_share"]
+        of_contact = as_asperity_friction(self.boundary_friction).part(at, self.source.sliding)[1]
         errors = np.array([at.errors["fluid_load_share"], of_contact, friction.error - of_contact])
         values = at.fluid_load_share, friction.asperities, friction.fluid
         parts = (Dual(value, row) for value, row in zip(values, np.eye(3), strict=True))

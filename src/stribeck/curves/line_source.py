@@ -8,6 +8,8 @@ from typing import Any, Self
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.asperity_friction.coulomb import as_asperity_friction
+from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import contact_law
@@ -15,7 +17,7 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.source import Coefficients, Parts, Source
 from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.equations.sensitivity import friction_slopes
-from stribeck.numerics.dual import Dual, slope_of
+from stribeck.numerics.dual import Dual, slope_of, value_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -34,6 +36,7 @@ __all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource", "solved_at"]
 COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
 MESH_LOG_DISTANCE = 0.5  # Distance of ln(value) up to which the mesh of one landmark's state is tried at another
+FIELD_LOG_STEP = 1e-3  # Step of ln(value) in differences of what follows from fields between states
 INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
 
 
@@ -191,13 +194,22 @@ class LineReadings:
         rows = zip(self.s.tolist(), self.found, self.errors, strict=True)
         return tuple(CurvePoint(coordinate, path, s, row, errors, self.rtol) for s, row, errors in rows)
 
-    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
         """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
-        share, viscous = ROW["contact_load_share"], ROW[f"viscous_{definition}"]
-        rubbing = self.source.sliding * boundary_friction
-        contact, fluid = rubbing * self.found[:, share], beta * self.found[:, viscous]
-        error = abs(rubbing) * self.relative_errors[:, share] + np.abs(fluid) * self.relative_errors[:, viscous]
+        friction, viscous = as_asperity_friction(boundary_friction), ROW[f"viscous_{definition}"]
+        rubbing = self.source.sliding * self.source.factors(friction, self.s)
+        amount, of_amount = self._amounts(friction)
+        contact, fluid = rubbing * amount, beta * self.found[:, viscous]
+        error = abs(rubbing) * of_amount + np.abs(fluid) * self.relative_errors[:, viscous]
         return np.stack([contact, fluid, contact + fluid, error], axis=1)
+
+    def _amounts(self, friction: AsperityFriction) -> tuple[Array, Array]:
+        """Return what the friction of asperities is proportional to, and its error: off the path, or off solved states."""
+        column = ROW.get(friction.observable)
+        if column is not None:
+            return self.found[:, column], self.relative_errors[:, column]
+        of_states = np.array([friction.amount(each) for each in self.solutions]).reshape(-1, 2)
+        return of_states[:, 0], of_states[:, 1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,10 +255,38 @@ class LineSource(PathSource):
     def parts(self, s: Any, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction, at places that may bring their derivatives."""
         boundary_friction, beta, definition = coefficients
-        names = ("fluid_load_share", "contact_load_share", f"viscous_{definition}")
-        found = self.path.smooth(s)
-        fluid, contact, viscous = (found[:, ROW[name]] for name in names)
-        return fluid, self.sliding * boundary_friction * contact, beta * viscous
+        friction, found = as_asperity_friction(boundary_friction), self.path.smooth(s)
+        fluid, viscous = (found[:, ROW[name]] for name in ("fluid_load_share", f"viscous_{definition}"))
+        if friction.observable in ROW:
+            contact = self.sliding * self.factors(friction, s) * found[:, ROW[friction.observable]]
+        else:
+            contact = self._of_fields(friction, s)
+        return fluid, contact, beta * viscous
+
+    def factors(self, friction: AsperityFriction, s: Any) -> Any:
+        """Return the factors of a friction at places: one number where it is the same everywhere."""
+        if friction.is_constant:
+            return friction.factor(None)
+        return np.array([friction.factor(self.coordinate.contact_at(each)) for each in value_of(s).tolist()])
+
+    def _of_fields(self, friction: AsperityFriction, s: Any) -> Any:
+        """Return the friction of asperities by the fields between the states of the path, with its derivative if s has one."""
+        if isinstance(s, Dual):
+            ahead, behind = (self._of_fields(friction, s.value + step) for step in (FIELD_LOG_STEP, -FIELD_LOG_STEP))
+            return Dual(self._of_fields(friction, s.value), (ahead - behind) / (2 * FIELD_LOG_STEP) * s.slope)
+        inside = np.clip(s, *self.ends)  # a difference at an end is taken on the one side where there are states
+        amounts = [friction.amount(self._between_states(each))[0] for each in inside.tolist()]
+        return self.sliding * self.factors(friction, s) * np.array(amounts)
+
+    def _between_states(self, s: float) -> Solution:
+        """Return the state that the path predicts at a place: its fields hold, its errors are not estimated."""
+        problem, left, right = _beside(self.path, s)
+        groups, near = self.coordinate.groups_at(s), min((left, right), key=lambda each: abs(each.coordinate - s))
+        guess = problem.guess_at(left, right, s)
+        refined = replace(near.point.refined, groups=groups, state=guess)
+        found = solution_of(refined, None, self.rtol)
+        assert found is not None
+        return found
 
     def slopes(self, s: Array, coefficients: Coefficients) -> Array:
         """Return the derivatives of the friction by the coordinate."""
@@ -286,7 +326,10 @@ class LineSource(PathSource):
     def state_slope(self, s: float, rtol: float, coefficients: Coefficients) -> float:
         """Return the derivative of the friction by the coordinate at a state that was solved."""
         boundary_friction, beta, definition = coefficients
+        friction = as_asperity_friction(boundary_friction)
+        if not friction.is_constant:
+            return float(self.slopes(np.array([s]), coefficients)[0])
         state = self._states[s, rtol].state
         assert state is not None
-        slopes = friction_slopes(state, self.sliding * boundary_friction, beta, definition)
+        slopes = friction_slopes(state, self.sliding * friction.factor(None), beta, definition)
         return float(slopes @ self.coordinate.direction)

@@ -12,6 +12,7 @@ from typing import Any, Self
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, model_words
@@ -67,8 +68,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         return self._path.source.coordinate.contact
 
     @property
-    def boundary_friction(self) -> float:
-        """Friction coefficient of the dry contact [-]."""
+    def boundary_friction(self) -> Any:
+        """Friction coefficient of the dry contact [-], or another friction of asperities that the contact has."""
         return self._path.boundary_friction
 
     @property
@@ -445,7 +446,7 @@ class StribeckCurve(Exported, Shown, ByValue):
             ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
             *((mark.name, f"{mark.friction:.4g} at {where(mark.value)}") for mark in self.transitions),
             ("regimes", ", ".join(dict.fromkeys(self.regimes))),
-            ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
+            ("dry friction, beta", f"{as_asperity_friction(self.boundary_friction).text}, {self.beta:g}"),
             *([("contact law", self.solutions[0].law)] if is_solved else []),
             *([("model", model)] if model else []),
             ("estimated error" if is_solved else "stated error", error),

@@ -18,8 +18,8 @@ from stribeck.quantities.results import ByValue, Card, Shown, brief_text
 
 __all__ = ["Coefficients", "CurveValues", "Parts", "Progress", "Readings", "Source"]
 
-Coefficients = tuple[float, float, Definition]
-"""boundary_friction, beta, and the definition of the viscous friction."""
+Coefficients = tuple[Any, float, Definition]
+"""boundary_friction or another friction of asperities, beta, and the definition of the viscous friction."""
 
 Parts = tuple[Array, Array, Array]
 """The load share of the fluid and both parts of the friction, of asperities and of the fluid."""
@@ -52,7 +52,7 @@ class Readings(Protocol):
     def solutions(self) -> tuple[Any, ...]:
         """A solution for each place; empty where no states are solved."""
 
-    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
         """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import as_asperity_friction, needs_area
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
@@ -119,11 +120,17 @@ def stribeck_curve(
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     check_points(points)
     given_friction: Coefficients = boundary_friction, beta, definition
+    # Curves end where asperities no longer matter, which their friction at small area tells.
+    at_small_area: Coefficients = (
+        as_asperity_friction(boundary_friction).coefficient_at_small_area(contact),
+        beta,
+        definition,
+    )
     coordinate = Coordinate(over, base)
     is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
     grows = ends is None and is_solved and is_line and bool(coordinate.groups_at(0.0).roughness > 0)
     if ends is None:
-        values = _automatic(coordinate, given_friction, points, grows)
+        values = _automatic(coordinate, at_small_area, points, grows)
     elif len(ends) == 2:
         values = np.geomspace(ends[0], ends[1], points)
     else:
@@ -133,7 +140,7 @@ def stribeck_curve(
         source = AtlasSource(coordinate, *values[[0, -1]].tolist())
         return StribeckCurve(values, len(values), FrictionPath(source, *given_friction))
     if not is_line:
-        of_ball, reached, read = ball_source(coordinate, values, rtol, beta, on_point)
+        of_ball, reached, read = ball_source(coordinate, values, rtol, beta, on_point, has_area=needs_area(boundary_friction))
         curve = StribeckCurve(reached, len(values), FrictionPath(of_ball, *given_friction))
         vars(curve)["_points"] = read
         return curve
@@ -141,7 +148,7 @@ def stribeck_curve(
     progress = Progress(places, on_point)
     line = _line(coordinate, values, rtol)
     if grows:
-        contact_part = part_of_contact(*given_friction)
+        contact_part = part_of_contact(*at_small_area)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)
         if path.expansions:
             done = progress.done

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
 from stribeck.files.results import Labelled
@@ -34,7 +35,7 @@ def curve_dict(curve: Any) -> dict[str, Any]:
         "definition": curve.definition,
         **about_problem(curve.groups, curve.contact),
         "rtol": curve.rtol,
-        "boundary_friction": curve.boundary_friction,
+        "boundary_friction": _coefficient(curve),
         "beta": curve.beta,
         "minimum": None if curve.minimum is None else curve.minimum.to_dict(),
         **marks_of(curve),
@@ -46,6 +47,11 @@ def curve_dict(curve: Any) -> dict[str, Any]:
         "message": curve.outcome.value,
         "notes": list(curve.notes),
     }
+
+
+def _coefficient(curve: Any) -> float:
+    """Return the friction coefficient of the dry contact, nan where asperities have another friction."""
+    return float(getattr(as_asperity_friction(curve.boundary_friction), "boundary_friction", math.nan))
 
 
 def marks_of(curve: Any) -> dict[str, Any]:
@@ -104,7 +110,7 @@ def _attributes(curve: Any) -> dict[str, Any]:
         **problem_attributes(curve.groups, curve.contact, is_smooth, curve.over),
         "rtol": curve.rtol,
         "error_estimate": curve.error_estimate,
-        "boundary_friction": curve.boundary_friction,
+        "boundary_friction": _coefficient(curve),
         "beta": curve.beta,
         f"minimum_{curve.over}": minimum.value if minimum else math.nan,
         "minimum_friction": minimum.friction if minimum else math.nan,

@@ -212,6 +212,8 @@ ALL_NAMES = (*NAMES, UPPER_DRAG.name, *(row.name for row in RUPTURE_ROWS))
 AREA_ROWS = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),
     "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
+    "real_contact_area": ("1", "real area of contact over that of the dry smooth contact"),
+    "real_contact_area_error": ("1", "estimated absolute error of real_contact_area"),
 }
 
 # Further columns of states, curves, batches, sweeps and diagrams.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact, HertzScales, model_words
 from stribeck.contacts.friction import Definition, Friction, check_definition, coefficients
@@ -187,6 +188,26 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         return float(found[0]), float(np.abs(found[1:] - found[0]).max())
 
     @property
+    def real_contact_area(self) -> float:
+        """Real area of contact over that of the dry smooth contact [-]; nan for a law without a spectrum of the surface."""
+        return self._real_area[0]
+
+    @property
+    def real_contact_area_error(self) -> float:
+        """Estimated absolute error of :attr:`real_contact_area` [-], from load and quadrature."""
+        return self._real_area[1]
+
+    @cached_property
+    def _real_area(self) -> tuple[float, float]:
+        if self.groups.roughness == 0:  # all of a dry smooth contact is real, and nothing of a film
+            return float(self.contact_load_share), self.errors["contact_load_share"]
+        return self._area() if isinstance(self.groups.law, WithArea) else (math.nan, math.nan)
+
+    @abstractmethod
+    def _area(self) -> tuple[float, float]:
+        """Return the real area of contact of a law that knows it, and its error."""
+
+    @property
     def law_parameters(self) -> dict[str, float | str]:
         """Parameters of the contact law beside alpha, beta and h_rms; none of the exponential one."""
         return {} if self.groups.law is None else self.groups.law.parameters
@@ -221,9 +242,9 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> Friction:
         boundary_friction, beta = coefficients(self.contact, boundary_friction, beta)
-        contact = self._sliding * boundary_friction * self.contact_load_share
+        contact, of_contact = as_asperity_friction(boundary_friction).part(self, self._sliding)
         viscous, error = self._viscous(beta, check_definition(definition))
-        error += abs(self._sliding) * boundary_friction * self.errors["contact_load_share"]
+        error += of_contact
         lower, upper = (contact + wall for wall in self._walls(beta))
         return Friction(contact, viscous, contact + viscous, error, lower, upper, self._friction)
 

@@ -180,6 +180,9 @@ def _ratios(solution: Any, beta: float | None, with_fields: bool) -> Iterator[Nu
     if isinstance(solution.groups.law, WithArea):
         area, error, of = solution.central_area_fraction, solution.central_area_fraction_error, "central_area_fraction"
         yield Number(of, "real contact area at x = 0", AREA_ROWS[of][1], area, error)
+    if with_fields and getattr(solution.contact, "asperity_friction", None) is not None:
+        area, error, of = solution.real_contact_area, solution.real_contact_area_error, "real_contact_area"
+        yield Number(of, "real area of contact", AREA_ROWS[of][1], area, error)
     rule = RULES[solution.groups.geometry]
     number = solution.hersey_number
     if solution.contact is None and beta is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -22,12 +23,13 @@ from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.level import Level, predicted
 from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState, ReadState
+from stribeck.solver.point.state import PointState, ReadState, area_integral
 
 __all__ = ["BallKnots", "KnotState"]
 
-UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle")  # Observables whose errors are absolute
-COLUMNS = (*OBSERVABLES, *WITHIN)
+AREA = "real_contact_area"  # Of paths that are asked for it
+UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle", AREA)  # Observables whose errors are absolute
+COLUMNS = (*OBSERVABLES, *WITHIN, AREA)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))
 ONE_SIGNED = [OBSERVABLES[i] for i in SHARES] + [
     "central_gap",
@@ -35,6 +37,7 @@ ONE_SIGNED = [OBSERVABLES[i] for i in SHARES] + [
     "minimum_gap",
     "minimum_gap_on_axis",
     "J_pcx",
+    AREA,
 ]
 SUMMANDS = (OBSERVABLES.index("J_pcx"), OBSERVABLES.index("J_published"))
 ABSOLUTE = [COLUMNS.index(name) for name in UNIT_SCALED]
@@ -71,8 +74,10 @@ class BallKnots:
     one_signed = np.isin(COLUMNS, ONE_SIGNED)
     summands = SUMMANDS
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None) -> None:
-        self.groups_at, self.rtol, self.cut_offs = groups_at, rtol, cut_offs
+    def __init__(
+        self, groups_at: Callable[[float], Groups], rtol: float, cut_offs: CutOffs | None = None, has_area: bool = False
+    ) -> None:
+        self.groups_at, self.rtol, self.cut_offs, self.has_area = groups_at, rtol, cut_offs, has_area
         self.last: PointState | None = None  # The last state, with its factors
         self.failure: PointState | None = None
 
@@ -109,6 +114,10 @@ class BallKnots:
 
         def measured(equations: Equations, y: Unknowns) -> dict[str, float]:
             found = dict(observables(equations, y))
+            if self.has_area:
+                law: Any = equations.law
+                pressure, scale = law.pressure(y.gap), law.load**law.pressure_exponent
+                found[AREA] = area_integral(self.groups_at(s).law, pressure, equations.operators.mesh, float(scale))
             if cut is None:
                 return found
             at = FrictionWithin.of(equations, y, found)
@@ -129,8 +138,9 @@ class BallKnots:
             measure = self._measure(s)
             fine = state.work.fine
             values = dict(state.values)
-            if self.cut_offs is not None:
-                values |= {name: value for name, value in measure(fine.equations, fine.unknowns).items() if name in WITHIN}
+            if self.cut_offs is not None or self.has_area:
+                besides = measure(fine.equations, fine.unknowns).items()
+                values |= {name: value for name, value in besides if name in (*WITHIN, AREA)}
 
             def moved(step: float) -> Groups:
                 return self.groups_at(s + step)
@@ -142,11 +152,16 @@ class BallKnots:
             step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
             ends = [solve_cold(self.groups_at(s + each), self.rtol) for each in (step, -step)]
             slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * step) for name in values}
+            if self.has_area:
+                values[AREA], ahead, behind = (each.real_contact_area[0] for each in (state, *ends))
+                slopes[AREA] = (ahead - behind) / (2 * step)
             values["J_pcx"] = slopes["J_pcx"] = 0.0  # it has nothing but rounding, which has no sign
         errors = state.errors
+        if self.has_area:
+            errors[AREA] = state.real_contact_area[1]
         row, slope = (np.array([each.get(name, 0.0) for name in COLUMNS]) for each in (values, slopes))
-        behind, here, ahead = self.units(np.array([s - 1, s, s + 1]))  # powers of what varies
-        growth = 0.5 * np.log(ahead / behind)
+        below, here, above = self.units(np.array([s - 1, s, s + 1]))  # powers of what varies
+        growth = 0.5 * np.log(above / below)
         return BallKnot(
             s,
             row / here,
@@ -198,6 +213,7 @@ class KnotState(ReadState):
     """A state read off solved states with their slopes."""
 
     _within: list[float]
+    _area: tuple[float, float]
 
     def __init__(self, problem: BallKnots, path: HermitePath, s: float, row: Array, errors: Array) -> None:
         scales = problem.scales(row[None], np.array([s]))[0]
@@ -212,7 +228,8 @@ class KnotState(ReadState):
             identity_error(values, float(groups.speed), far_film(groups.model)),
             (problem, path, s),
         )
-        vars(self)["_within"] = row[len(OBSERVABLES) :].tolist()
+        vars(self)["_within"] = row[len(OBSERVABLES) : len(OBSERVABLES) + len(WITHIN)].tolist()
+        vars(self)["_area"] = float(row[-1]), float(errors[-1] * scales[-1])
 
     @property
     def within(self) -> Callable[[int, float], float] | None:
@@ -223,6 +240,11 @@ class KnotState(ReadState):
             return None
         cut = problem.cut_offs(s)
         return lambda which, log_radius: self._within[which] + nearest(which, log_radius) - nearest(which, cut[min(which, 1)])
+
+    @property
+    def real_contact_area(self) -> tuple[float, float]:
+        """The real area of contact and its error, off the path where it has them."""
+        return self._area if self._place[0].has_area else super().real_contact_area
 
     @property
     def lowest_pressure(self) -> float:

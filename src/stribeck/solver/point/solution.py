@@ -163,6 +163,9 @@ class PointSolution(BaseSolution):
         radii = np.asarray(self.state.mesh.radii)
         return np.concatenate([-radii[::-1], radii])
 
+    def _area(self) -> tuple[float, float]:
+        return self.state.real_contact_area
+
     @cached_property
     def _middle(self) -> Profile:
         return self.profile(self.x)

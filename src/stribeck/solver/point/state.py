@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from stribeck._types import Array
+from stribeck.contact_laws.law import area_slope
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far, log_cut_offs
 from stribeck.contacts.friction import Definition, sliding_part
@@ -18,6 +19,7 @@ from stribeck.contacts.geometries import PointContact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin
+from stribeck.equations.point.system import LOAD
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -94,6 +96,17 @@ class PointState:
         return FrictionWithin.of(fine.equations, fine.unknowns, self.values)
 
     @property
+    def real_contact_area(self) -> tuple[float, float]:
+        """The real area of contact over pi a^2 and its absolute error, that of a law that knows it."""
+        law: Any = self.groups.law
+        scale, contact = float(self.groups.pressure_scale), self.nodal_contact_pressure
+        value = area_integral(law, contact, self.mesh, scale)
+        # The load is an integral of the same pressure on the same nodes, and no area grows faster than at small pressure.
+        share = float((contact @ self.mesh.area_weights).sum()) / LOAD
+        missed = abs(share - self.values["contact_load_share"]) + self.errors["contact_load_share"]
+        return value, missed * LOAD / math.pi * area_slope(law) * scale
+
+    @property
     def minimum_gap_error(self) -> float:
         """Estimated relative error of the minimum film."""
         return self.errors.get("minimum_gap", math.nan)
@@ -102,6 +115,11 @@ class PointState:
     def effort(self) -> float:
         """Measure by which :class:`stribeck.numerics.continuation.StepPath` chooses its steps."""
         return float(self.newton_steps)
+
+
+def area_integral(law: Any, pressure: Array, mesh: Any, scale: float) -> float:
+    """Return the real area of contact over pi a^2 by a contact pressure at the nodes, whose unit has that scale in the law."""
+    return float((law.area_fraction_at(pressure * scale) @ mesh.area_weights).sum()) / math.pi
 
 
 class ReadState(ByValue, PointState):
