@@ -60,7 +60,9 @@ def start(geometry="line"):
 
 
 def field(choice, value, key):
-    """Return what the page calls for a key of a choice, None where it has no field."""
+    """Return what the page calls for a key of a choice, None where it has no field, or no such choice."""
+    if choice not in choices.CHOICES:
+        return None
     shown = choose(choice, value)
     fields = [name for name, *_ in choices.list_of(shown, choice)["details"]]
     return functools.partial(choices.with_detail, shown, choice, key) if key in fields else None

@@ -476,7 +476,7 @@ def _dry(profile: Any, load: float, modulus: float) -> DryContact:
     return dry_contact(profile, load, modulus)
 
 
-PACKAGE_OF = {kind.table: ".".join(kind.package.split(".")[:2]) for kind in KINDS.values()}  # By table of a case
+PACKAGE_OF = {kind.table: f"sb.{kind.package.split('.')[1]}" for kind in KINDS.values()}  # By table of a case
 
 LAW_PARTS = ("fluid", "flow_factors", "solid", "profile", "asperity_friction")  # Parts that are laws, in outputs
 
