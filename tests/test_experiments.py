@@ -66,6 +66,14 @@ def test_the_command_prints_a_table_and_draws(tmp_path, capsys):
     assert "standard errors after it" in answer.out and picture.stat().st_size > 5000
     runs = json.loads(call(capsys, *tokens, "--json").out)["runs"]
     assert len(runs) == 2 and {run["speed"] for run in runs} <= {1e-3, 0.1}
+    compared = call(capsys, "compare", data, case, "--models", "cavitation", "--free", "boundary_friction", "--json",
+        "--plot", tmp_path / "laws.png", "--out", tmp_path / "laws.csv")  # fmt: skip
+    laws = json.loads(compared.out)["laws"]
+    assert compared.code == 0 and all(set(each["values"]) == {"boundary_friction"} for each in laws)
+    lines = (tmp_path / "laws.csv").read_text().splitlines()
+    assert (tmp_path / "laws.png").stat().st_size > 5000 and sum(each["name"] in "".join(lines) for each in laws) == 2
+    assert "stiffness" in call(capsys, "compare", data, case, "--free", "stiffness").err
+    assert "must end" in call(capsys, "compare", data, case, "--out", "laws.txt").err
     assert "CASE is missing" in call(capsys, "next", "measured.csv").err
     assert "DATA is missing" in call(capsys, "compare").err
 

@@ -127,15 +127,36 @@ def master_command(
     return 0
 
 
-def compare_command(*files: Path, models: str | None = None, json: bool = False) -> int:
+def compare_command(
+    *files: Path,
+    models: str | None = None,
+    free: Names = None,
+    plot: Path | None = None,
+    out: Path | None = None,
+    no_notes: bool = False,
+    json: bool = False,
+    force: bool = False,
+) -> int:
     """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
 
-    Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
+    Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml --plot laws.png --out laws.csv
 
-    Example: stribeck compare measured.csv case.toml --models cavitation
+    Example: stribeck compare measured.csv case.toml --models cavitation --free boundary_friction roughness
+
+    --out writes the criteria of all laws as data: .nc, .zarr, .csv or .parquet.
     """
+    from stribeck.files.datasets import write_data
+
     data, loaded = read_arguments("compare", files)
+    check_outputs(force, plot, data=[out] if out is not None else [])
     with interruptible() as progress:
-        found = sb.compare(data, loaded, models=models, on_step=progress.of_fit)
-    answer(json, found.to_dict, lambda: filter(None, [found.candidates[0].fit.checks.first_line, str(found)]))
-    return 0
+        found = sb.compare(data, loaded, models=models, free=free, on_step=progress.of_fit)
+    actions: dict[Path | None, Callable[[], object]] = {
+        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
+    }
+    if out is not None:
+        actions[out] = lambda: write_data(found.to_dataset(), out, force=force)
+    written, problems = write_each(actions)
+    said = filter(None, [found.candidates[0].fit.checks.first_line, str(found)])
+    answer(json, lambda: found.to_dict() | {"files": written}, lambda: said, None, None, written)
+    return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0

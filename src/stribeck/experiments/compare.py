@@ -6,12 +6,12 @@ r"""Which contact law, cavitation or fluid measured friction prefers, and by how
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
@@ -19,7 +19,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.files.writing import PathLike
-from stribeck.fits.fit import fit
+from stribeck.fits.fit import fit, names_to_fit
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.reading import Data, measurements_of
 from stribeck.fits.result import Fit
@@ -114,7 +114,7 @@ def compare(
     *,
     laws: Mapping[str, AsperityLaw | None] | None = None,
     models: str | Mapping[str, Mapping[str, Any]] | None = None,
-    free: tuple[str, ...] | None = None,
+    free: Sequence[str] | None = None,
     on_step: Callable[[str, int, int], object] | None = None,
 ) -> Comparison:
     """Fit measured friction with several contact laws or models, and return which it prefers, and by how much.
@@ -157,7 +157,7 @@ def compare(
     contact = loaded.contact if isinstance(loaded, Case) else loaded
     settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
     rows = measurements_of(data, settings)
-    names = tuple(free or settings.free or DEFAULT_FREE)
+    names = names_to_fit(free, settings)
     if models is not None and laws is not None:
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")
     found: dict[str, Fit] = {}
