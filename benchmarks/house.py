@@ -35,7 +35,7 @@ WAYS = {
     "NeighbourSolver": "solver",
     "next_state": "solver",
     "Corrector": "solver",
-    "follow": "solver",
+    "follow": "",
     "march": "numerics",
     "_Chain": "batches",
     "KeptStates": "batches",
