@@ -339,3 +339,27 @@ def test_the_check_of_a_shape_says_how_steep_it_is_and_why_the_film_ends():
     assert found["shape"].value == pytest.approx(0.202, abs=2e-3)
     assert "ends at the exit" in found["shape"].sentence
     assert "contact width a/R" not in found
+
+
+@dataclass(frozen=True)
+class Kinked:
+    """A rounded lip, blunt to one side, whose curvature jumps."""
+
+    reversed: bool = True
+    places = (0.44,)
+    parameters = {}
+
+    def gap(self, x):
+        return 0.36 * (np.hypot(x, 0.18) - 0.18) - 0.23 * x + 0.08 * np.maximum(x - 0.44, 0) ** 2
+
+    def slope(self, x):
+        return 0.36 * x / np.hypot(x, 0.18) - 0.23 + 0.16 * np.maximum(x - 0.44, 0)
+
+
+def test_a_film_that_ends_beside_a_lip_is_found_where_the_way_from_a_thick_film_is_lost():
+    """A thick film may end in several places: from the one that the path leads to there is no way to the thin film."""
+    numbers = {"modulus": 2.0, "load": 0.5 * np.pi, "viscosity": 1.41e-6, "speed": 1.0, "roughness": 0.0256}
+    contact = sb.LineContact(profile=Kinked(), alpha=1.0, beta=6.38, boundary_friction=0.5, cavitation="exit", **numbers)
+    found = sb.solve(contact, rtol=1e-3)
+    assert found.outcome.ok
+    assert found.contact_load_share + found.fluid_load_share == pytest.approx(1.0, abs=1e-3)

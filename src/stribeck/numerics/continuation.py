@@ -255,10 +255,13 @@ class Steps(Generic[S]):
         self, correct: Callable[[float, Sequence[tuple[float, S]]], S | None], first: float = NEGLIGIBLE * MAX_LOG_STEP
     ) -> None:
         self.correct, self.first = correct, first  # ``first`` is the length of the first step
-        self._failed = False
+        self._failed, self._tries = False, 0
 
     def solve(self, s: float, near: Sequence[Step[S]]) -> Step[S] | Outcome:
         """Return the state at ``s``, corrected from those before it, or the outcome of the failure."""
+        self._tries += 1
+        if self._tries > MAX_STATES:
+            return Outcome.PATH_LOST
         state = self.correct(s, [(each.coordinate, each.state) for each in near])
         if state is None or not state.outcome.ok:
             self._failed = True

@@ -3,8 +3,8 @@ r"""Cold start: a first state for any groups, from a rigid cylinder by one path.
 A fast enough film, or high enough asperities, hold the cylinder so far off that it hardly deforms: its gap is the parabola
 :math:`h_0 + x^2/2`, and :math:`h_0` follows from one scalar equation.  From there the speed comes down, of a contact at rest
 the roughness, with the solid and the exit of the model; of a rough contact under a light load, load and speed together, so
-that asperities and film keep their balance.  Where the path begins, the shape of the model replaces the cylinder, and where
-it ends the fluid of the model the Newtonian one, along
+that asperities and film keep their balance.  Where the path begins, or else where it ends, the shape of the model
+replaces the cylinder, and where it ends the fluid of the model the Newtonian one, along
 
 .. math::
 
@@ -203,30 +203,44 @@ def cold_start(groups: Groups) -> StepPath[State]:
 
     def seed(here: Groups) -> State | None:
         guess = rigid_guess(here)
-        return None if guess is None else _under_profile(here, guess)
+        start = None if guess is None else coarse_state(_without_profile(here), guess)
+        if start is None or not start.outcome.ok or here.model.profile.is_parabola:
+            return start
+        path = _to_profile(here, start)
+        return path.states[-1] if path.outcome.ok else None
 
     return coarse_path(groups_at, top, 0.0, seed)
 
 
 def first_path(groups: Groups) -> StepPath[State]:
     """Return the path from cold to a coarse state of ``groups``, whose film does not re-form."""
-    path, film = cold_start(groups), groups.model.film
+    path, film = _under_profile(groups), groups.model.film
     if not path.outcome.ok or film == Newtonian() or is_rough(film):
         return path
     start = path.states[-1]
     return _homotopy(start, lambda part: _with_model(start.groups, film=blend(film, part)))
 
 
-def _under_profile(groups: Groups, guess: Guess) -> State | None:
-    """Return the state of groups from that under the parabola, which a guess leads to."""
-    profile = groups.model.profile
-    if profile.is_parabola:
-        return coarse_state(groups, guess)
-    start = coarse_state(_with_model(groups, profile=profile.part(0.0)), guess)
-    if start is None or not start.outcome.ok:
-        return start
-    path = _homotopy(start, lambda part: _with_model(groups, profile=profile.part(part)))
-    return path.states[-1] if path.outcome.ok else None
+def _under_profile(groups: Groups) -> StepPath[State]:
+    """Return the path to a Newtonian film under the profile, which comes before the speed goes down, or else after it."""
+    # A film that is thick beside a lip may end in several places, and the path from there may lead nowhere.
+    path = cold_start(groups)
+    if path.outcome.ok or groups.model.profile.is_parabola:
+        return path
+    plain = cold_start(_without_profile(groups))
+    later = _to_profile(groups, plain.states[-1]) if plain.outcome.ok else plain
+    return later if later.outcome.ok else path
+
+
+def _without_profile(groups: Groups) -> Groups:
+    """Return groups with the parabola in place of the profile."""
+    return _with_model(groups, profile=groups.model.profile.part(0.0))
+
+
+def _to_profile(groups: Groups, start: State) -> StepPath[State]:
+    """Return the path to the profile of groups from a state under the parabola."""
+    base = start.groups
+    return _homotopy(start, lambda part: _with_model(base, profile=groups.model.profile.part(part)))
 
 
 def _homotopy(start: State, groups_at: Callable[[float], Groups]) -> StepPath[State]:
