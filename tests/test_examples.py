@@ -117,6 +117,14 @@ def test_the_profile_of_the_example_shows_what_it_was_made_with(results):
 
 
 @pytest.mark.slow
+def test_a_seal_with_a_steep_flank_to_the_oil_takes_oil_back(results):
+    _, (states, formula) = results("seal_from_pressure")
+    films = [state.flux_gap * state.contact.hertz.indentation for state in states.values()]
+    assert films == pytest.approx([formula.forward, formula.backward], rel=0.05)
+    assert films[1] > 3 * films[0]
+
+
+@pytest.mark.slow
 def test_half_the_roughness_of_a_seal_does_more_than_twice_the_viscosity(results):
     _, curves = results("levers_of_a_seal")
     friction = {name: float(np.interp(0.1, curve.values, curve.friction)) for name, curve in curves.items()}

@@ -266,6 +266,16 @@ def test_a_contact_takes_a_radius_or_a_profile_and_a_ball_takes_none():
         sb.stribeck_curve(sb.LineContact(profile=land, **CONTACT), load=("10 N/m", "100 N/m"))
 
 
+def test_replace_of_dataclasses_takes_the_radius_of_the_changed_contact():
+    land = sb.profiles.Land(land_width="0.5 mm", edge_radius="1 mm")
+    numbers = {"modulus": 5e6, "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.03}
+    contact = sb.LineContact(profile=land, load=100.0, boundary_friction=0.3, **numbers)
+    heavier = replace(contact, load=400.0)
+    assert heavier == contact.replace(load=400.0) and heavier.radius < contact.radius
+    with pytest.raises(sb.InputError, match="both given"):
+        replace(contact, radius=1e-3)
+
+
 def test_dry_contacts_have_the_edges_of_closed_forms_and_tables(subtests):
     edges = {"cylinder": (sb.profiles.Cylinder(1.0), 2**0.5, 2**0.5), "land": (LAND, 5.566, 5.566), "lip": (LIP, 2.528, 0.430)}
     for name, (shape, left, right) in edges.items():

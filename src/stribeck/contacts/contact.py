@@ -51,6 +51,10 @@ from stribeck.quantities.units import InputError, show
 Kind = TypeVar("Kind", bound="Contact")
 
 
+class RadiusOfProfile(float):
+    """The radius of the cylinder with the dry width of a profile: it follows from the profile, the load and the modulus."""
+
+
 @dataclass(frozen=True)
 class HertzScales(Record):
     r"""Scales of the dry contact of a smooth cylinder or ball, in SI units.
@@ -199,6 +203,8 @@ class Contact(Parts):
             )
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
         given = {name: each for name, each in inputs.items() if name not in parts}
+        if isinstance(given.get("radius"), RadiusOfProfile):  # of another contact, which dataclasses.replace hands over
+            del given["radius"]
         elsewhere = [own for part, own in IN_PLACE_OF.items() if parts.get(part) is not None]
         values = read_inputs(given, self.INPUTS, elsewhere).checked()
         super().__init__(**parts)
@@ -214,6 +220,8 @@ class Contact(Parts):
                 object.__setattr__(self, name, values.get(name))
             else:
                 self.__dict__[name] = None
+        if self.profile is not None:
+            self.__dict__["radius"] = RadiusOfProfile(self.radius)
         object.__setattr__(self, "law", law_of(law))
         check_alpha(self.law, self.alpha)
         self._check_scales()
