@@ -104,7 +104,7 @@ class Corrector:
     @property
     def _widest(self) -> tuple[float, float]:
         """Mesh tolerances of a first mesh; that of a path resolves the minimum of neighbouring gaps too."""
-        tail, gap_tail = mesh_tolerances_for(self.rtol / SHARE)
+        tail, gap_tail = mesh_tolerances_for(self.rtol)
         return tail, NEGLIGIBLE * gap_tail if self.own_inverse else gap_tail
 
     def _relax(self) -> None:

@@ -134,7 +134,7 @@ class LineProblem:
             if not (np.isfinite(gap).all() and gap.min() > 0 and guess.cavity_stretch > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
-            refined = self.corrector.solve(guess, groups, SAFETY * spread)
+            refined = self.corrector.solve(guess, groups, spread)
         else:
             refined = self.corrector.cold(groups)
         return self._accepted(s, refined, near)

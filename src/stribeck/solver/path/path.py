@@ -308,12 +308,8 @@ class SolvedPath(Path):
 
     def step_length(self, upwards: bool, rtol: float) -> float:
         """Return the longest step on which the coefficients should interpolate within the tolerance."""
-        here, *before = self.expansions[::-1] if upwards else self.expansions
-        falls = 1.0  # The radius, with the distance: to what lies ahead, or as it did on the way
-        if before:
-            falls = max(0.0, before[0].radius - here.radius) / abs(here.coordinate - before[0].coordinate)
-        step = 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(here.order, 1)))  # in terms of the radii of both ends
-        return here.radius * step * (math.hypot(1.0, 0.5 * falls * step) - 0.5 * falls * step)
+        here = self.expansions[-1 if upwards else 0]
+        return here.radius * 2.0 * float((NEGLIGIBLE * rtol) ** (0.5 / max(here.order, 1)))
 
     def intervals_to_halve(self, rtol: float, is_whole: bool) -> list[int]:
         """Return the numbers of the intervals that do not interpolate within the tolerance, and of which half might."""
