@@ -328,6 +328,43 @@ def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
             sb.LineContact(**{name: value for name, value in (ring | changed).items() if value is not None})
 
 
+@pytest.mark.quick
+def test_a_sealed_pressure_adds_its_force_on_the_width_of_the_contact(subtests):
+    ring = {
+        "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.06, "boundary_friction": 0.3,
+        "radius": 1.765e-3, "youngs_modulus": 5.5e6, "poisson_ratio": 0.5,
+    }  # fmt: skip
+    alone = sb.LineContact(**ring, squeeze=0.1)
+    for pressure in (0.0, 1e5, 1e6):
+        pressed = sb.LineContact(**ring, squeeze=0.1, sealed_pressure=pressure)
+        assert pressed.load - 2 * pressed.hertz.half_width * pressure == pytest.approx(alone.load, rel=1e-12)
+    with pytest.raises(sb.InputError, match="sealed_pressure is given without load"):
+        sb.LineContact(**ring, sealed_pressure=1e6)
+    with pytest.raises(sb.InputError, match="radius is missing beside sealed_pressure"):
+        shape = sb.profiles.Lip(angle_oil="20 deg", angle_air="10 deg", tip_radius="0.8 mm")
+        del ring["radius"]
+        sb.LineContact(**ring, load=500, sealed_pressure=1e6, profile=shape)
+
+
+SEALS = ["shaft", pytest.param("o-ring", marks=pytest.mark.slow), pytest.param("u-cup", marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("seal", SEALS)
+def test_a_new_case_of_a_seal_is_solved_and_in_no_doubt(tmp_path, seal):
+    path = tmp_path / "seal.toml"
+    path.write_text(sb.new_case(seal=seal))
+    contact = sb.load_case(path).contact
+    assert sb.check(contact).headline.startswith("The model applies: all")
+    assert 0.001 < sb.solve(contact, rtol=1e-3).friction().total < 0.3
+
+
+def test_a_new_case_of_a_seal_names_what_there_is():
+    with pytest.raises(sb.InputError, match="seal = 'gasket'; it must be one of o-ring, u-cup, shaft"):
+        sb.new_case(seal="gasket")
+    with pytest.raises(sb.InputError, match="a seal is a line contact"):
+        sb.new_case("point", seal="shaft")
+
+
 def test_usual_errors_stand_in_for_those_that_nobody_gives(tmp_path, capsys):
     path = tmp_path / "case.toml"
     path.write_text('uncertainty = "typical"\n' + case_text({"load": '"50 N/m +- 1 %"'}))

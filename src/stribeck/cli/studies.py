@@ -142,17 +142,20 @@ def new_command(
     /,
     *,
     geometry: str = "line",
+    seal: str | None = None,
     force: bool = False,
 ) -> int:
-    """Write a commented case file with every key, its unit and usual range, ready to run.
+    """Write a commented case file with every key, its unit and usual range, ready to run, or that of a seal.
 
     Example: stribeck new case.toml
+
+    Example: stribeck new seal.toml --seal o-ring
 
     Example: stribeck new ball.toml --geometry point
     """
     from stribeck.contacts.groups import check_geometry
 
-    text = sb.new_case(check_geometry(geometry))
+    text = sb.new_case(check_geometry(geometry), seal)
     if file is None:
         print(text, end="")
         return 0

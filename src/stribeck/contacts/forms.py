@@ -65,6 +65,11 @@ def modulus_of_shore_d(hardness: float) -> float:
     return float(1e6 * 10 ** (0.0235 * (hardness + 50) - 0.6403))
 
 
+def _pressed(load: float, pressed: float) -> float:
+    """Return the load F of F = ``load`` + 2 ``pressed`` F^(1/2), in which a pressure acts on a width that goes as F^(1/2)."""
+    return (pressed + math.hypot(pressed, math.sqrt(load))) ** 2
+
+
 def _hardness(letter: str, typical: str, ends: tuple[float, float], **relation: Any) -> Form:
     """Return how Young's modulus of an incompressible solid follows from a Shore hardness."""
     scale = Input(
@@ -241,5 +246,26 @@ FORMS = (
             ),
         ),
         value=lambda first, second: 1 / (1 / first + 1 / second),
+    ),
+    Form(
+        of="load",
+        geometry="line",
+        joins=True,
+        uses=("modulus", "radius"),
+        inputs=(
+            Input(
+                name="sealed_pressure",
+                label="pressure that a rubber seal holds back",
+                symbol="$P$",
+                dimension="pressure",
+                typical="1 MPa",
+                source="adds to the load of squeeze or lip; hydraulics 1 to 40 MPa",
+                zero=True,
+            ),
+        ),
+        value=lambda modulus, radius, load, pressure: _pressed(load, pressure * (4 * radius / (math.pi * modulus)) ** 0.5),
+        formula="load + 2 a P, with the half-width a of the contact under both",
+        source="incompressible rubber hands on a pressure as a liquid does; the film is solved between ambient pressures",
+        error=0.2,
     ),
 )

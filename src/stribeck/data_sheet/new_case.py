@@ -11,11 +11,12 @@ from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
+from stribeck.data_sheet.seals import SEALS
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.schema import Input, needed_of, numbers_of
-from stribeck.quantities.units import DIMENSIONS
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 MODEL_TEXT = """
 # A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
@@ -71,13 +72,15 @@ shortest_wavelength = "1.5 um"
 
 
 @answers_typos
-def new_case(geometry: Geometry = "line") -> str:
+def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
     """Return the text of a case file with every key, a typical value, its unit and its usual range.
 
     Parameters
     ----------
     geometry : {"line", "point"}
         A cylinder, or a ball.
+    seal : {"o-ring", "u-cup", "shaft"}, optional
+        A seal with the numbers of catalogues, in the place of the file with every key.
 
     Returns
     -------
@@ -87,8 +90,14 @@ def new_case(geometry: Geometry = "line") -> str:
     Raises
     ------
     InputError
-        If it is no geometry.
+        If it is no geometry or no kind of seal.
     """
+    if seal is not None:
+        if seal not in SEALS:
+            raise InputError(f"seal = {show(seal)}; it must be one of {', '.join(SEALS)}.")
+        if geometry != "line":
+            raise InputError(f"geometry = {show(geometry)}: a seal is a line contact; leave geometry out.")
+        return SEALS[seal]
     table = INPUT_TABLES[check_geometry(geometry)]
     body, (points, rtol) = "ball" if geometry == "point" else "cylinder", DEFAULT_POINTS_AND_RTOL[geometry]
     lines = [
