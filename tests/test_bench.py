@@ -152,9 +152,12 @@ def test_files_are_told_apart_by_their_names_and_repeats_put_together(written):
     names = ("water_2N_1.csv", "water_2N_2.csv", "oil_2N_1.csv")
     paths = [written(text_of(each), name) for each, name in zip(rows, names, strict=True)]
     found = sb.bench.read(paths, name="{fluid}_{load}N_{run}.csv")
-    assert found.curves == ("water 2 N", "oil 2 N") and found.inputs == ({"load": 2.0}, {"load": 2.0})
+    assert found.curves == ("water", "oil") and found.inputs == ({"load": 2.0}, {"load": 2.0})
     assert len(found) == 6 and np.all(found.rows[:3] > 1.3 * found.rows[3:])
-    assert "does not have the pattern" in refusal(paths[0], name="{fluid}-{run}.csv")
+    assert "does not follow" in refusal(paths[0], name="{fluid}-{load}N.csv")
+    case = sb.FitSettings(files={"water_*": {"viscosity": "1 mPa*s"}, "oil_*": {"viscosity": "40 mPa*s"}})
+    found = sb.bench.read([path.parent / "*_2N_?.csv" for path in paths[:1]], case)
+    assert found.viscosity.tolist() == [0.04] * 3 + [0.001] * 3
     assert "given twice" in refusal([paths[0], paths[0]])
 
 

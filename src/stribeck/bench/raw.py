@@ -16,6 +16,7 @@ from stribeck.files.text_table import TextTable, read_table
 from stribeck.fits.table.columns import columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.correlated import FEWEST, errors_of_means
 from stribeck.fits.table.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
+from stribeck.fits.table.stated import inputs_said
 from stribeck.fits.table.strokes import without_codes
 from stribeck.fits.table.units import has_dimension, si_factor
 from stribeck.fits.table.values import LARGEST_FRICTION, Values
@@ -49,11 +50,12 @@ class Raw:
     resolution: float  # Last digit of a friction coefficient [-]
     notes: tuple[str, ...]
     taken: str  # What each column was taken for
+    said: dict[str, float]  # Inputs [SI] by lines above the header, by the name of the file and by the case
 
 
 def read_raw(path: Path, settings: FitSettings) -> Raw:
     """Return the series of a file; refuse one that has none in a sentence."""
-    settings = replace(settings, geometry="point")  # a rig measures forces
+    asked, settings = settings, replace(settings, geometry="point")  # a rig measures forces
     table = with_errors_named(read_table(path, settings.header_row, knows=known_name, sheet=settings.sheet))
     written = table.header
     table, zero = _zero_of_force(table, settings)
@@ -101,6 +103,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     parts = [f"{show(names[0])} as {meaning.replace('_', ' ')}" for meaning, names in columns.items() if names[0] in written]
     if warm is not None:
         parts.append(f"{show(warm[1])} as temperature")
+    of_case, said = _said(table, asked, path.name, [*columns, *(["temperature"] if warm is not None else [])])
     return Raw(
         path=table.path,
         numbers=np.array(table.numbers)[kept],
@@ -115,8 +118,22 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         steps=tuple(labels[i] for i in kept) if labels else (),
         resolution=_resolution(table, friction_name, own) * float(np.median(np.abs(friction[there]))),
         notes=tuple(notes),
-        taken="; ".join([*made, *parts]),
+        taken="; ".join([*made, *parts, *of_case]),
+        said=said,
     )
+
+
+def _said(table: TextTable, asked: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, float]]:
+    """Return sentences and numbers of what the file, its name and the case say of all rows; a load is a force, or per length."""
+    try:
+        texts, found = inputs_said(table, replace(asked, geometry="point"), name, columns)
+    except InputError:
+        if asked.geometry != "line":
+            raise
+        texts, found = inputs_said(table, asked, name, columns)
+        if "load" in found:
+            found["load_per_length"] = found.pop("load")
+    return texts, {key: value for key, value in found.items() if isinstance(value, float)}
 
 
 def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:

@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.bench.names import Named, NamePattern
 from stribeck.bench.passes import RUN_IN, Series, passes_of
 from stribeck.bench.points import Point, points_of, run_in_of
-from stribeck.bench.raw import read_raw
+from stribeck.bench.raw import Raw, read_raw
 from stribeck.bench.result import BenchCurve
 from stribeck.bench.segments import directions
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import FitSettings, read_pattern
 from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.files.writing import path_of
+from stribeck.fits.reading import files_of
 from stribeck.fluids.presets import PRESETS, Preset
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
@@ -63,14 +62,16 @@ def read(
     Parameters
     ----------
     runs : str, path-like or list of them
-        Files of a tribometer or a rheometer, with columns of speed (or rotation) and friction (or forces, or torque).
+        Files of a tribometer or a rheometer, or globs: columns of speed (or rotation) and friction (or forces, or torque).
     settings : FitSettings, optional
-        The ``[fit]`` table of a case: columns in another language, units that no header gives, radius of the track, arm.
+        The ``[fit]`` table of a case: columns in another language, units that no header gives, radius of the track, arm, and
+        what files have for themselves (``file_names``, ``files``).
     name : str, optional
-        Pattern of the names of the files, as ``"{fluid}_{load}N_{run}.csv"``: ``run`` numbers repeats, all else tells curves
-        apart.
+        Pattern of the names of the files in place of ``file_names``, as ``"{fluid}_{load}N_{run}"``: ``run`` numbers repeats,
+        all else tells curves apart.
     fluid : str or mapping, optional
-        Liquid by which the temperature gives the viscosity, as ``"iso-vg grade=46"`` or ``{"preset": "iso-vg", "grade": 46}``.
+        Liquid by which the temperature gives the viscosity, as ``"iso-vg grade=46"`` or ``{"preset": "iso-vg", "grade": 46}``;
+        by default that of the case, if it is such a preset.
     temperature : str or float, optional
         Temperature where the files have none, as ``"25 degC"``.
     per_decade : float
@@ -107,16 +108,19 @@ def read(
     several = [runs] if isinstance(runs, str | os.PathLike) else list(runs)
     if not several:
         raise InputError("runs is empty; give the files of a rig.")
-    paths = [path_of(each, "runs") for each in several]
+    paths = files_of(several)
     for i, path in enumerate(paths):
         if path in paths[:i]:
             raise InputError(f"{path} is given twice; a file counts once.")
     density = to_si(per_decade, "number", "per_decade", "10")
     if not 1 <= density <= 1000:
         raise InputError(f"per_decade = {show(per_decade)} must lie between 1 and 1000, as 10.")
-    liquid = None if fluid is None else _liquid(fluid)
-    pattern = None if name is None else NamePattern(name, INPUT_TABLES["point"])
-    named = [Named() if pattern is None else pattern.read(path) for path in paths]
+    if name is not None:
+        settings = replace(settings, file_names=read_pattern("name", name))
+    if fluid is not None:
+        settings = replace(settings, liquid=_checked_liquid(fluid))
+    if temperature is not None:
+        settings = replace(settings, liquid=settings.liquid | {"temperature": temperature})
     series: list[Series] = []
     for i, path in enumerate(paths, 1):
         series.append(passes_of(read_raw(path, settings), density))
@@ -124,16 +128,16 @@ def read(
             on_file(i, len(paths))
     curves = _Curves()
     curve_of = [
-        [curves.number(*_curve(each, label, inputs)) for label, inputs in one.raw.curves]
-        for each, one in zip(named, series, strict=True)
+        [curves.number(*_curve(path.name, one.raw, label, inputs, settings)) for label, inputs in one.raw.curves]
+        for path, one in zip(paths, series, strict=True)
     ]
     labels = _labels(curves)
     texts = [path.name for path in paths]
     out = run_in_of(series, curve_of, labels) if settings.run_in == "leave" else []
     points, said = points_of(series, curve_of, set(out), texts)
-    warm = _temperatures(points, curve_of, named, temperature)
     found = _assembled(series, curves, labels, points, set(out))
-    viscosity = np.array([_viscosity(point, curves, liquid, warm[i]) for i, point in enumerate(points)])
+    liquid = _liquid(settings)
+    viscosity = np.array([_viscosity(point, curves.inputs[point.curve], liquid) for point in points])
     notes = [
         f"{text}: {note}" if len(texts) > 1 else note
         for text, one in zip(texts, series, strict=True)
@@ -147,16 +151,17 @@ def read(
     return replace(
         found,
         paths=tuple(map(str, paths)),
-        temperature=np.array(warm),
         viscosity=viscosity,
-        notes=(*notes, *said, *_on_errors(points), *_on_viscosity(points, liquid, warm)),
+        notes=(*notes, *said, *_on_errors(points), *_on_viscosity(points, liquid)),
         taken=tuple(one.raw.taken for one in series),
         rolls=settings.rolls or any("slide_to_roll" in each for each in curves.inputs),
     )
 
 
-def _curve(named: Named, label: str, inputs: dict[str, float]) -> tuple[str, dict[str, float]]:
-    return " ".join(filter(None, [named.curve, label])), inputs | named.inputs
+def _curve(file: str, raw: Raw, label: str, inputs: dict[str, float], settings: FitSettings) -> tuple[str, dict[str, float]]:
+    """Return name and inputs of a curve of a file."""
+    named = {} if settings.file_names is None else settings.file_names.labels(file)
+    return " ".join(filter(None, [named.get("fluid", ""), label])), inputs | raw.said
 
 
 def _labels(curves: _Curves) -> tuple[str, ...]:
@@ -165,7 +170,7 @@ def _labels(curves: _Curves) -> tuple[str, ...]:
     for name, inputs in zip(curves.names, curves.inputs, strict=True):
         alike = [each for other, each in zip(curves.names, curves.inputs, strict=True) if other == name]
         differing = [key for key in inputs if len({each.get(key) for each in alike}) > 1]
-        rows = INPUT_TABLES["point"].rows
+        rows = INPUT_TABLES["point"].rows | {"load_per_length": INPUT_TABLES["line"].rows["load"]}
         texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], rows[key].dimension)}" for key in differing]
         found.append(", ".join(filter(None, [name, *texts])))
     return tuple(found)
@@ -178,7 +183,6 @@ def _assembled(
     for f, k in out:
         series[f].status[series[f].passes[k].rows] = RUN_IN
     order = np.concatenate([np.full(len(one.status), f) for f, one in enumerate(series)])
-    none = np.full(len(points), np.nan)
     return BenchCurve(
         paths=(),
         curves=labels,
@@ -191,8 +195,8 @@ def _assembled(
         independent=np.array([each.independent for each in points]),
         difference=np.array([each.difference for each in points]),
         difference_error=np.array([each.difference_error for each in points]),
-        temperature=none,
-        viscosity=none,
+        temperature=np.array([each.temperature for each in points]),
+        viscosity=np.full(len(points), np.nan),
         file=order,
         row=np.concatenate([one.raw.numbers for one in series]),
         time=np.concatenate([one.raw.time for one in series]),
@@ -202,43 +206,40 @@ def _assembled(
     )
 
 
-def _liquid(fluid: str | Mapping[str, Any]) -> tuple[Preset, dict[str, Any]]:
-    """Return a liquid and its conditions, as ``iso-vg grade=46`` or a mapping gives them."""
+def _checked_liquid(fluid: str | Mapping[str, Any]) -> dict[str, Any]:
+    """Return a liquid and its conditions, as ``iso-vg grade=46`` or a mapping gives them, as the table of a case."""
     if isinstance(fluid, str):
         word, *rest = fluid.split()
         if not all("=" in each for each in rest):
             raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
         given: dict[str, Any] = {"preset": word, **dict(each.split("=", 1) for each in rest)}
     else:
-        given = dict(fluid)
-    preset = PRESETS[checked_word("fluid", given.pop("preset", ""), tuple(PRESETS))]
+        given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
+    preset = PRESETS[checked_word("fluid", given.get("preset", ""), tuple(PRESETS))]
     if "temperature" not in preset.conditions:
         raise InputError(
             f"fluid = {show(fluid)} has its viscosity at one temperature only; take a liquid of which more is known."
         )
-    preset(**given)  # refuses what it does not know
-    return preset, given
+    preset(**{key: value for key, value in given.items() if key != "preset"})  # refuses what it does not know
+    return given
 
 
-def _temperatures(
-    points: Sequence[Point], curve_of: Sequence[Sequence[int]], named: Sequence[Named], given: str | float | None
-) -> list[float]:
-    """Return the temperature of each point [degC]: measured, else of the name of its file, else as given; else NaN."""
-    from stribeck.fluids.liquids import celsius
-
-    other = np.nan if given is None else celsius(given)
-    of_curve = {k: celsius(each.temperature) for of, each in zip(curve_of, named, strict=True) if each.temperature for k in of}
-    return [each.temperature if np.isfinite(each.temperature) else of_curve.get(each.curve, other) for each in points]
+def _liquid(settings: FitSettings) -> tuple[Preset, dict[str, Any]] | None:
+    """Return the liquid and its conditions, None where its viscosity is not known over the temperature."""
+    preset = PRESETS.get(settings.liquid.get("preset", ""))
+    if preset is None or "temperature" not in preset.conditions:
+        return None
+    return preset, {key: value for key, value in settings.liquid.items() if key in preset.conditions}
 
 
-def _viscosity(point: Point, curves: _Curves, liquid: tuple[Preset, dict[str, Any]] | None, warm: float) -> float:
+def _viscosity(point: Point, inputs: dict[str, float], liquid: tuple[Preset, dict[str, Any]] | None) -> float:
     """Return the viscosity of a point [Pa s]: of its curve, else of the liquid at its temperature; else NaN."""
-    known = curves.inputs[point.curve].get("viscosity")
+    known = inputs.get("viscosity")
     if known is not None or liquid is None:
         return np.nan if known is None else known
     preset, conditions = liquid
-    if np.isfinite(warm):
-        conditions = conditions | {"temperature": warm}
+    if np.isfinite(point.temperature):
+        conditions = conditions | {"temperature": point.temperature}
     elif "temperature" not in conditions:
         raise InputError("fluid needs a temperature: the files have none; give temperature, as '25 degC'.")
     return preset(**conditions).viscosity
@@ -258,8 +259,8 @@ def _on_errors(points: Sequence[Point]) -> list[str]:
     ]
 
 
-def _on_viscosity(points: Sequence[Point], liquid: tuple[Preset, dict[str, Any]] | None, warm: Sequence[float]) -> list[str]:
-    known = [each for each in warm if np.isfinite(each)]
+def _on_viscosity(points: Sequence[Point], liquid: tuple[Preset, dict[str, Any]] | None) -> list[str]:
+    known = [each.temperature for each in points if np.isfinite(each.temperature)]
     if liquid is not None and known:
         return [f"Viscosity of {liquid[0].label} at {min(known):.1f} to {max(known):.1f} °C, of each point."]
     if known and liquid is None:

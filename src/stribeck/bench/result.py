@@ -21,7 +21,15 @@ from stribeck.quantities.results import ByValue, Card, Told
 
 __all__ = ["BenchCurve"]
 
-SI_UNITS = {"load": "N", "viscosity": "Pa*s", "slide_to_roll": "1"}
+# Headers of inputs in the file; those of others are their names.
+HEADERS = {
+    "load": "load [N]",
+    "load_per_length": "load [N/m]",
+    "viscosity": "viscosity [Pa*s]",
+    "roughness": "roughness [m]",
+    "radius": "radius [m]",
+    "modulus": "modulus [Pa]",
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -240,10 +248,10 @@ class BenchCurve(Exported, Told, ByValue):
         if np.isfinite(self.half_width).any():
             columns["error"] = cells(self.error, 4)
         for name in sorted(given):
-            unit = SI_UNITS.get(name, "1")
-            columns[f"{name} [{unit}]" if unit != "1" else name] = cells(
-                np.array([self.inputs[k].get(name, math.nan) for k in self.curve])
-            )
+            header = HEADERS.get(name, name)
+            if name == "load" and "load_per_length" in given:
+                header = "measured force [N]"
+            columns[header] = cells(np.array([self.inputs[k].get(name, math.nan) for k in self.curve]))
         columns["rows"], columns["independent rows"] = list(map(str, self.rows)), cells(self.independent, 4)
         for name, values in (("direction difference", self.difference), ("direction difference SE", self.difference_error)):
             if np.isfinite(values).any():

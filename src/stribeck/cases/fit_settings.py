@@ -182,10 +182,11 @@ def read_pattern(key: str, text: Any) -> FileNames:
     """Return the pattern of file names that a key has, such as ``"{load}_{temperature [degC]}_*.csv"``."""
     if not isinstance(text, str) or not text.strip():
         raise InputError(f'{key} = {show(text)} must be text such as "{{load}}_{{temperature}}_*.csv".')
-    names = (*(each for each in LINE.names if each != "speed"), *PART_INPUTS, "slide_to_roll", "temperature")
+    names = (*(each for each in LINE.names if each != "speed"), *PART_INPUTS, "slide_to_roll", "temperature", *LABELS)
     parts: list[str] = []
     units: dict[str, str] = {}
-    for piece in re.split(r"(\{[^{}]*\}|\*|\?)", text):
+    pieces = re.split(r"(\{[^{}]*\}|\*|\?)", text)
+    for piece, following in zip(pieces, [*pieces[1:], ""], strict=True):
         found = _PLACEHOLDER.fullmatch(piece)
         if found is None:
             parts.append({"*": ".*?", "?": "."}.get(piece, re.escape(piece)))
@@ -194,14 +195,19 @@ def read_pattern(key: str, text: Any) -> FileNames:
             unknown(found[1], piece, names)
         if found[1] in units:
             raise InputError(f"{key} = {show(text)} has {found[1]} twice; name each input once, and write * for the rest.")
-        units[found[1]] = found[2] or ""
-        parts.append(rf"(?P<{found[1]}>{_NUMBER_IN_NAME if found[2] else '.+?'})")
+        behind = None if found[2] or found[1] in LABELS else _UNIT_IN_NAME.match(following)  # as in {load}N
+        units[found[1]] = found[2] or (behind[0] if behind else "")
+        parts.append(rf"(?P<{found[1]}>{_NUMBER_IN_NAME if units[found[1]] else '.+?'})")
     if not units:
         raise InputError(f'{key} = {show(text)} names no input; write, for example, "{{load}}_{{temperature}}_*.csv".')
     return FileNames(text, "".join(parts), units)
 
 
 _PLACEHOLDER = re.compile(r"\{\s*(\w+)\s*(?:\[(.+)\])?\s*\}")
+
+_UNIT_IN_NAME = re.compile(r"[A-Za-zµμ°%]+(?![0-9])")
+
+LABELS = ("fluid", "run")  # What names of files may say beside inputs: names of liquids and repeats
 
 _NUMBER_IN_NAME = r"[-+]?[0-9]+(?:[.,][0-9]+)?"
 
@@ -216,6 +222,13 @@ class FileNames:
 
     def values(self, name: str) -> dict[str, str]:
         """Return the inputs in the name of a file as text with units."""
+        return {key: text for key, text in self._texts(name).items() if key not in LABELS}
+
+    def labels(self, name: str) -> dict[str, str]:
+        """Return fluid and run in the name of a file, as far as the pattern has them."""
+        return {key: text for key, text in self._texts(name).items() if key in LABELS}
+
+    def _texts(self, name: str) -> dict[str, str]:
         stem = name.rpartition(".")[0] or name
         found = re.fullmatch(self.regex, stem) or re.fullmatch(self.regex, name)
         if found is None:

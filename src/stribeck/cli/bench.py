@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,7 +12,6 @@ from stribeck.cli.arguments import Quantity, Verbose
 from stribeck.cli.exits import answer
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable, need_extra
-from stribeck.quantities.units import InputError
 
 SHORT_NOTES = 8  # Notes that are printed without -v, so that the answer fits a screen
 
@@ -42,7 +40,6 @@ def bench_command(
     The curve is read by stribeck fit as it is.  --case names columns, units, track_radius and arm in its table [fit].  --name
     is the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
     """
-    paths = _files(runs)
     settings = None if case is None else sb.load_case(case).fit
     if out is not None:
         from stribeck.files.datasets import CSV_ENDINGS
@@ -55,7 +52,7 @@ def bench_command(
         need_extra("a picture", "plot", "matplotlib")
     with interruptible() as progress:
         found = sb.bench.read(
-            paths,
+            runs,
             settings,
             name=name,
             fluid=fluid,
@@ -82,14 +79,3 @@ def bench_command(
 
     answer(json, content, lines, None, None, [out, plot])
     return 0
-
-
-def _files(runs: list[str]) -> list[Path]:
-    """Return the files that names and patterns with ``*`` stand for, each once."""
-    found: list[Path] = []
-    for text in runs:
-        several = sorted(glob.glob(text)) if glob.has_magic(text) and not Path(text).exists() else [text]
-        if not several:
-            raise InputError(f"no file has the pattern {text}; check the folder.")
-        found += [Path(each) for each in several if Path(each) not in found]
-    return found
