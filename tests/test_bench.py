@@ -220,3 +220,99 @@ def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
             assert sentence in refusal(written(content))
     assert "cannot be read" in refusal("there_is_none.csv")
     assert "per_decade" in refusal(EXAMPLE, per_decade=0)
+
+
+def ball_on_disc(rng):
+    """Return the text of a rig with two drives: a header above each step, rolling speed and slide-to-roll ratio."""
+    lines = ["Test data file", "Disc track radius:\t20.7", ""]
+    for step, rolling in enumerate(SPEEDS[1:], 1):
+        lines += ["", f'Step {step} "Stribeck" started at 12:0{step}', "Step type\tSTRIBECK"]
+        lines.append("Step Time (s)\tRolling Speed (mm/s)\tSRR (%)\tBall Load (N)\tLube Temp (°C)\tTraction Force (N)")
+        mu = curve(2 * rolling) * (1 + 0.01 * noise(rng, 80, 0.7)) * (1 + 0.2 * np.exp(-np.arange(80) / 4))
+        speeds = rolling * np.minimum(1, (np.arange(80) + 1) / 3) * (1 + 0.002 * rng.normal(size=80))
+        lines += [
+            f"{k}\t{u:.5g}\t50\t2.0{k % 3}\t40.0{k % 2}\t{(2 + 0.01 * (k % 3)) * each:.5g}"
+            for k, (u, each) in enumerate(zip(speeds, mu, strict=True))
+        ]
+    return "\n".join(lines)
+
+
+def pin_on_disc(rng):
+    """Return the text of a rig that writes laps, the size of the speed and the friction coefficient."""
+    lines = ["Sample\tPDMS", "Normal load: 2 N", "", "Time [s]\tDistance [m]\tLaps\tLinear Speed [cm/s]\tµ"]
+    time = 0.0
+    for speed in SPEEDS[2:]:
+        # Run-out of the disc: the friction of a lap of 25 rows goes up and down.
+        mu = curve(speed) * (1 + 0.01 * noise(rng, 150, 0.5) + 0.03 * np.sin(2 * np.pi * np.arange(150) / 25))
+        for k, each in enumerate(mu):
+            lines.append(f"{time:.1f}\t0\t{k // 25}\t{speed / 10:.4g}\t{each:.5f}")
+            time += 0.2
+    return "\n".join(lines)
+
+
+def strokes(rng, *, sine):
+    """Return the text of a reciprocating rig whose force has the sign of the motion, and stops between the strokes."""
+    rows, time = [], 0.0
+    for top in SPEEDS[2::2]:
+        for k in range(40):
+            way = 1 if k % 2 == 0 else -1
+            place = (np.arange(30) + 0.5) / 30
+            speed = top * (np.sin(np.pi * place) if sine else np.minimum(1, np.minimum(place, 1 - place) * 10))
+            mu = curve(speed) * (1 + 0.01 * noise(rng, 30)) * (1 + (0.15 * np.exp(-k / 2) if not sine else 0.0))
+            rows += [
+                (time + 0.05 * i, way * u, 2.0, way * 2 * each + 0.03)
+                for i, (u, each) in enumerate(zip(speed, mu, strict=True))
+            ]
+            rows += [(time + 1.5 + 0.05 * i, 0.0, 2.0, 0.03) for i in range(2)]
+            time += 1.6
+    return text_of(rows, "Time [s]\tSpeed [mm/s]\tNormal Force [N]\tFriction Force [N]").replace(";", "\t")
+
+
+def rheometer(rng):
+    """Return the bytes of a rheometer: UTF-16, units below the names, a rotation that is ramped, torque and normal force."""
+    lines = [
+        "Project:\tT1",
+        "",
+        "Interval data:\tPoint No.\tTime\tRotational Speed\tTorque\tNormal Force",
+        "\t\t[s]\t[1/min]\t[mN·m]\t[N]",
+    ]
+    speed = np.geomspace(1, 300, 1200)
+    torque = 20 * 5 * curve(speed) * (1 + 0.01 * noise(rng, len(speed), 0.8))
+    rpm = speed / 20 * 60 / (2 * np.pi)
+    lines += [f"\t{k}\t{0.5 * k:.1f}\t{n:.6g}\t{m:.6g}\t5.00" for k, (n, m) in enumerate(zip(rpm, torque, strict=True), 1)]
+    return "\n".join(lines).encode("utf-16")
+
+
+def test_a_ball_on_disc_with_two_drives(written):
+    found = sb.bench.read(written(ball_on_disc(np.random.default_rng(11)), "ball.txt"))
+    assert len(found) == 7 and found.rolls and found.inputs == ({"load": 2.0, "slide_to_roll": 0.5},)
+    assert found.temperature == pytest.approx(40, abs=0.1)
+    assert_holds(found)
+
+
+def test_a_pin_on_disc_whose_friction_goes_up_and_down_with_each_lap(written):
+    found = sb.bench.read(written(pin_on_disc(np.random.default_rng(12)), "pin.txt"))
+    assert len(found) == 6 and found.inputs == ({"load": 2.0},)
+    assert_holds(found)
+    assert np.all(found.half_width < 0.05 * found.friction)
+
+
+def test_strokes_are_values_of_both_directions(written):
+    found = sb.bench.read(written(strokes(np.random.default_rng(13), sine=False), "strokes.txt"))
+    assert len(found) == 3 and found.difference == pytest.approx(0.03, abs=0.01)
+    assert_holds(found)
+    assert any("first" in each and "strokes of the step" in each for each in found.notes)
+
+
+def test_a_sine_is_put_together_in_bins_of_the_speed(written):
+    found = sb.bench.read(written(strokes(np.random.default_rng(14), sine=True), "sine.txt"))
+    assert len(found) > 20 and any("The speed never rests" in each for each in found.notes)
+    assert_holds(found)
+
+
+def test_a_ramp_of_a_rheometer_with_a_torque_and_a_rotation(written):
+    path = written(rheometer(np.random.default_rng(15)), "rheometer.txt")
+    found = sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02))
+    assert len(found) == 25 and found.inputs == ({"load": 5.0},)
+    assert_holds(found)
+    assert len(sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02), per_decade=4)) == 10

@@ -125,14 +125,12 @@ def _of_ramps(parts: Sequence[Part], raw: Raw, speed: Array, friction: Array, pe
     bins = np.minimum(((y - y.min()) / max(float(np.ptp(y)), 1e-300) * count).astype(int), count - 1)
     of_row = np.full(len(speed), -1)
     of_row[moving] = bins
-    level = friction.copy()
     found: list[Pass] = []
-    for curve in np.unique(raw.curve):
-        for k in range(count):
-            mine = np.flatnonzero((of_row == k) & (raw.curve == curve))
-            if not len(mine):
-                continue
-            level[mine] = _at_mean_speed(np.log(np.abs(speed[mine])), friction[mine])
+    for curve in np.unique(raw.curve[moving]):
+        places = [np.flatnonzero((of_row == k) & (raw.curve == curve)) for k in range(count)]
+        places = [mine for mine in places if len(mine)]
+        level = _at_mean_speeds(np.log(np.maximum(np.abs(speed), 1e-300)), friction, places)
+        for mine in places:
             new = (np.diff(mine) > 1) | (np.diff(np.sign(speed[mine])) != 0)
             pieces = np.split(mine, np.flatnonzero(new) + 1)
             found += _passes([(each, int(np.sign(speed[each[0]]))) for each in pieces], raw, level, together=True)
@@ -143,12 +141,14 @@ def _of_ramps(parts: Sequence[Part], raw: Raw, speed: Array, friction: Array, pe
     return found, said
 
 
-def _at_mean_speed(y: Array, friction: Array) -> Array:
-    """Return friction of a bin brought to its mean speed along a straight line over the logarithm of the speed."""
-    place = y - y.mean()
-    spread = float(place @ place)
-    slope = float(place @ friction) / spread if len(y) >= FEWEST and spread > 0 else 0.0
-    level: Array = friction - slope * place
+def _at_mean_speeds(y: Array, friction: Array, bins: Sequence[Indices]) -> Array:
+    """Return friction brought to the mean speed of its bin, by the slope of the means of neighbouring bins over y."""
+    # A slope of the rows of a bin alone would take slow noise out of them, and its error with it.
+    places, means = (np.array([float(each[mine].mean()) for mine in bins]) for each in (y, friction))
+    slopes = np.gradient(means, places) if len(bins) > 1 else np.zeros(len(bins))
+    level = friction.copy()
+    for mine, place, slope in zip(bins, places, slopes, strict=True):
+        level[mine] -= slope * (y[mine] - place)
     return level
 
 

@@ -124,7 +124,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
 
 
 def _said(table: TextTable, asked: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, float]]:
-    """Return sentences and numbers of what the file, its name and the case say of all rows; a load is a force, or per length."""
+    """Return sentences and numbers of what file, name and case say of all rows; a load is a force, or per length."""
     try:
         texts, found = inputs_said(table, replace(asked, geometry="point"), name, columns)
     except InputError:
