@@ -1,4 +1,4 @@
-"""What a curve of a ball keeps in memory: it hardly grows with its points, and what is read off it solves nothing."""
+"""What a curve keeps in memory: it hardly grows with its points, what is read off it solves nothing, and it leaves nothing."""
 
 import gc
 import types
@@ -46,3 +46,17 @@ def test_points_notes_and_marks_are_read_off_a_curve_without_solving_its_points(
     finer = curve.sampled(60)
     assert finer.notes and finer.regimes and finer.to_dataset().sizes["speed"] == 60
     assert bytes_of((curve, finer)) - before < 60 * 20 * fields  # a solved state holds a hundred times its fields and more
+
+
+def test_a_curve_that_is_dropped_leaves_its_memory_at_once():
+    for _ in range(2):  # the first one fills what is kept for others
+        gc.collect()
+        gc.disable()
+        try:
+            curve = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-3, 1e-1), points=5, rtol=1e-4)
+            assert len(curve.friction) == len(curve.observable("central_gap")) == 5 and curve.minimum is not None
+            del curve
+            left = gc.collect()
+        finally:
+            gc.enable()
+    assert left == 0

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -53,21 +54,22 @@ class FrictionPath:
         """Those of the friction."""
         return self.boundary_friction, self.beta, self.definition
 
-    def friction(self, found: Readings, is_number: bool = False) -> Friction | FrictionArray:
+    def friction(
+        self,
+        found: Readings,
+        is_number: bool = False,
+        boundary_friction: Any = None,
+        beta: float | None = None,
+        definition: Definition | None = None,
+    ) -> Friction | FrictionArray:
         """Return the friction of readings, which may be called for other coefficients."""
-
-        def friction(
-            boundary_friction: Any = None, beta: float | None = None, definition: Definition | None = None
-        ) -> Friction | FrictionArray:
-            given = coefficients(
-                None,
-                self.boundary_friction if boundary_friction is None else boundary_friction,
-                self.beta if beta is None else beta,
-            )
-            of = self.definition if definition is None else check_definition(definition)
-            return friction_of(found.friction_terms(*given, of), friction, is_number)
-
-        return friction()
+        given = coefficients(
+            None,
+            self.boundary_friction if boundary_friction is None else boundary_friction,
+            self.beta if beta is None else beta,
+        )
+        of = self.definition if definition is None else check_definition(definition)
+        return friction_of(found.friction_terms(*given, of), partial(self.friction, found, is_number), is_number)
 
     def values(self, value: float | Array) -> CurveValues:
         """Return all that is known at one value, or at many."""

@@ -124,9 +124,9 @@ class Interval:
         scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
         return np.stack([relative.max(axis=0), (relative * scales).max(axis=0)])
 
-    @cached_property
+    @property
     def _alone(self) -> _Pieces:
-        return _Pieces([self])
+        return _Pieces([self])  # not kept: a cycle would keep all operators until the garbage is collected
 
     @cached_property
     def checked_error(self) -> Array:
