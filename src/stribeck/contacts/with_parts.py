@@ -81,7 +81,7 @@ def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
     if contact.profile is None:
         return known
     found = dict(known)
-    for name in ("load", "modulus", *(each for each in part_names(contact) if PART_INPUTS[each].table == "profile")):
+    for name in width_inputs(contact):
         value = getattr(contact, name)
         below, above = (contact.replace(**{name: value * math.exp(step)}).radius for step in (-CENTRAL_STEP, CENTRAL_STEP))
         rate = math.log(above / below) / (2 * CENTRAL_STEP)
@@ -90,6 +90,11 @@ def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
         )
         found[name] = speed, load, roughness
     return found
+
+
+def width_inputs(contact: Contact) -> tuple[str, ...]:
+    """Return the inputs from which the dry width under a profile follows."""
+    return ("load", "modulus", *(each for each in part_names(contact) if PART_INPUTS[each].table == "profile"))
 
 
 def hertz_units(groups: Groups) -> FilmUnits:

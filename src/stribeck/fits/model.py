@@ -9,7 +9,8 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
     {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta, \ldots)}
 
 with a constant matrix A of exponents for each curve c: those of the inputs of the contact in the groups, and in what the
-friction of its geometry takes beside them, see :mod:`stribeck.contacts.friction_rules`.
+friction of its geometry takes beside them, see :mod:`stribeck.contacts.friction_rules`.  Inputs from which the dry width under
+a profile follows enter the groups as no power: these are formed anew at each place, with A the exponents there.
 
 Numbers of fluids and solids are in the model that the groups carry, in Hertz units: there they depend on their own free inputs
 and on those of the Hertz contact, and give the friction a further derivative at fixed groups.
@@ -18,7 +19,7 @@ and on those of the Hertz contact, and give the friction a further derivative at
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,9 +31,8 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import friction_share
-from stribeck.contacts.with_parts import models_at_both_sides, refuse_fixed_memory
+from stribeck.contacts.with_parts import exponents_of, models_at_both_sides, refuse_fixed_memory, width_inputs
 from stribeck.equations.sensitivity import Change
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
@@ -67,9 +67,11 @@ class FrictionModel:
 
     def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
-        for name in (name for each in free for name in each.names if contact.profile is not None):
-            if name in ("load", "modulus") or name in PART_INPUTS and PART_INPUTS[name].table == "profile":
-                raise InputError(f"{name} is free, but with a profile the dry width follows from it; free other inputs.")
+        names = {name for each in free for name in each.names}
+        if contact.profile is not None and "radius" in names:
+            raise InputError("radius is free, but the profile is the whole shape of the body; free numbers of the profile.")
+        # Groups are then no product of powers: the dry width under a profile is found from these inputs.
+        self.bends = contact.profile is not None and bool(names & set(width_inputs(contact)))
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         groups = [each.groups for each in self.contacts]
         self.physics, self.model = [each.physics for each in groups], contact.groups.model
@@ -77,9 +79,8 @@ class FrictionModel:
         if data.abscissa != "speed":
             for each in groups:
                 refuse_fixed_memory(each, "which a fit must know; give a column of speeds, or fit with an elastic solid.")
-        exponents = [self._exponents(curve) for curve in range(len(data.curves))]
-        self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
-        self.logs = self.logs_at(data.curve, data.values)
+        self.exponents = self._exponents_at(self.contacts)
+        self.logs = self._logs_at(self.contacts, data.curve, data.values)
         # Of each curve: a faster cylinder drags the substrate along.  What is measured is a size.
         self.signs = np.array([math.copysign(1.0, self._rubbing(each)) for each in self.contacts])
         still = np.zeros(len(self.free))
@@ -160,7 +161,7 @@ class FrictionModel:
     def _read(self, theta: Array, x: Array, states: States) -> FrictionParts:
         """Return the parts of all measured rows, with slopes along the inputs alone, read between curves that are solved."""
         found = []
-        for c, A in enumerate(self.exponents[..., :3]):
+        for c, A in enumerate(self._exponents_of_curves(theta)[..., :3]):
             rows = np.nonzero(self.data.curve == c)[0]
             moves = np.abs(A).max(axis=1, initial=0.0) > 0
             moves[list(self.moving[c])] = True
@@ -174,26 +175,36 @@ class FrictionModel:
             found.append((rows, replace(each, slopes=np.concatenate([none, each.slopes], axis=1))))
         return together(found)
 
-    def _exponents(self, curve: int) -> list[list[float]]:
-        """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
-        rows = []
-        for free in self.free:
-            row = np.sum([self._exponents_of(name) for name in free.names], axis=0)
-            rows.append((row * free.acts_on(curve)).tolist())
-        return rows
+    def _exponents_of_curves(self, theta: Array) -> Array:
+        """Return the exponents of each curve near a set of free inputs."""
+        return self._exponents_at(self._contacts_at(theta)) if self.bends else self.exponents
 
-    def _exponents_of(self, free: str) -> list[float]:
-        """Return the exponents with which one input enters them."""
-        speed, load, roughness = self.contact.INPUTS.exponents.get(free, (0.0, 0.0, 0.0))
+    def _contacts_at(self, theta: Array) -> list[Contact]:
+        """Return the contacts of all curves at a set of free inputs, at unit speed."""
+        return [self.contact_of(curve, theta, 1.0) for curve in range(len(self.contacts))]
+
+    def _exponents_at(self, contacts: Sequence[Contact]) -> Array:
+        """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
+        found = np.zeros((len(contacts), len(self.free), 4 + len(self.rule.inputs)))
+        for curve, contact in enumerate(contacts):
+            known = exponents_of(contact) if self.bends else contact.INPUTS.exponents
+            for k, free in enumerate(self.free):
+                if free.acts_on(curve):
+                    found[curve, k] = np.sum([self._exponents_of(name, known) for name in free.names], axis=0)
+        return found
+
+    def _exponents_of(self, free: str, known: Mapping[str, tuple[float, float, float]]) -> list[float]:
+        """Return the exponents with which one input enters them, given those of the groups."""
+        speed, load, roughness = known.get(free, (0.0, 0.0, 0.0))
         if free != "viscosity":
             speed += self.rule.exponents_at(self.data.abscissa).get(free, 0.0)
         row = [speed, load, roughness, free == "boundary_friction"]
         return [*row, *((free == name) + self.rule.exponents.get(name, {}).get(free, 0.0) for name in self.rule.inputs)]
 
-    def logs_at(self, curve: Indices, values: Array) -> Array:
-        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors one."""
-        rows = np.empty((len(self.contacts), 4 + len(self.rule.inputs)))
-        for i, contact in enumerate(self.contacts):
+    def _logs_at(self, contacts: Sequence[Contact], curve: Indices, values: Array) -> Array:
+        """Return the logarithms of groups, boundary_friction and beta of contacts at any places of the abscissa."""
+        rows = np.empty((len(contacts), 4 + len(self.rule.inputs)))
+        for i, contact in enumerate(contacts):
             g, others = contact.groups, self.rule.of_contact(contact)
             speed = float(g.speed) * self.rule.speed_per(self.data.abscissa, contact)
             rubbing = abs(self._rubbing(contact)) * contact.boundary_friction
@@ -235,9 +246,13 @@ class FrictionModel:
 
     def predict(self, theta: Array, states: States, at: tuple[Indices, Array] | None = None) -> Prediction:
         """Return the friction at logarithms of factors."""
-        curve, values, logs = (self.data.curve, self.data.values, self.logs) if at is None else (*at, self.logs_at(*at))
-        A = self.exponents[curve]
-        x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
+        curve, values = (self.data.curve, self.data.values) if at is None else at
+        A = self._exponents_of_curves(theta)[curve]
+        if self.bends:
+            x = np.exp(self._logs_at(self._contacts_at(theta), curve, values))
+        else:
+            logs = self.logs if at is None else self._logs_at(self.contacts, curve, values)
+            x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
         is_read = at is None and not states.uses_atlas
         found = self._read(theta, x, states) if is_read else self._parts(theta, x, curve, values, states)
         names = self.rule.parts(states.definition)

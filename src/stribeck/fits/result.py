@@ -199,9 +199,10 @@ class Fit(Exported, Told, ByValue):
     def held(self) -> tuple[str, ...]:
         """Names of the inputs that were held fixed; no interval includes their uncertainty."""
         fitted = {name for each in self._minimum.objective.model.free for name in each.names}
-        measured = () if self.data.abscissa == "speed" else ("viscosity",)
+        # What was measured with the speed, and what follows from the profile
+        known = {"viscosity": self.data.abscissa != "speed", "radius": self.contact.profile is not None}
         there = {name for name in FREE_INPUTS for contact in self.contacts if getattr(contact, name, None) is not None}
-        return tuple(name for name in FREE_INPUTS if name in there and name not in fitted and name not in measured)
+        return tuple(name for name in FREE_INPUTS if name in there and name not in fitted and not known.get(name, False))
 
     def __getitem__(self, name: str) -> FittedInput:
         """Return a fitted input by its name, or by name and curve as in its label.
