@@ -37,8 +37,9 @@ def blocks(language, slow=()):
 
 @pytest.fixture
 def desk(tmp_path, monkeypatch):
-    """Return a folder with the examples in which the documentation's commands run."""
+    """Return a folder with examples and published experiments in which the documentation's commands run."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    shutil.copytree(ROOT / "tests" / "data" / "experiments", tmp_path / "tests" / "data" / "experiments")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

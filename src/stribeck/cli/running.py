@@ -24,6 +24,7 @@ from stribeck.cli.exits import (
     prepare_streams,
     redirect_to_null,
 )
+from stribeck.cli.experiment import experiment_command
 from stribeck.cli.fits import compare_command, fit_command, master_command, next_command
 from stribeck.cli.leak import leak_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
@@ -44,7 +45,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     for command in (
         *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
         *(surface_command, leak_command, bench_command, fit_command, next_command, compare_command),
-        *(master_command, report_command, explore_command),
+        *(master_command, experiment_command, report_command, explore_command),
     )
 }
 
