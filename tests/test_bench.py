@@ -213,6 +213,8 @@ def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
             "time [s];speed [mm/s];COF\n1;2;.1\n2;2;.1\n3;2;.1\n2.5;2;.1\n3.5;2;.1\n",
             "row 5, column 'time [s]': time runs back",
         ),
+        "at rest": ("speed [mm/s];COF\n0;.1\n0;.2\n0;.1\n", "no row is in motion"),
+        "no friction": ("speed [mm/s];COF\n1;0\n1;0\n1;0\n", "friction is zero in all rows"),
         "per cent": ("speed [mm/s];COF\n1;20\n2;30\n", "if it is in percent"),
     }
     for name, (content, sentence) in bad.items():

@@ -15,6 +15,7 @@ from stribeck.bench.start_up import common_memory, drift_of, start_of
 from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, errors_of_means, memory
 from stribeck.fits.table.repeats import SAME_SPEED
 from stribeck.quantities.formats import format_percent, format_si
+from stribeck.quantities.units import InputError
 
 __all__ = ["KEPT", "LEFT_OUT", "Pass", "Series", "passes_of"]
 
@@ -66,6 +67,10 @@ def passes_of(raw: Raw, per_decade: float) -> Series:
         steps = np.array(raw.steps)
         changes[1:] |= steps[1:] != steps[:-1]
     parts = parts_of(speed, changes)
+    if not any(part.direction for part in parts):
+        raise InputError(f"{raw.path}: no row is in motion; check the columns of speed and friction.")
+    if not friction.any():
+        raise InputError(f"{raw.path}: friction is zero in all rows; check the sensor, or the column of friction.")
     status = np.full(len(speed), CHANGING)
     for part in parts:
         status[part.first : part.end] = KEPT if part.steady else AT_REST if part.direction == 0 else CHANGING

@@ -155,7 +155,8 @@ class BenchCurve(Exported, Told, ByValue):
         relative = self.half_width / np.abs(self.friction)
         known = relative[np.isfinite(relative)]
         doubt = f"; 95 % intervals of ± {format_percent(float(np.median(known)))}" if len(known) else "; errors not known"
-        return f"{len(self)} points{several} from {len(self.status)} rows of {files}, {kept} of them kept{doubt}."
+        points, rows = (f"{n} {noun}{'s' * (n != 1)}" for n, noun in ((len(self), "point"), (len(self.status), "row")))
+        return f"{points}{several} from {rows} of {files}, {kept} of them kept{doubt}."
 
     def to_dict(self) -> dict[str, Any]:
         """Return points, notes and inputs under their names, ready for JSON.
