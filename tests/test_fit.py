@@ -452,9 +452,10 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
 
 
 def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
-    with pytest.raises(sb.InputError) as swapped:
-        sb.fit(CASE, MEASURED)
-    assert str(swapped.value).endswith(f"Measured friction comes first, then the case: {MEASURED} {CASE}.")
+    for function in (sb.fit, sb.compare, sb.master_curve):
+        with pytest.raises(sb.InputError) as swapped:
+            function(CASE, MEASURED)
+        assert str(swapped.value).endswith(f"Measured friction comes first, then the case: {MEASURED} {CASE}.")
     with pytest.raises(sb.InputError, match="missing.toml cannot be read"):
         sb.fit(CASE, tmp_path / "missing.toml")
 

@@ -135,3 +135,5 @@ def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
     assert call(capsys, "report", case, "-o", tmp_path / "steel.pdf").code == 2  # kept
     assert "must end in .html or .pdf" in call(capsys, "report", case, "-o", tmp_path / "steel.doc").err
     assert "output is missing" in call(capsys, "report", case).err
+    swapped = call(capsys, "report", tmp_path / "data.csv", tmp_path / "none.toml", "-o", tmp_path / "new.html").err
+    assert "none.toml cannot be read" in swapped  # the case, in whatever order

@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.arguments import Number, Whole, check_outputs
+from stribeck.cli.data_files import ENDING
 from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write
@@ -182,6 +183,8 @@ def report_command(
     Sources of the inputs are the comments of the case file. Where inputs have errors ("1.0 +- 0.2 um"), the page has
     intervals and the probability of each regime.
     """
+    if data is not None and data.suffix.lower() == ENDING != case.suffix.lower():  # in the order of a fit
+        case, data = data, case
     with interruptible() as progress:
         content = sb.write_report(case, output, data, force=force, on_step=lambda n, m: progress(n, m, "report"))
     show([content.headline, *content.sentences, f"Written: {output}"])

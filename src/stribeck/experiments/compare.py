@@ -12,13 +12,13 @@ from typing import Annotated, Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.cases.reading import load_case
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.files.writing import PathLike
+from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.fit import fit, names_to_fit
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.reading import Data, measurements_of
@@ -153,7 +153,7 @@ def compare(
     -----
     Source: Burnham and Anderson, Model Selection and Multimodel Inference (2002).
     """
-    loaded = case if isinstance(case, Case | Contact) else load_case(case)
+    loaded = case if isinstance(case, Case | Contact) else load_fit_case(data, case)
     contact = loaded.contact if isinstance(loaded, Case) else loaded
     settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
     rows = measurements_of(data, settings)

@@ -12,13 +12,13 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import CONTACT_INPUTS, FitSettings
-from stribeck.cases.reading import load_case
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.experiments.common_curve import Agreement, Points, agreement, basis, departure, knots_of, overlapping, power_law
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled, Record
 from stribeck.files.writing import PathLike
+from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.reading import Data, measurements_of
 from stribeck.quantities.formats import format_percent
@@ -249,7 +249,7 @@ def master_curve(data: Data, case: PathLike | Case | Contact) -> MasterCurve:
     Of 200 synthetic experiments of three curves that are one, the test at 1 % refused at most 3 %. The offset of a curve was
     zero within its 95 % interval in 96 to 98 %, its shift in 91 to 97 %.
     """
-    loaded = case if isinstance(case, Case | Contact) else load_case(case)
+    loaded = case if isinstance(case, Case | Contact) else load_fit_case(data, case)
     contact = loaded.contact if isinstance(loaded, Case) else checked_kind("case", loaded, Contact, "a Case or a contact")
     settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
     rows = measurements_of(data, settings)
