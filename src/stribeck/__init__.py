@@ -2,7 +2,7 @@
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_PACKAGES = ("asymptotics", "atlas", "bench", "contact_laws", "fluids", "profiles", "results", "solids", "surfaces")
+_PACKAGES = ("asymptotics", "atlas", "bench", "contact_laws", "fluids", "motions", "profiles", "results", "solids", "surfaces")
 _HOMES = {
     "batches.executors": ("SweepError",),
     "batches.solve_batch": ("solve_batch",),
@@ -27,6 +27,7 @@ _HOMES = {
     "regimes.phase_diagram": ("phase_diagram",),
     "solver.solve": ("solve",),
     "solver.solve_error": ("SolveError",),
+    "strokes.stroke": ("stroke",),
     "sweeps.dataset": ("open_sweep",),
     "sweeps.design": ("load_sweep",),
     "sweeps.sweep": ("sweep",),

@@ -1,6 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
-from stribeck import asymptotics, atlas, bench, contact_laws, fluids, profiles, results, solids, surfaces
+from stribeck import asymptotics, atlas, bench, contact_laws, fluids, motions, profiles, results, solids, surfaces
 from stribeck.batches.executors import SweepError
 from stribeck.batches.solve_batch import solve_batch
 from stribeck.cases.case import Case
@@ -24,6 +24,7 @@ from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
+from stribeck.strokes.stroke import stroke
 from stribeck.sweeps.dataset import open_sweep
 from stribeck.sweeps.design import load_sweep
 from stribeck.sweeps.sweep import sweep
@@ -51,6 +52,7 @@ __all__ = [
     "load_case",
     "load_sweep",
     "master_curve",
+    "motions",
     "new_case",
     "next_runs",
     "open_sweep",
@@ -64,6 +66,7 @@ __all__ = [
     "solve",
     "solve_batch",
     "stribeck_curve",
+    "stroke",
     "surfaces",
     "sweep",
     "write_report",

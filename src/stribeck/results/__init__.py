@@ -21,6 +21,7 @@ _HOMES = {
     "solver.fields": ("Field",),
     "solver.point.solution": ("PointSolution",),
     "solver.solution": ("Profile", "Solution"),
+    "strokes.result": ("Stroke",),
     "sweeps.dataset": ("Sweep",),
     "sweeps.design": ("SweepDesign",),
     "sweeps.sweep": ("SweepProgress",),

@@ -18,6 +18,7 @@ from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.solver.fields import Field
 from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Profile, Solution
+from stribeck.strokes.result import Stroke
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign
 from stribeck.sweeps.sweep import SweepProgress
@@ -49,6 +50,7 @@ __all__ = [
     "Spread",
     "StribeckCurve",
     "StribeckModel",
+    "Stroke",
     "Sweep",
     "SweepDesign",
     "SweepProgress",

@@ -1,0 +1,6 @@
+"""Motions of a stroke: the sliding speed over time."""
+
+from stribeck.quantities.lazy import lazy_names as _lazy_names
+
+_HOMES = {"ramp": ("Ramp",), "sine": ("Sine",), "stop": ("Stop",), "table": ("Table",)}
+__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)

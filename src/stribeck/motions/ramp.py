@@ -1,0 +1,45 @@
+"""A motion whose speed changes evenly: a start, a run-down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.quantities.schema import Input
+
+__all__ = ["Ramp"]
+
+
+@dataclass(frozen=True)
+class Ramp:
+    r"""A speed that changes evenly from one to another.
+
+    .. math:: U = U_0 + (U_1 - U_0) \frac{t}{T}
+    """
+
+    start: Input = Input(
+        label="first speed", symbol="$U_0$", dimension="speed", typical="1 mm/s", source="a slow sliding test", zero=True
+    )
+    end: Input = Input(
+        label="last speed", symbol="$U_1$", dimension="speed", typical="0.1 m/s", source="a rod seal on a test rig", zero=True
+    )
+    duration: Input = Input(
+        label="time of the ramp", symbol="$T$", dimension="time", typical="100 ms", source="the start of a test rig"
+    )
+    repeats = False
+
+    def speed(self, time: Array) -> Array:
+        """Return the sliding speed [m/s]."""
+        return np.asarray(self.start + (self.end - self.start) * time / self.duration)
+
+    def position(self, time: Array) -> Array:
+        """Return the path since the start [m]."""
+        return np.asarray(self.start * time + 0.5 * (self.end - self.start) * time**2 / self.duration)
+
+    def times(self, steps: int) -> Array:
+        """Return instants that are denser where the speed is small [s]."""
+        part = np.linspace(0.0, 1.0, steps + 1)
+        found = part * (1 + part) / 2 if self.start < self.end else 1 - (1 - part) * (2 - part) / 2
+        return np.asarray(found * self.duration)

@@ -1,0 +1,51 @@
+"""A stroke to and fro as a crank drives it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.quantities.schema import Input
+
+__all__ = ["Sine"]
+
+DENSER = 0.35  # How much denser than even the instants are at the reversals
+
+
+@dataclass(frozen=True)
+class Sine:
+    r"""A stroke to and fro, from its middle.
+
+    .. math:: x = \tfrac12 S \sin 2\pi f t, \qquad U = \pi f S \cos 2\pi f t
+    """
+
+    stroke: Input = Input(
+        label="stroke from end to end", symbol="$S$", dimension="length", typical="50 mm", source="a rod seal on a test rig"
+    )
+    frequency: Input = Input(
+        label="strokes to and fro per time", symbol="$f$", dimension="rate", typical="1 1/s", source="a rod seal on a test rig"
+    )
+    repeats = True
+
+    @property
+    def duration(self) -> float:
+        """Time of a cycle [s]."""
+        return 1 / self.frequency
+
+    def speed(self, time: Array) -> Array:
+        """Return the sliding speed [m/s]."""
+        return np.asarray(math.pi * self.frequency * self.stroke * np.cos(2 * math.pi * self.frequency * time))
+
+    def position(self, time: Array) -> Array:
+        """Return the position from the middle of the stroke [m]."""
+        return np.asarray(0.5 * self.stroke * np.sin(2 * math.pi * self.frequency * time))
+
+    def times(self, steps: int) -> Array:
+        """Return instants that are denser at the reversals [s]."""
+        phase = np.linspace(0.0, 2 * math.pi, steps + 1)
+        found = (phase + 0.5 * DENSER * np.sin(2 * phase)) / (2 * math.pi * self.frequency)
+        found[-1] = self.duration
+        return np.asarray(found)

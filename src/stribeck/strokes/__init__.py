@@ -1,0 +1,1 @@
+"""Strokes, starts and stops of a line contact: friction and films in time."""

@@ -1,0 +1,146 @@
+"""What a stroke gives: friction and films over time, each with its error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact, input_texts
+from stribeck.files.datasets import Column
+from stribeck.files.results import Exported, Labelled
+from stribeck.motions.motion import Motion
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.results import ByValue, Card, Told
+
+__all__ = ["Stroke"]
+
+COLUMNS = {
+    "friction": ("1", "friction coefficient, with the sign of the force against the motion"),
+    "friction_asperities": ("1", "its part by asperities"),
+    "friction_fluid": ("1", "its part by the fluid"),
+    "contact_load_share": ("1", "share of the load on asperities"),
+    "central_gap": ("m", "gap at the centre"),
+    "minimum_gap": ("m", "minimum gap"),
+}
+"""Unit and meaning of the numbers over time."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stroke(Exported, Told, ByValue):
+    """Friction and films of a line contact over time, in SI units.
+
+    Attributes
+    ----------
+    contact : LineContact
+        The contact; its speed is the largest of the motion.
+    motion : Motion
+        The motion.
+    cycles : int
+        Times that it was repeated.
+    half_width : float
+        Half-width of the dry contact [m].
+    time : ndarray, shape (n,)
+        Instants [s].
+    speed : ndarray, shape (n,)
+        Sliding speed, negative on the way back [m/s].
+    position : ndarray, shape (n,)
+        Position of the moving surface [m].
+    friction : ndarray, shape (n,)
+        Friction coefficient, with the sign of the force against the motion [-].
+    friction_asperities, friction_fluid : ndarray, shape (n,)
+        Its two parts [-]; that of asperities is zero at the instant of a reversal.
+    contact_load_share : ndarray, shape (n,)
+        Share of the load on asperities [-].
+    central_gap, minimum_gap : ndarray, shape (n,)
+        Gap at the centre, and the smallest [m].
+    errors : dict
+        Estimated absolute error of each of these six, shape (n,), by name, in its unit.
+    work : float
+        Work of friction per length of the contact in the last cycle, or in the whole motion [J/m].
+    work_error : float
+        Its estimated error [J/m].
+    notes : tuple of str
+        What to know before using the numbers.
+    """
+
+    _picture = "stribeck.plot.strokes.plot_stroke"
+
+    contact: Contact
+    motion: Motion = field(repr=False)
+    cycles: int
+    half_width: float
+    time: Array
+    speed: Array
+    position: Array
+    friction: Array
+    friction_asperities: Array
+    friction_fluid: Array
+    contact_load_share: Array
+    central_gap: Array
+    minimum_gap: Array
+    errors: dict[str, Array]
+    work: float
+    work_error: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def last_cycle(self) -> slice:
+        """The instants of the last cycle, its first instant among them."""
+        steps = (len(self.time) - 1) // self.cycles
+        return slice(len(self.time) - 1 - steps, None)
+
+    @property
+    def largest_contact_load_share(self) -> float:
+        """Largest share of the load on asperities in the last cycle [-]."""
+        return float(self.contact_load_share[self.last_cycle].max())
+
+    @property
+    def half_widths(self) -> float:
+        """Length of the stroke, from end to end, in half-widths; below 1000 it is no row of steady states."""
+        return float(np.ptp(self.position) / self.half_width)
+
+    def _card(self) -> Card:
+        last = self.last_cycle
+        largest = int(np.argmax(self.contact_load_share[last])) + last.start
+        peak = int(np.argmax(np.abs(self.friction[last]))) + last.start
+        thinnest = int(np.argmin(self.minimum_gap[last])) + last.start
+        rows = [
+            ("stroke", f"{format_si(float(np.ptp(self.position)), 'length')}, {self.half_widths:.3g} half-widths"),
+            (
+                "largest share of asperities",
+                f"{self.contact_load_share[largest]:.3g} ± {self.errors['contact_load_share'][largest]:.1g}",
+            ),
+            ("largest friction", f"{abs(self.friction[peak]):.3g} ± {self.errors['friction'][peak]:.1g}"),
+            (
+                "thinnest film",
+                f"{format_si(self.minimum_gap[thinnest], 'length')} ± "
+                f"{format_si(self.errors['minimum_gap'][thinnest], 'length', 1)}",
+            ),
+            ("work of friction per length", f"{self.work:.4g} ± {self.work_error:.1g} J/m"),
+        ]
+        of = "the last cycle" if self.motion.repeats else "the motion"
+        return Card(f"friction and films of {of}, {len(self.time) - 1} steps", rows, self.notes)
+
+    def _labelled(self) -> Labelled:
+        columns: dict[str, Column] = {name: ("time", getattr(self, name), *words) for name, words in COLUMNS.items()}
+        columns |= {
+            f"{name}_error": ("time", self.errors[name], unit, f"estimated error of the {words.partition(',')[0]}")
+            for name, (unit, words) in COLUMNS.items()
+        }
+        columns |= {
+            "speed": ("time", self.speed, "m/s", "sliding speed, negative on the way back"),
+            "position": ("time", self.position, "m", "position of the moving surface"),
+            "work": ((), self.work, "J/m", "work of friction per length in the last cycle"),
+            "work_error": ((), self.work_error, "J/m", "estimated error of the work of friction"),
+        }
+        attributes = {
+            "title": "A stroke of a lubricated rough line contact",
+            "motion": type(self.motion).__name__,
+            "cycles": self.cycles,
+            "stroke_over_half_width": self.half_widths,
+            "inputs": "; ".join(input_texts(self.contact)),
+            "notes": " ".join(self.notes),
+        }
+        return columns, {"time": ("time", self.time, "s", "time since the start")}, attributes

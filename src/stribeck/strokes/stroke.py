@@ -1,0 +1,283 @@
+"""From a contact and a motion to friction and films in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.geometries import LineContact
+from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.with_parts import with_parts
+from stribeck.equations.operators import Operators
+from stribeck.equations.state import State, solve_state
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.motions.motion import Motion, checked_motion
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_STEP
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError, checked_callback, show
+from stribeck.solids.solid import lengths_of
+from stribeck.solver.solve import solved_point
+from stribeck.solver.solve_error import SolveError, describe
+from stribeck.strokes.march import March, StepLost
+from stribeck.strokes.meshes import shared_mesh
+from stribeck.strokes.result import Stroke
+
+__all__ = ["stroke"]
+
+SLOWEST, SPEEDS = 1e-2, 3  # Lowest speed over the largest whose film the mesh resolves, and how many from there on
+MESH_RTOL = 1e-4  # Tolerance of the states whose meshes are taken
+FEWER = 2  # Nodes of a panel that the coarse march has less
+MIN_STEPS, MAX_STEPS = 16, 100_000  # Steps of a cycle
+
+
+@one_blas_thread
+def stroke(
+    contact: LineContact,
+    motion: Motion,
+    *,
+    cycles: int | None = None,
+    steps: int = 400,
+    on_step: Callable[[int, int], None] | None = None,
+    **parts: Any,
+) -> Stroke:
+    r"""Solve a stroke, a start or a stop of a line contact in time.
+
+    The film swallows and releases liquid as the gap changes,
+
+    .. math:: \partial_x \left(\tfrac12 U h - \frac{h^3}{12 \eta} p_f'\right) + \partial_t h = 0
+
+    and all else is as in steady sliding, :func:`stribeck.solve`.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact; its own speed is not used.
+    motion : Motion
+        The sliding speed over time: ``Sine``, ``Ramp``, ``Stop`` or ``Table`` of :mod:`stribeck.motions`, or a class of yours
+        with the members of :class:`stribeck.motions.motion.Motion`.  It begins with the steady state of its first speed, which
+        must be above zero.
+    cycles : int, optional
+        Times that a motion which repeats is done, 2 by default: the first one still knows how it began.
+    steps : int
+        Steps of a cycle, even, from 16 to 100000.
+    on_step : callable, optional
+        ``on_step(done, steps)`` is called after each step, for progress.
+    **parts
+        ``cavitation``, ``solid``, ``profile`` and ``law`` as in :class:`stribeck.LineContact`, in the place of its own.
+
+    Returns
+    -------
+    Stroke
+        Over time: speed, position, friction and its parts, share of asperities, films, with errors; work of a cycle.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, or the model has what is not solved in time: a film that ends, a ball, fluids that
+        thin or stiffen, bodies that remember.
+    SolveError
+        If a step or the first state fails.
+
+    Notes
+    -----
+    The film is full.  Errors are those of time steps and mesh: the difference from a march with half of the steps and fewer
+    nodes, of which the finer march has about a third; they cover the difference from one with four times the steps at 95 % of
+    instants (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse of its length.
+
+    Source: theory.md, Eqs. (1)-(5), with the squeeze term of Reynolds' equation; strokes.md.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> contact = sb.LineContact(
+    ...     radius="20 mm", modulus="2 MPa", load="100 N/m", viscosity="10 mPa*s", speed="0.1 m/s", roughness="2 um",
+    ...     boundary_friction=0.5, alpha=1.0, beta=1.0,
+    ... )
+    >>> found = sb.stroke(contact, sb.motions.Sine(stroke="20 mm", frequency="1 1/s"), cycles=1, steps=40)
+    >>> bool(found.largest_contact_load_share < 1)
+    True
+    """
+    contact = _checked_contact(with_parts(contact, **parts) if parts else contact)
+    checked_callback("on_step", on_step)
+    motion = checked_motion(motion)
+    count = _checked_cycles(motion, cycles)
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps % 2 or not MIN_STEPS <= steps <= MAX_STEPS:
+        raise InputError(f"steps = {show(steps)}; it must be an even number from {MIN_STEPS} to {MAX_STEPS}.")
+    first, one = float(motion.speed(np.zeros(1))[0]), motion.times(steps)
+    largest = float(np.abs(motion.speed(one)).max())
+    if not first > 0:
+        raise InputError(
+            f"the motion begins with the speed {first:g} m/s; it must begin with a speed above zero, whose steady film is "
+            "there at the start. Begin a start from rest with a slow speed; turn a motion that begins on the way back, and "
+            "with it the profile (reversed=True)."
+        )
+    contact = contact.replace(speed=largest)
+    groups = contact.groups
+    _check_model(groups)
+    time = np.concatenate([[0.0], *(one[1:] + k * motion.duration for k in range(count))])
+    unit = 2 * contact.hertz.half_width / largest
+    within = np.concatenate([one, *([one[1:]] * (count - 1))])
+    speed = np.asarray(motion.speed(within), dtype=float)
+    path = np.asarray(motion.position(within), dtype=float)
+
+    def share(t: float) -> float:
+        # The end of a cycle is told from the start of the next, which rounding may take for one another.
+        inside = t * unit
+        inside -= motion.duration * min(np.floor(inside / motion.duration), count - 1)
+        return float(motion.speed(np.array([min(max(inside, 0.0), motion.duration)]))[0]) / largest
+
+    total = len(time) - 1 + (len(time) - 1) // 2
+    meshes = _states(groups, first / largest)
+    marches = []
+    done = 0
+    for order, instants in ((COARSE_ORDER, time), (COARSE_ORDER - FEWER, time[::2])):
+        operators = Operators(shared_mesh([state.mesh for state in meshes], groups.model.profile.places, order), groups.model)
+        start = solve_state(replace(groups, speed=groups.speed * first / largest), operators, meshes[0], COARSE_STEP)
+        march = March(operators, contact_law(groups), float(groups.speed), float(groups.load))
+        start = _in_time(start, march, first / largest)
+        before = done
+
+        def note(k: int, before: int = before) -> None:
+            if on_step is not None:
+                on_step(before + k, total)
+
+        try:
+            marches.append(march.over(start, instants / unit, share, note))
+        except StepLost as lost:
+            raise SolveError(
+                Outcome.STALLED,
+                None,
+                f"{describe(groups)}: the step from t = {lost.time * unit:.4g} s does not arrive, however short. Ask "
+                "for more steps, or for a motion whose speed does not jump.",
+            ) from None
+        done += len(instants) - 1
+    return _result(contact, motion, count, time, speed, path, marches)
+
+
+def _checked_contact(contact: Any) -> LineContact:
+    """Return a line contact, or refuse what is none."""
+    if not isinstance(contact, LineContact):
+        raise InputError(
+            f"contact = {show(contact)}; strokes are solved of a LineContact: not of balls, nor of groups, which know no time."
+        )
+    if contact.asperity_friction is not None:
+        raise InputError(
+            f"asperity_friction = {show(contact.asperity_friction)}: strokes take the friction of asperities as a coefficient "
+            "alone; give boundary_friction."
+        )
+    return contact
+
+
+def _check_model(groups: Groups) -> None:
+    """Refuse by name what is not solved in time."""
+    model, film = groups.model, groups.model.film
+    if model.cavitation is not Cavitation.NONE:
+        raise InputError(
+            f"cavitation = {str(model.cavitation.value)!r}: strokes are solved of full films alone, whose exit does not move; "
+            "take cavitation = 'none', and mind that a full film holds against any suction."
+        )
+    if not (isinstance(film, Newtonian) and film.is_plain):
+        raise InputError(
+            "fluid: strokes are solved of fluids alone whose viscosity and density are constant, between smooth walls; leave "
+            "out laws of shear, viscosity and density and flow factors."
+        )
+    if film.slide != 1.0:
+        raise InputError("slide_to_roll: strokes are solved in pure sliding, slide_to_roll = 2.")
+    if lengths_of(model.solid).memories or getattr(model.solid, "uses_speed", False):
+        raise InputError(
+            f"solid = {model.solid.name}: the body remembers the pressure that has passed; strokes are solved of bodies "
+            "without memory."
+        )
+    if groups.roughness == 0:
+        raise InputError("roughness is zero: smooth surfaces touch where the speed turns; give a small roughness.")
+
+
+def _checked_cycles(motion: Motion, cycles: int | None) -> int:
+    """Return how often a motion is done."""
+    if cycles is None:
+        return 2 if motion.repeats else 1
+    if isinstance(cycles, bool) or not isinstance(cycles, int) or cycles < 1:
+        raise InputError(f"cycles = {show(cycles)}; it must be a whole number from 1 on.")
+    if cycles > 1 and not motion.repeats:
+        raise InputError(f"cycles = {cycles}: a {type(motion).__name__} does not end as it begins; leave cycles out.")
+    return cycles
+
+
+def _states(groups: Groups, first: float) -> list[State]:
+    """Return steady states of the first and of slower speeds, whose meshes the stroke shares."""
+    found = []
+    for part in (first, *np.geomspace(1.0, SLOWEST, SPEEDS)):
+        state = solved_point(replace(groups, speed=groups.speed * part), MESH_RTOL).state
+        if state is None:
+            raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}")
+        found.append(state)
+    return found
+
+
+def _in_time(start: State, march: March, share: float) -> State:
+    """Return the first state with its flux gap as the flux at the speed of the march."""
+    if not start.outcome.ok:
+        raise SolveError(start.outcome, None, f"{describe(start.groups)}: {start.outcome.value}")
+    y = start.y.copy()
+    y[start.equations.layout.flux_gap] *= share
+    return replace(start, y=y, root=replace(start.root, x=y, inverse=None))
+
+
+def _result(
+    contact: LineContact, motion: Motion, cycles: int, time: Array, speed: Array, path: Array, marches: list[Array]
+) -> Stroke:
+    """Return two marches as a result in SI units: the first one, and its difference from the second."""
+    scales = contact.hertz
+    fine, coarse = (
+        _columns(rows, v, contact.boundary_friction, contact.beta, scales.indentation)
+        for rows, v in zip(marches, (speed, speed[::2]), strict=True)
+    )
+    errors = {name: _error(fine[name], coarse[name]) for name in fine}
+    last = (len(time) - 1) // cycles
+    work, coarse_work = (
+        contact.load * float(np.trapezoid((values["friction"] * v)[-n - 1 :], t[-n - 1 :]))
+        for values, v, t, n in ((fine, speed, time, last), (coarse, speed[::2], time[::2], last // 2))
+    )
+    return Stroke(
+        contact=contact,
+        motion=motion,
+        cycles=cycles,
+        half_width=scales.half_width,
+        time=time,
+        speed=speed,
+        position=path,
+        **fine,
+        errors=errors,
+        work=work,
+        work_error=abs(work - coarse_work),
+        notes=("The film is full: it holds against any suction, and is not starved by its own wake after a reversal.",),
+    )
+
+
+def _columns(rows: Array, speed: Array, boundary: float, beta: float, indentation: float) -> dict[str, Array]:
+    """Return the numbers of a march by name, in SI units."""
+    share, viscous, central, minimum = rows.T
+    asperities, fluid = boundary * np.sign(speed) * share, beta * viscous
+    return {
+        "friction": asperities + fluid,
+        "friction_asperities": asperities,
+        "friction_fluid": fluid,
+        "contact_load_share": share,
+        "central_gap": central * indentation,
+        "minimum_gap": minimum * indentation,
+    }
+
+
+def _error(fine: Array, coarse: Array) -> Array:
+    """Return the difference of two marches, between the instants of the coarse one the larger of its neighbours."""
+    known = np.abs(fine[::2] - coarse)
+    found = np.empty_like(fine)
+    found[::2] = known
+    found[1::2] = np.maximum(known[:-1], known[1:])
+    return found

@@ -1,0 +1,151 @@
+"""Strokes, starts and stops of a line contact in time."""
+
+import dataclasses
+import functools
+import math
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+
+RADIUS, MODULUS, SPEED = 10e-3, 1e6, 0.1
+HALF_WIDTH = (
+    0.1 * RADIUS
+)  # u/a = 0.1, F = 0.1, kappa = 1e-3, lambda = 1e-3 at the largest speed: shapes of the table in strokes.md
+LOAD = math.pi / 4 * MODULUS * HALF_WIDTH**2 / RADIUS
+CONTACT = sb.LineContact(
+    radius=RADIUS,
+    modulus=MODULUS,
+    load=LOAD,
+    viscosity=1e-3 * 4 / (3 * math.pi**2) * LOAD**2 / (SPEED * RADIUS * MODULUS),
+    speed=SPEED,
+    roughness=1e-3 * HALF_WIDTH**2 / RADIUS,
+    alpha=1.0,
+    beta=0.05 / 0.1**0.5,
+    boundary_friction=0.5,
+)
+
+
+def sine(half_widths, speed=SPEED):
+    stroke = half_widths * HALF_WIDTH
+    return sb.motions.Sine(stroke=stroke, frequency=speed / (math.pi * stroke))
+
+
+@functools.cache
+def stroke(half_widths, steps=400):
+    return sb.stroke(CONTACT, sine(half_widths), steps=steps)
+
+
+def at_parts(found, parts=(0.05, 0.2, 0.5)):
+    """Return friction at parts of the largest speed, speeding up and slowing down, in the last cycle."""
+    last = found.last_cycle
+    speed, friction = np.abs(found.speed[last]) / SPEED, np.abs(found.friction[last])
+    rising = np.gradient(speed) > 0
+    answer = []
+    for way in (rising, ~rising):
+        order = np.argsort(speed[way])
+        answer += list(np.interp(parts, speed[way][order], friction[way][order]))
+    return np.array(answer)
+
+
+def test_a_short_stroke_keeps_its_film():
+    """Of 8 half-widths friction is less than a tenth of that of steady sliding, .2374 and .0872, near the ends."""
+    found = stroke(8, 160)
+    assert np.allclose(at_parts(found), [0.0077, 0.0091, 0.0108, 0.0068, 0.0059, 0.0049], rtol=0.06)
+    assert 0.018 < found.largest_contact_load_share < 0.020
+    assert found.half_widths == pytest.approx(8, rel=1e-6)
+    assert (found.errors["friction"] < 0.1 * np.abs(found.friction).max()).all()
+
+
+@pytest.mark.slow
+def test_a_stroke_of_forty_half_widths_has_the_friction_of_an_independent_scheme():
+    found = stroke(40)
+    assert np.allclose(at_parts(found), [0.0406, 0.0447, 0.0470, 0.0347, 0.0244, 0.0106], rtol=0.01)
+    assert found.largest_contact_load_share == pytest.approx(0.090, rel=0.01)
+
+
+@pytest.mark.slow
+def test_slow_strokes_tend_to_steady_states_as_the_inverse_of_their_length():
+    steady = [sb.solve(CONTACT.replace(speed=part * SPEED)).friction.total for part in (0.2, 0.5)]
+    away = [at_parts(stroke(length), (0.2, 0.5)) / np.array(steady * 2) - 1 for length in (4000, 8000)]
+    assert (np.abs(away[1]) < 0.03).all()
+    assert np.allclose(away[0] / away[1], 2.0, atol=0.3)
+
+
+@pytest.mark.slow
+def test_the_stated_error_covers_that_of_four_times_the_steps():
+    coarse, fine = (sb.stroke(CONTACT, sine(20), cycles=1, steps=n) for n in (80, 320))
+    for name, error in coarse.errors.items():
+        missed = np.abs(getattr(coarse, name) - getattr(fine, name)[::4]) > error + 1e-6 * np.abs(getattr(fine, name)).max()
+        assert missed.mean() < 0.05, name
+
+
+def test_a_motion_that_stays_at_one_speed_stays_in_its_steady_state():
+    found = sb.stroke(CONTACT, sb.motions.Table([0, 0.1], [SPEED, SPEED]), steps=16)
+    state = sb.solve(CONTACT)
+    assert np.allclose(found.friction, state.friction.total, rtol=2e-5)
+    assert np.allclose(found.minimum_gap, state.minimum_gap * CONTACT.hertz.indentation, rtol=2e-5)
+    assert found.work == pytest.approx(state.friction.total * LOAD * SPEED * 0.1, rel=2e-5)
+
+
+def test_a_thick_film_is_squeezed_out_as_under_a_rigid_cylinder():
+    """F = 3 2**(1/2) pi eta V (R/h)**(3/2), so that h**(-1/2) grows evenly; but for the elastic indentation over the film."""
+    thick = CONTACT.replace(viscosity=CONTACT.viscosity * 1e10)
+    found = sb.stroke(thick, sb.motions.Table([0, 1, 1000], [SPEED, 0, 0]), steps=100)
+    rate = LOAD / (6 * 2**0.5 * math.pi * thick.viscosity * RADIUS**1.5)
+    time, root = found.time[20:], found.central_gap[20:] ** -0.5
+    assert np.allclose((root[-1] - root[:-1]) / (rate * (time[-1] - time[:-1])), 1, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"cavitation": "exit"}, "exit does not move"),
+        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, "viscosity and density are constant"),
+        ({"slide_to_roll": 1.0}, "pure sliding"),
+        ({"roughness": 0.0}, "roughness is zero"),
+    ],
+)
+def test_what_is_not_solved_in_time_is_refused_by_its_name(change, word):
+    with pytest.raises(sb.InputError, match=word):
+        sb.stroke(CONTACT.replace(**change), sine(40))
+
+
+@pytest.mark.parametrize(
+    ("motion", "arguments", "word"),
+    [
+        (sine(40), {"steps": 41}, "even"),
+        (sine(40), {"cycles": 0}, "cycles = 0"),
+        (sb.motions.Ramp(SPEED, 2 * SPEED, 1.0), {"cycles": 2}, "does not end as it begins"),
+        (sb.motions.Ramp(0.0, SPEED, 1.0), {}, "begins with the speed"),
+        (sb.motions.Table([0, 1], [0.0, 0.0]), {}, "at rest"),
+        ("to and fro", {}, "must be a motion"),
+    ],
+)
+def test_a_motion_that_cannot_be_done_is_refused(motion, arguments, word):
+    with pytest.raises(sb.InputError, match=word):
+        sb.stroke(CONTACT, motion, **arguments)
+
+
+def test_a_ball_is_refused():
+    with pytest.raises(sb.InputError, match="not of balls"):
+        sb.stroke(sb.Groups(1e-3, 0.1, 1e-4), sine(40))
+
+
+def test_a_table_of_the_same_speeds_is_the_same_motion():
+    table = sb.motions.Table(["0 s", "100 ms", "0.2 s"], ["0.1 m/s", "0.2 m/s", 0.1], repeats=True)
+    t = np.linspace(0, 0.2, 401)
+    assert np.allclose(np.gradient(table.position(t), t)[1:-1], table.speed(t)[1:-1], atol=1e-3)
+    assert len(table.times(50)) == 51
+    with pytest.raises(sb.InputError, match="must begin at 0 and rise"):
+        sb.motions.Table([0, 0], [1, 1])
+
+
+def test_a_stroke_is_a_dataset_and_a_picture(tmp_path):
+    found = stroke(8, 160)
+    data = found.to_dataset()
+    assert data.friction.attrs["long_name"] and set(data.friction.dims) == {"time"}
+    assert float(data.work) == found.work
+    assert len(found.plot(tmp_path / "stroke.png").axes) == 2
+    assert found == dataclasses.replace(found)
