@@ -48,6 +48,7 @@ class Past(NamedTuple):
     inverse: Inverse | None
     step: float = 0.0  # The step that led here; zero for none
     y_before: Array | None = None
+    equations: Unsteady | None = None  # Those that it fulfils
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,8 @@ class March:
         rows = [self.numbers(self.at(past, float(share(past.time))), past.y)]
         for k, time in enumerate(times[1:]):
             past = self._reach(past, float(time), share, MAX_HALVINGS)
-            rows.append(self.numbers(self.at(past, float(share(past.time))), past.y))
+            assert past.equations is not None
+            rows.append(self.numbers(past.equations, past.y))
             on_step(k + 1)
         return np.array(rows)
 
@@ -110,7 +112,7 @@ class March:
         root = root_find(equations, start, StepControl(STEP_RTOL, MAX_STEPS, SHARE), past.inverse)
         if not (root.outcome.ok or root.last_step < STEP_RTOL):
             return None
-        return Past(time, root.x, root.inverse, step, past.y)
+        return Past(time, root.x, root.inverse, step, past.y, equations)
 
     def numbers(self, equations: Unsteady, y: Array) -> Array:
         """Return the share of asperities, the viscous friction for beta = 1, central and minimum gap."""
