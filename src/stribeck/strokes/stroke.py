@@ -33,6 +33,7 @@ __all__ = ["stroke"]
 SLOWEST, SPEEDS = 1e-2, 3  # Lowest speed over the largest whose film the mesh resolves, and how many from there on
 MESH_RTOL = 1e-4  # Tolerance of the states whose meshes are taken
 FEWER = 2  # Nodes of a panel that the coarse march has less
+NEARBY = 2  # Instants of the coarse march before and after one whose differences count as its error
 MIN_STEPS, MAX_STEPS = 16, 100_000  # Steps of a cycle
 
 
@@ -275,9 +276,11 @@ def _columns(rows: Array, speed: Array, boundary: float, beta: float, indentatio
 
 
 def _error(fine: Array, coarse: Array) -> Array:
-    """Return the difference of two marches, between the instants of the coarse one the larger of its neighbours."""
+    """Return the difference of two marches, the largest nearby: where it passes zero both err alike."""
     known = np.abs(fine[::2] - coarse)
+    padded = np.pad(known, NEARBY, mode="edge")
+    widest = np.max([padded[k : k + len(known)] for k in range(2 * NEARBY + 1)], axis=0)
     found = np.empty_like(fine)
-    found[::2] = known
-    found[1::2] = np.maximum(known[:-1], known[1:])
+    found[::2] = widest
+    found[1::2] = np.maximum(widest[:-1], widest[1:])
     return found
