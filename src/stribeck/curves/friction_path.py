@@ -179,7 +179,9 @@ class FrictionPath:
             near = self.source.read(event.place + LOG_STEP * np.array([-1.0, 1.0]))
             before, after = near.friction_terms(*self.coefficients)[:, 3].tolist()
             return float(2 * friction.error / length + abs(after - before) / (2 * LOG_STEP))
-        of_contact = as_asperity_friction(self.boundary_friction).part(at, self.source.sliding)[1]
+        # What is read off a curve knows no contact, but the friction of its asperities.
+        amount, error = as_asperity_friction(self.boundary_friction).amount(at)
+        of_contact = abs(friction.asperities / amount) * error if amount else 0.0
         errors = np.array([at.errors["fluid_load_share"], of_contact, friction.error - of_contact])
         values = at.fluid_load_share, friction.asperities, friction.fluid
         parts = (Dual(value, row) for value, row in zip(values, np.eye(3), strict=True))
