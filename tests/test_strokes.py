@@ -55,7 +55,7 @@ def test_a_short_stroke_keeps_its_film():
     assert np.allclose(at_parts(found), [0.0077, 0.0091, 0.0108, 0.0068, 0.0059, 0.0049], rtol=0.03)
     assert 0.018 < found.largest_contact_load_share < 0.020
     assert found.half_widths == pytest.approx(8, rel=1e-6)
-    assert (found.errors["friction"] < 0.1 * np.abs(found.friction).max()).all()
+    assert (found.errors["friction"] < 0.15 * np.abs(found.friction).max()).all()
 
 
 @pytest.mark.slow
@@ -147,5 +147,7 @@ def test_a_stroke_is_a_dataset_and_a_picture(tmp_path):
     data = found.to_dataset()
     assert data.friction.attrs["long_name"] and set(data.friction.dims) == {"time"}
     assert float(data.work) == found.work
-    assert len(found.plot(tmp_path / "stroke.png").axes) == 2
+    loop, films = found.plot(tmp_path / "stroke.png").axes
+    assert loop.get_xlabel() == "position (mm)" and 4 < loop.get_xlim()[1] < 5  # of 8 mm
+    assert films.get_ylabel() == "film (nm)" and films.get_ylim()[1] > 100
     assert found == dataclasses.replace(found)
