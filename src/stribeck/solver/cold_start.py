@@ -234,7 +234,8 @@ def _under_profile(groups: Groups) -> StepPath[State]:
 
 def _without_profile(groups: Groups) -> Groups:
     """Return groups with the parabola in place of the profile."""
-    return _with_model(groups, profile=groups.model.profile.part(0.0))
+    profile = groups.model.profile
+    return groups if profile.is_parabola else _with_model(groups, profile=profile.part(0.0))
 
 
 def _to_profile(groups: Groups, start: State) -> StepPath[State]:
