@@ -128,14 +128,15 @@ def test_from_load_one_on_there_is_no_boundary_lubrication():
 
 
 def test_transitions_lie_where_their_shares_are_passed(diagram):
+    """A mark is solved to 1e-6."""
     for i, load in enumerate(LOADS):
         for j in (0, 2):
             row = diagram.isel(load=i, roughness=j)
             for name, share in (("speed_at_5_percent_fluid", 0.05), ("speed_at_half_fluid", 0.5)):
                 state, _ = solved(row[name], load, row["roughness"])
-                assert state.fluid_load_share == pytest.approx(share, abs=1e-7)
+                assert state.fluid_load_share == pytest.approx(share, abs=1e-6)
             _, friction = solved(row["speed_at_10_percent_contact_friction"], load, row["roughness"])
-            assert friction.asperities / friction.total == pytest.approx(0.1, abs=1e-7)
+            assert friction.asperities / friction.total == pytest.approx(0.1, abs=1e-6)
 
 
 def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
@@ -156,10 +157,15 @@ def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
 
 
 def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagram):
+    """Within their stated errors, of which that of the hydrodynamic start is the largest."""
+    contact_groups = {"load": LOADS[0], "roughness": ROUGHNESSES[0]}
+    marks = sb.stribeck_curve(**contact_groups, boundary_friction=MU0, beta=BETA, rtol=1e-6).transitions
+    error = max(mark.error for mark in marks)
+    assert error < 2e-5
     for speed in (1.0,):
         narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=speed)
         for name in (*grid.MARKS, "speed_at_minimum", "friction_at_minimum"):
-            assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
+            assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=error)
 
 
 def test_a_minimum_above_the_plateau_is_found():
