@@ -148,7 +148,7 @@ def test_what_ships_says_what_is_not_known_and_where_each_input_is_from():
 
 
 @pytest.mark.slow
-def test_o_rings_follow_a_stress_and_no_coefficient():
+def test_an_o_ring_without_lubricant_would_have_a_stress_and_no_coefficient():
     """What docs/experiments.md shows."""
     experiment = load_experiment(SHIPPED / "oring")
     stress, coefficient = (predict_experiment(experiment, name) for name in ("stress", "coefficient"))
