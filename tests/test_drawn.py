@@ -102,6 +102,9 @@ def parts(results, tmp_path_factory):
         "progress": told[-1],
         "model of a simulator": results["curve"].to_stribeck_model(),
         "film of a pressure": film_of_a_parabola(),
+        "raw curve": sb.bench.read(EXAMPLES / "rig_raw.csv"),
+        "master curve": sb.master_curve(sorted(EXAMPLES.glob("joint/oil_*.csv")), EXAMPLES / "joint" / "case.toml"),
+        "stroke": sb.stroke(results["solution"].contact, sb.motions.Sine(0.05, 1.0), steps=16, cycles=1),
         "flow curve": sb.fluids.flow_curve(RATE, 2.0 * (1 + (5 * RATE) ** 2) ** -0.3),
     }
 
@@ -120,6 +123,9 @@ OTHERS = (
     "model of a simulator",
     "film of a pressure",
     "flow curve",
+    "raw curve",
+    "master curve",
+    "stroke",
 )
 
 

@@ -161,7 +161,7 @@ def test_a_ball_travels_to_other_processes():
 
 @pytest.mark.quick
 def test_the_signature_of_a_ball_names_every_input():
-    parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid", "profile"]
+    parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid", "profile", "asperity_friction"]
     assert list(inspect.signature(sb.PointContact).parameters) == [*sb.PointContact.INPUTS.quantities, "law", *parts]
     with pytest.raises(sb.InputError, match="profiles are those of a line contact; a ball is round"):
         ball(profile=sb.profiles.Land("0.1 mm", "1 mm"))

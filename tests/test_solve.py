@@ -500,7 +500,7 @@ def test_a_contact_brings_its_own_coefficients_and_scales():
     assert si.unit == "SI"
     assert np.allclose(si.x, s.x * a, rtol=1e-14, atol=0)
     assert np.allclose(si.gap, s.gap * a * a / 0.01, rtol=1e-14, atol=0)
-    assert np.allclose(si.pressure, s.pressure * 2 * 50 / (math.pi * a), rtol=1e-13, atol=0)
+    assert np.allclose(si.pressure, s.pressure * 2 * 50 / (math.pi * a), rtol=1e-14, atol=0)
     at, fields, p_hertz = s.to_si([x]), s.profile([0.3]), 100 / (math.pi * a)
     assert at.gap[0] == pytest.approx(fields.gap[0] * a * a / 0.01, rel=1e-12)
     assert at.contact_pressure[0] == pytest.approx(fields.contact_pressure[0] * p_hertz, rel=1e-12)

@@ -93,7 +93,7 @@ def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
         If it is no geometry or no kind of seal.
     """
     if seal is not None:
-        if seal not in SEALS:
+        if not isinstance(seal, str) or seal not in SEALS:
             raise InputError(f"seal = {show(seal)}; it must be one of {', '.join(SEALS)}.")
         if geometry != "line":
             raise InputError(f"geometry = {show(geometry)}: a seal is a line contact; leave geometry out.")
@@ -114,14 +114,15 @@ def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
         left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
         lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {row.example}"]
         for form in reversed(table.forms):
-            if table.stands_for.get(form.inputs[0].name) != row.name or form.joins:
+            if table.stands_for.get(form.inputs[0].name) != row.name:
+                continue
+            if form.joins:
+                lines.append(f"# {_values(form.inputs)}   # {form.inputs[0].label}; {form.inputs[0].source}")
                 continue
             formula = f"   ({form.formula})" if form.formula else ""
             lines.append(f"# Or instead: {_values(form.inputs)}{formula}")
             if form.second:
                 lines.append(f"#   and, if the other body is not rigid, {_values(form.second)}")
-        if row.name == "radius":
-            lines.append(f"# radius_2 = {table.quantities['radius_2'].example}   # if the other body is curved too")
         lines.append("")
     lines += [
         f"# Contact law: {', '.join(map(_law, LAWS))}.",

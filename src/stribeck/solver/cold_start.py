@@ -53,8 +53,7 @@ from stribeck.quantities.units import InputError
 
 __all__ = ["coarse_path", "coarse_state", "cold_start", "first_path", "is_lost_to_rounding"]
 
-# Speed group, and relative roughness of a contact at rest, from which the rigid cylinder starts Newton's iteration
-MIN_RIGID, MIN_ROUGH = 1.0 / NEGLIGIBLE, NEGLIGIBLE**-2
+MIN_RIGID = NEGLIGIBLE**-2  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
 
 
@@ -186,12 +185,12 @@ def cold_start(groups: Groups) -> StepPath[State]:
         )
         groups = replace(groups, model=replace(model, film=groups.model.film) if is_rough(groups.model.film) else model)
     kappa = float(groups.relative_roughness)
-    name, ratio = ("speed", MIN_RIGID / float(groups.speed)) if groups.speed > 0 else ("roughness", MIN_ROUGH / kappa)
-    top = max(0.0, math.log(ratio))
+    name = "speed" if groups.speed > 0 else "roughness"
+    top = max(0.0, math.log(MIN_RIGID / (float(groups.speed) or kappa)))
     # Of a heavier load, whose pressure is that of full contact, loading would cross the hand-over to the film.
     unloads = groups.speed > 0 and groups.load <= 1.0 and kappa > 0
     if unloads:
-        top = max(0.0, min(0.5 * top, math.log(MIN_ROUGH / kappa)))
+        top = max(0.0, min(0.5 * top, math.log(MIN_RIGID / kappa)))
 
     def groups_at(log_factor: float) -> Groups | None:
         factor = math.exp(log_factor)
