@@ -31,6 +31,7 @@ def friction_of(contact, rtol=1e-5):
     return np.abs(sb.stribeck_curve(contact, speed=SPEEDS, rtol=rtol).friction)
 
 
+@pytest.mark.slow
 def test_the_width_of_a_land_is_found_and_the_case_is_written_with_it(tmp_path, capsys):
     land = sb.LineContact(profile=sb.profiles.Land(**LAND), **CONTACT)
     rows = zip(SPEEDS.tolist(), (friction_of(land) * NOISE).tolist(), strict=True)
