@@ -39,6 +39,7 @@ CONTENTS = {
         "cli",
         "data_sheet",
         "leakage",
+        "strokes",
         "experiments",
         "checks",
         "troubleshooting",
