@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.law import Law
+from stribeck.cases.stroke_settings import StrokeSettings
 from stribeck.cases.tables import rising_pair
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
@@ -43,6 +44,7 @@ class Case(Described):
         "name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``",
     ] = "exponential"
     curve: Annotated[CurveSettings, "the ``[curve]`` table"] = field(default_factory=CurveSettings)
+    stroke: Annotated[StrokeSettings | None, "the ``[stroke]`` table, None without one"] = None
     rtol: Annotated[float, "relative tolerance asked of the solver, from the ``[solver]`` table"] = 1e-6
     definition: Annotated[Definition, "which friction force the outputs show, from the ``[solver]`` table"] = "balanced"
     title: Annotated[str, "headline for outputs; empty if the file has none"] = ""

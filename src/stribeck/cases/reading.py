@@ -14,6 +14,8 @@ from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, take_parts, viscosity_source_text
+from stribeck.cases.stroke_settings import KEYS as KEYS_OF_STROKE
+from stribeck.cases.stroke_settings import StrokeSettings, stroke_settings
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import IN_PLACE_OF
@@ -39,8 +41,9 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         :class:`PointContact`, and ``law`` by its name), a table
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and optionally ``[fluid]``,
         ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
-        (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
-        ``[check]`` (facts for :func:`stribeck.check`), ``title`` and ``notes``.
+        (``over``, ``range``, ``points``), ``[stroke]`` (see strokes.md),
+        ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md), ``[check]``
+        (facts for :func:`stribeck.check`), ``title`` and ``notes``.
 
     Returns
     -------
@@ -81,6 +84,10 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if "range" in curve and table["curve"].get("over", curve["over"]) == curve["over"]:
         with noted(problems, "curve"):
             curve["range"] = curve_range(curve["range"], curve["over"], inputs)
+    stroke: StrokeSettings | None = None
+    if "stroke" in table and "stroke" in checked:
+        with noted(problems, "stroke"):
+            stroke = stroke_settings(checked["stroke"])
     if "contact" not in table:
         problems.append("the table [contact] is missing.")
     _refuse(path, problems)
@@ -101,6 +108,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         contact=contact,
         law=law,
         curve=CurveSettings(**curve),
+        stroke=stroke,
         title=checked["title"],
         notes=checked["notes"],
         fit=replace(
@@ -135,6 +143,7 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
             "range": AS_GIVEN,
             "points": Key(whole(2, 100_000), points),
         },
+        "stroke": KEYS_OF_STROKE,
         "solver": {"rtol": tolerance(rtol), "definition": Key(one_of(*DEFINITIONS), Case.definition)},
         **KEYS_OF_SURFACES,
         "check": dict.fromkeys(FACTS, Key(lambda name, value: FACTS[name].checked(value))),

@@ -28,6 +28,7 @@ from stribeck.cli.experiment import experiment_command
 from stribeck.cli.fits import compare_command, fit_command, master_command, next_command
 from stribeck.cli.leak import leak_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
+from stribeck.cli.stroke import stroke_command
 from stribeck.cli.studies import explore_command, new_command, report_command, surface_command, sweep_command
 from stribeck.files.writing import reason_of
 from stribeck.quantities.outcome import Outcome
@@ -44,7 +45,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     command.__name__.removesuffix("_command"): command
     for command in (
         *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
-        *(surface_command, leak_command, bench_command, fit_command, next_command, compare_command),
+        *(surface_command, stroke_command, leak_command, bench_command, fit_command, next_command, compare_command),
         *(master_command, experiment_command, report_command, explore_command),
     )
 }

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input
 
 __all__ = ["Ramp"]
 
 
 @dataclass(frozen=True)
-class Ramp:
+class Ramp(Motion):
     r"""A speed that changes evenly from one to another.
 
     .. math:: U = U_0 + (U_1 - U_0) \frac{t}{T}
     """
+
+    kind: ClassVar[str] = "ramp"
 
     start: Input = Input(
         label="first speed", symbol="$U_0$", dimension="speed", typical="1 mm/s", source="a slow sliding test", zero=True
@@ -28,7 +32,7 @@ class Ramp:
     duration: Input = Input(
         label="time of the ramp", symbol="$T$", dimension="time", typical="100 ms", source="the start of a test rig"
     )
-    repeats = False
+    repeats: ClassVar[bool] = False
 
     def speed(self, time: Array) -> Array:
         """Return the sliding speed [m/s]."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input
 
 __all__ = ["Sine"]
@@ -16,11 +18,13 @@ DENSER = 0.35  # How much denser than even the instants are at the reversals
 
 
 @dataclass(frozen=True)
-class Sine:
+class Sine(Motion):
     r"""A stroke to and fro, from its middle.
 
     .. math:: x = \tfrac12 S \sin 2\pi f t, \qquad U = \pi f S \cos 2\pi f t
     """
+
+    kind: ClassVar[str] = "sine"
 
     stroke: Input = Input(
         label="stroke from end to end", symbol="$S$", dimension="length", typical="50 mm", source="a rod seal on a test rig"
@@ -28,7 +32,7 @@ class Sine:
     frequency: Input = Input(
         label="strokes to and fro per time", symbol="$f$", dimension="rate", typical="1 1/s", source="a rod seal on a test rig"
     )
-    repeats = True
+    repeats: ClassVar[bool] = True
 
     @property
     def duration(self) -> float:

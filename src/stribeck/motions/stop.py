@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input
 
 __all__ = ["Stop"]
 
 
 @dataclass(frozen=True)
-class Stop:
+class Stop(Motion):
     r"""A speed that falls evenly to zero, and rest after it.
 
     .. math:: U = U_0 \max\left(1 - \frac{t}{T_b}, 0\right)
     """
+
+    kind: ClassVar[str] = "stop"
 
     start: Input = Input(
         label="speed before the stop", symbol="$U_0$", dimension="speed", typical="0.1 m/s", source="a rod seal on a test rig"
@@ -26,7 +30,7 @@ class Stop:
         label="time of braking", symbol="$T_b$", dimension="time", typical="10 ms", source="the brake of a test rig"
     )
     rest: Input = Input(label="time at rest", symbol="$T_r$", dimension="time", typical="1 s", source="a pause")
-    repeats = False
+    repeats: ClassVar[bool] = False
 
     @property
     def duration(self) -> float:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.motions.motion import Motion
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Table"]
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Motion):
     """Sliding speeds at instants, straight lines between them.
 
     ``time`` rises from zero; both are numbers in s and m/s or text with a unit.  A table ``repeats`` if its last speed is its
     first one.
     """
+
+    kind: ClassVar[str] = "table"
 
     time: Sequence[Any]
     velocity: Sequence[Any]
@@ -39,6 +42,8 @@ class Table:
                 f"time = {show(self.time)} with {len(self.velocity)} speeds; instants must begin at 0 and rise, and there "
                 "must be as many speeds, at least two."
             )
+        if not isinstance(self.repeats, bool):
+            raise InputError(f"repeats = {show(self.repeats)} must be true or false, without quotes.")
         if self.repeats and self.velocity[0] != self.velocity[-1]:
             raise InputError(
                 f"a table that repeats must end with the speed {self.velocity[0]:g} m/s with which it begins; its last is "

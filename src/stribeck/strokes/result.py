@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -100,6 +101,28 @@ class Stroke(Exported, Told, ByValue):
     def half_widths(self) -> float:
         """Length of the stroke, from end to end, in half-widths; below 1000 it is no row of steady states."""
         return float(np.ptp(self.position) / self.half_width)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers over time, and those of the last cycle, ready for JSON.
+
+        Returns
+        -------
+        dict
+            By the names of the attributes, with ``..._error`` behind those that have one.
+        """
+        last = self.last_cycle
+        largest = int(np.argmax(self.contact_load_share[last])) + last.start
+        found: dict[str, Any] = {name: getattr(self, name) for name in ("cycles", "half_width", "half_widths")}
+        found |= {
+            "largest_contact_load_share": self.largest_contact_load_share,
+            "largest_contact_load_share_error": float(self.errors["contact_load_share"][largest]),
+            "work": self.work,
+            "work_error": self.work_error,
+        }
+        found |= {name: getattr(self, name).tolist() for name in ("time", "speed", "position")}
+        for name, error in self.errors.items():
+            found |= {name: getattr(self, name).tolist(), f"{name}_error": error.tolist()}
+        return found | {"notes": list(self.notes)}
 
     def _card(self) -> Card:
         last = self.last_cycle

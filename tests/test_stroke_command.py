@@ -1,0 +1,98 @@
+"""The command ``stribeck stroke`` and the table ``[stroke]``: the answer first, every motion, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+from command_line import PDMS, call, case_text
+
+import stribeck as sb
+
+RAMP = {"motion": '"ramp"', "start": '"1 mm/s"', "end": '"3 mm/s"', "duration": '"0.5 s"', "steps": "16"}
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(stroke, contact=None, **tables):
+        path = tmp_path / "case.toml"
+        path.write_text(case_text(contact, **({} if stroke is None else {"stroke": stroke}), **tables))
+        return path
+
+    return write
+
+
+def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(capsys, write, tmp_path):
+    files = tmp_path / "stroke.nc", tmp_path / "loop.png"
+    answer = call(capsys, "stroke", write(RAMP))
+    lines = answer.out.splitlines()
+    assert (answer.code, answer.err) == (0, "")
+    assert lines[0].startswith("Mean friction over the path out is 0.") and "steady sliding" in lines[0]
+    assert len(lines) <= 25 and "-v shows" in answer.out
+    found = json.loads(call(capsys, "stroke", write(RAMP), "-o", files[0], "--plot", files[1], "--json").out)
+    state = sb.solve(sb.load_case(PDMS).contact.replace(speed=3e-3))
+    assert found["steady_friction"] == pytest.approx(state.friction.total, rel=1e-3)
+    assert found["friction"][-1] == found["friction_at_largest_speed"]
+    # The film of a ramp of three half-widths lags behind the speed, so that there is more friction than in steady sliding.
+    path, friction = np.array(found["position"]), np.array(found["friction"])
+    mean = np.trapezoid(friction, path) / np.ptp(path)
+    assert found["mean_friction"] == pytest.approx(mean, rel=0.02)
+    assert found["work"] == pytest.approx(30.0 * mean * np.ptp(path), rel=0.02)
+    assert found["mean_friction"] > 1.01 * found["steady_mean_friction"]
+    import xarray
+
+    with xarray.open_dataset(files[0]) as data:
+        assert np.array_equal(data.friction, found["friction"])
+    assert files[1].stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("table", "motion"),
+    [
+        (RAMP, sb.motions.Ramp(1e-3, 3e-3, 0.5)),
+        ({"motion": '"sine"', "stroke": '"5 cm"', "frequency": "2.0"}, sb.motions.Sine(0.05, 2.0)),
+        ({"motion": '"stop"', "start": "0.1", "braking_time": '"10 ms"', "rest": "1.0"}, sb.motions.Stop(0.1, 0.01, 1.0)),
+        (
+            {"motion": '"table"', "time": '[0, "0.5 s", 1]', "velocity": "[0.1, 0.2, 0.1]", "repeats": "true", "cycles": "3"},
+            sb.motions.Table([0, 0.5, 1], [0.1, 0.2, 0.1], repeats=True),
+        ),
+    ],
+)
+def test_every_motion_is_read_from_its_table(write, table, motion):
+    found = sb.load_case(write(table)).stroke
+    assert found.motion == motion
+    assert found.arguments == {"motion": motion} | {k: int(table[k]) for k in ("cycles", "steps") if k in table}
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ({"stroke": '"5 cm"'}, '[stroke] motion is missing; add motion = "ramp" or "sine" or "stop" or "table".'),
+        (RAMP | {"motion": '"saw"'}, "[stroke] motion = 'saw' must be one of 'ramp', 'sine', 'stop', 'table'."),
+        (RAMP | {"end": None}, "[stroke] end is missing, which motion = 'ramp' needs"),
+        (RAMP | {"end": '"3 mm"'}, "[stroke] end = '3 mm' is a length"),
+        (RAMP | {"frequency": "1.0"}, "[stroke] frequency = 1.0 is given, but motion = 'ramp' has no such key"),
+        (RAMP | {"steps": "17"}, "steps = 17; it must be an even number"),
+        (RAMP | {"cycles": "2"}, "does not end as it begins"),
+        (RAMP | {"cycles": "0.5"}, "[stroke] cycles = 0.5 must be a whole number"),
+        (
+            {"motion": '"table"', "time": "[0, 1]", "velocity": "[1, 1]", "repeats": '"yes"'},
+            "[stroke] repeats = 'yes' must be",
+        ),
+        (None, "the table [stroke] is missing; add"),
+    ],
+)
+def test_a_table_that_is_wrong_is_refused_in_a_sentence(capsys, write, table, said):
+    answer = call(capsys, "stroke", write(table))
+    assert answer.code == 2 and said in answer.err and answer.out == ""
+
+
+def test_friction_of_asperities_that_is_a_shear_stress_is_refused(capsys, write):
+    stress = {"model": '"shear-stress"', "shear_stress": '"0.2 MPa"'}
+    answer = call(capsys, "stroke", write(RAMP, {"boundary_friction": None}, asperity_friction=stress))
+    assert answer.code == 2 and "give boundary_friction" in answer.err
+
+
+def test_a_film_that_ends_is_solved_as_a_full_one_only_on_request(capsys, write):
+    ends = write(RAMP, cavitation={"model": '"exit"'})
+    assert "exit does not move" in call(capsys, "stroke", ends).err
+    assert call(capsys, "stroke", ends, "--cavitation", "none").code == 0
