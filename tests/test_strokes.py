@@ -66,6 +66,16 @@ def test_a_stroke_of_forty_half_widths_has_the_friction_of_an_independent_scheme
 
 
 @pytest.mark.slow
+def test_a_stroke_of_a_thousand_half_widths_has_the_friction_of_the_page():
+    """Of docs/when_not_to_use.md, with a quarter of its steps: the error that such a march states covers the difference."""
+    found = stroke(1000)
+    assert np.allclose(at_parts(found), [0.2393, 0.0989, 0.0205, 0.1679, 0.0787, 0.0190], rtol=0.01)
+    last = found.last_cycle
+    missed = abs(found.largest_contact_load_share - 0.480)
+    assert missed < found.errors["contact_load_share"][last][np.argmax(found.contact_load_share[last])]
+
+
+@pytest.mark.slow
 def test_slow_strokes_tend_to_steady_states_as_the_inverse_of_their_length():
     steady = [sb.solve(CONTACT.replace(speed=part * SPEED)).friction.total for part in (0.2, 0.5)]
     away = [at_parts(stroke(length), (0.2, 0.5)) / np.array(steady * 2) - 1 for length in (4000, 8000)]

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 from cyclopts import Parameter
 
 import stribeck as sb
@@ -122,10 +121,14 @@ def _row(label: str, steady: BesideSteady, *names: str) -> tuple[str, ...]:
 def _instants(found: Stroke) -> list[tuple[str, ...]]:
     """Return a table of instants of the last cycle."""
     rows: list[tuple[str, ...]] = [("time", "position", "speed", "friction", "error", "share of asperities", "central film")]
-    places = np.where(np.abs(found.position) < ROUNDING * found.half_width, 0.0, found.position)
     first, end = found.last_cycle.indices(len(found.time))[:2]
     for k in range(first, end, max((end - first) // ROWS, 1)):
+        place = float(found.position[k])
         numbers = f"{found.friction[k]:.4g}", f"± {found.errors['friction'][k]:.1g}", f"{found.contact_load_share[k]:.3g}"
-        where = format_si(found.time[k], "time"), format_si(places[k], "length"), format_si(found.speed[k], "speed")
+        where = (
+            format_si(found.time[k], "time"),
+            format_si(place if abs(place) > ROUNDING * found.half_width else 0.0, "length"),
+            format_si(found.speed[k], "speed"),
+        )
         rows.append((*where, *numbers, format_si(found.central_gap[k], "length")))
     return rows
