@@ -153,7 +153,16 @@ REFERENCE = ("contact_laws", "plot.phase_diagram", "regimes.margins", "results")
 
 def inward(tree: Path) -> int:
     """Return the number of test files that import modules of the package other than `stribeck` and `stribeck.numerics`."""
-    rooms = ("asymptotics", "asymptotics.point", "atlas", "fluids", "solids", "surfaces")
+    rooms = (
+        "asymptotics",
+        "asymptotics.point",
+        "atlas",
+        "fluids",
+        "solids",
+        "surfaces",
+        "asperity_friction",
+        "experiments.experiment",
+    )
     shown = {"stribeck", *(f"stribeck.{room}" for room in (*rooms, *REFERENCE))}
     count = 0
     for path in (tree / "tests").glob("test_*.py"):
