@@ -8,6 +8,7 @@ from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL
 from stribeck.cases.facts import FACTS
 from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLUID_KINDS
+from stribeck.cases.stroke_settings import MOTIONS
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
@@ -40,7 +41,7 @@ OPTIONS_TEXT = """
 # What varies: "speed", "load" or "roughness"; range = ["1 mm/s", "1 m/s"] if the automatic one does not fit.
 over = "speed"
 points = {points}
-
+{stroke}
 [solver]
 # Relative error of each state, {smallest} to 1e-2.
 rtol = {usual}
@@ -128,7 +129,12 @@ def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
         f"# Contact law: {', '.join(map(_law, LAWS))}.",
         SURFACE_TEXT[geometry].rstrip(),
         _parts().rstrip(),
-        OPTIONS_TEXT.format(points=points, smallest=MIN_RTOL[geometry], usual=f"{rtol:g}".replace("e-0", "e-")),
+        OPTIONS_TEXT.format(
+            points=points,
+            stroke=_stroke() if geometry == "line" else "",
+            smallest=MIN_RTOL[geometry],
+            usual=f"{rtol:g}".replace("e-0", "e-"),
+        ),
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]
@@ -161,6 +167,13 @@ def _parts() -> str:
             f'# {"# or " if k else ""}shape = "{name}"; {_needed(law)}   # {law.label}' for k, (name, law) in enumerate(shapes)
         ),
     )
+
+
+def _stroke() -> str:
+    """Return the table of a stroke, with all motions."""
+    motions = [f'motion = "{name}"; {_needed(motion)}' for name, motion in MOTIONS.items() if _needed(motion)]
+    lines = [f"# {'# or ' if k else ''}{line}" for k, line in enumerate(motions)]
+    return "\n".join(["", "# Used by stribeck stroke alone: how the contact moves.", "# [stroke]", *lines, ""])
 
 
 def _needed(law: type) -> str:
