@@ -110,7 +110,7 @@ def test_states_that_are_the_same_come_out_the_same():
 
 
 def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
-    found = sb.solve_batch(sb.Groups(np.array([1e-6, 1e6]), 0.1, 0.0), rtol=1e-11)
+    found = sb.solve_batch(sb.Groups(np.array([1e-9, 1e6]), 0.1, 0.0), rtol=1e-11)
     assert found.outcome.tolist() == [Outcome.ROUNDING, Outcome.CONVERGED]
     assert found.ok.tolist() == [False, True]
     assert found.error_estimate[0] > 1e-11 >= found.error_estimate[1]
