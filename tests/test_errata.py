@@ -167,7 +167,7 @@ def test_the_constant_of_the_central_film_is_not_044():
     speeds = np.array([1e-7, 1e-8])
     fast, slow_ = (state(s, kappa=0.0, rtol=1e-8).central_gap / s**0.6 for s in speeds)
     limit = slow_ - (fast - slow_) / (10**0.4 - 1)
-    assert limit == pytest.approx(constants.FILM_CONSTANT, abs=2e-6)
+    assert limit == pytest.approx(constants.FILM_CONSTANT, abs=1e-6)
     assert 0.44 / limit - 1 == pytest.approx(-0.0131, abs=1e-4)
 
 
@@ -430,7 +430,7 @@ def test_the_load_shares_hold_two_over_pi():
     for kappa in (1e-2, 1e-3, 1e-4):
         speed = slow(LOAD, kappa, 1e-6)
         ratios.append(1e6 * state(speed, kappa=kappa, rtol=1e-8).fluid_load_share)
-    assert ratios == pytest.approx([1.135, 1.030, 1.006], abs=1e-3)
+    assert ratios == pytest.approx([1.135, 1.030, 1.006], abs=6e-4)
 
 
 def solved_phi(load, kappa=1e-4):

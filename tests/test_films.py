@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import Outcome
 from stribeck.fluids import Barus, Carreau, DowsonHigginson, EffectiveMedium, Eyring, Fluid, PatirCheng, Roelands
 from stribeck.solids import Layer, hysteresis_friction
 
@@ -203,14 +202,6 @@ def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
         assert curve.solutions[1].central_gap == pytest.approx(single.central_gap, rel=1e-6)
 
 
-def test_a_film_that_the_fluid_thins_a_thousand_times_is_found():
-    """From the Newtonian film coarse meshes led to states that were none."""
-    groups = sb.Groups(0.146405, 6.78481e-4, 1.41017e-8)
-    state = sb.solve(groups, fluid=sb.fluids.Eyring(0.0301836), slide_to_roll=2.455293, cavitation="exit")
-    assert state.central_gap == pytest.approx(2.16156472e-4, rel=1e-6)
-    assert state.viscous_balanced == pytest.approx(2.160110687e-3, rel=1e-6)
-
-
 def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_panels_there(subtests):
     """No load feels the gradient there: whole meshes were refined, to twice the nodes, or to the limit without an end."""
     for speed in [1e-10, 1e-9]:
@@ -220,19 +211,6 @@ def test_the_drag_beside_the_place_where_roughness_closes_the_film_asks_for_pane
             finer = sb.solve(groups, rtol=1e-8, flow_factors=sb.fluids.EffectiveMedium(2.0), cavitation="exit")
             assert solution.mesh.size < 260
             assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=5e-7)
-
-
-@pytest.mark.slow
-def test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error():
-    """Newton's iteration ended without a state, as its steps were rounding before they were as small as asked for."""
-    groups, fluid = (
-        sb.Groups(4.48618849035679e-12, 4.32921509228554, 0.004322842973344013),
-        sb.fluids.Eyring(785.7695108921029),
-    )
-    solution = sb.solve(groups, fluid=fluid, slide_to_roll=-3.0128648872606867, on_failure="return")
-    assert solution.outcome is Outcome.ROUNDING
-    assert 1e-5 < solution.error_estimate < 1e-2
-    assert solution.minimum_gap == pytest.approx(1.0692e-11, rel=max(1e-3, solution.error_estimate))
 
 
 # --- what was lost once ---
@@ -255,54 +233,6 @@ def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_i
             assert max(differences(solution, row).values()) < 1e-5
 
 
-def test_meshes_resolve_kinks_of_the_flow_between_asperities(subtests):
-    """Where no mesh saw the kinks the error stayed at 2e-5, at up to a thousand nodes."""
-    for groups, alpha, gamma, share, cavitation in [
-        ((6.834312304194911e-10, 0.13531570505883228, 1.121902568602313), 3.5075, 3.0, 1.0, "none"),
-        ((1.5616362323239672e-9, 0.1919816599071153, 23.679257664635262), 2.2885, 1.0, 1.0, "exit"),
-        ((1.2626860284668381e-6, 2.838951018988636, 0.19617378129447713), 3.743, 3.0, 1.0, "exit"),
-    ]:
-        with subtests.test(groups=groups, alpha=alpha, gamma=gamma, share=share, cavitation=cavitation):
-            speed, load, kappa = groups
-            parts = {"flow_factors": sb.fluids.PatirCheng(alpha, gamma, share), "cavitation": cavitation}
-            states = [sb.solve(sb.Groups(speed, load, kappa * load), rtol=rtol, **parts) for rtol in (1e-6, 1e-7)]
-            assert states[0].mesh.size < 500
-            for name in ("flux_gap", "viscous_balanced", "viscous_upper"):
-                coarse, fine = (getattr(state.observables, name) for state in states)
-                assert abs(coarse - fine) < 1e-6 * abs(states[1].observables.viscous_balanced if "viscous" in name else fine)
-
-
-def test_a_panel_ends_where_the_last_path_through_an_effective_medium_closes():
-    """Orders 12 and 16 agreed by chance on a panel over that place: the drag was wrong by 1.3e-5 at a stated 2.7e-7."""
-    groups = sb.Groups(2.394862921121023e-10, 2.092483396693597, 0.39981879342844334)
-    parts = {"flow_factors": EffectiveMedium(3.445215573383546), "cavitation": "exit"}
-    found = sb.solve(groups, rtol=1e-6, **parts)
-    assert found.viscous_published == pytest.approx(6.6999643e-4, rel=1e-6)  # of its mesh with each panel halved
-
-
-@pytest.mark.parametrize(
-    ("groups", "factors"),
-    [
-        ((2.6949457220654108e-05, 0.06175178558197661, 0.05545762765741805), (3.7662695662678196, 1 / 9, 0.0)),
-        ((4.0837349565841006e-07, 9.629742446055435, 0.3084386977268185), (1.7234322688164228, 1.0, 0.0)),
-        pytest.param(
-            (5.5325382930505305e-09, 5.56342839683587, 0.15559433591820415),
-            (2.1941613361280785, 1 / 9, 0.5),
-            marks=pytest.mark.slow,
-        ),
-    ],
-)
-def test_films_thinner_than_the_fits_of_the_flow_go_are_found(groups, factors):
-    """By the fits themselves, phi_x falls to its floor within 1e-3 of the gap and transport falls with it: none was found."""
-    speed, load, kappa = groups
-    found, finer = (
-        sb.solve(sb.Groups(speed, load, kappa * load), rtol=rtol, flow_factors=sb.fluids.PatirCheng(*factors))
-        for rtol in (1e-4, 1e-6)
-    )
-    assert any("fits above" in note for note in found.notes)
-    assert found.viscous_published == pytest.approx(finer.viscous_published, rel=1e-4)
-
-
 def test_a_curve_takes_few_states_where_its_film_passes_the_end_of_the_fits_of_the_flow():
     """Joined with one derivative it took 22 over three decades: all of a wide contact passes that end at once."""
     factors = sb.fluids.PatirCheng(2.0)
@@ -321,61 +251,6 @@ def test_a_film_that_roughness_lifts_a_hundredfold_is_found():
     groups = sb.Groups(8.713938949087005e-12, 9.810395665448361, 0.01780802742951588)
     found = sb.solve(groups, fluid=fluid, flow_factors=factors, solid=layer, rtol=1e-3)
     assert found.flux_gap > 100 * sb.solve(groups, solid=layer, rtol=1e-3).flux_gap
-
-
-def test_a_full_film_whose_suction_stretches_the_fluid_is_found():
-    """Through the pole of the density at a suction of 0.53: the state at 1e-2 was another one, at less there was none."""
-    fluid = sb.fluids.Fluid(None, Barus(0.13765962004016813), DowsonHigginson(0.5259830332010442))
-    groups = sb.Groups(42.893325418030074, 8.223965018275886e-08, 3.2e-9)
-    coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-2, 1e-6))
-    assert fine.profile(np.array([3.66])).fluid_pressure[0] < -0.2
-    assert coarse.central_gap == pytest.approx(fine.central_gap, rel=1e-2)
-
-
-def test_a_film_that_ends_at_ambient_pressure_does_not_suck_before():
-    """Newton's iteration took it past its end, to 1.03: a full film in all but name, stated to 4e-2."""
-    factors = sb.fluids.PatirCheng(3.19897437661839, 1.0, 1.0)
-    groups = sb.Groups(1.0739603703488622e-12, 0.587776523955391, 0.000516662179901327)
-    found = sb.solve(groups, flow_factors=factors, cavitation="exit", rtol=1e-4)
-    assert found.exit_position < 0.5
-    assert found.fluid_pressure.min() > -1e-3 * found.fluid_pressure.max()
-
-
-def test_sharp_turns_that_no_load_feels_are_in_the_error():
-    """Asperities carry all of the load; the flux gap was stated to 5e-9 and wrong by 3e-4, the drag by 2e-5."""
-    groups = sb.Groups(3.3257186828927727e-4, 0.037814811807850256, 0.009539751119065921)
-    parts = {"fluid": sb.fluids.Eyring(0.0061149486893469175), "slide_to_roll": -0.2875907210870814}
-    coarse, fine = (sb.solve(groups, rtol=rtol, **parts) for rtol in (1e-4, 1e-7))
-    assert fine.flux_gap == pytest.approx(0.63102968, rel=1e-7)
-    assert coarse.flux_gap == pytest.approx(fine.flux_gap, rel=1e-4)
-    assert coarse.observables.viscous_balanced == pytest.approx(fine.observables.viscous_balanced, rel=1e-4)
-
-
-def test_panels_reach_to_where_a_thinning_fluid_has_its_plateau():
-    """Nearer ones put the turn of the pressure into the panel through infinity: the printed drag was wrong by 2e-5."""
-    eyring = {"fluid": sb.fluids.Eyring(5.860765028347427e-05), "slide_to_roll": -1.7456500932078072}
-    solution = sb.solve(sb.Groups(7.899946740019457, 0.21078209067342896, 16.0), **eyring)
-    finer = sb.solve(sb.Groups(7.899946740019457, 0.21078209067342896, 16.0), rtol=1e-8, on_failure="return", **eyring)
-    assert solution.viscous_published == pytest.approx(finer.viscous_published, rel=1e-6)
-
-
-def test_without_asperities_both_definitions_of_friction_agree_however_thin_the_film():
-    """The moment of the pressure, 1e-10 of the load, was taken of the pressure: wrong by 1e-2, stated to 0.8, not solved."""
-    groups = sb.Groups(1.1226716212236156e-12, 3.2109537738723484e-06, 0.0)
-    fluid = sb.fluids.Carreau(3.212653759939735e-06, 0.5847391534438928)
-    state = sb.solve(groups, fluid=fluid, cavitation="exit", slide_to_roll=0.0)
-    assert state.viscous_published == pytest.approx(state.viscous_balanced, rel=1e-9)
-    assert state.viscous_published == pytest.approx(3.731914e-13, rel=1e-6)
-    assert state.mesh.size < 1000
-
-
-def test_the_drag_of_a_rolling_film_of_a_power_law_is_known_better_than_from_its_gap():
-    """The gap turns where the rate is zero, the pressure does not: drag was stated to 1e-6 on 1500 nodes, and not solved."""
-    fluid = sb.fluids.PowerLaw(0.001290628833096961, 0.8067371914530823)
-    state = sb.solve(
-        sb.Groups(1.3306260324744701e-08, 0.3491247287240683, 0.0), fluid=fluid, cavitation="exit", slide_to_roll=0.0
-    )
-    assert state.viscous_balanced == pytest.approx(3.8655423e-07, rel=1e-7)
 
 
 def power_law_states(exponent, time, longer=1e4):
@@ -417,22 +292,6 @@ def test_where_the_fits_of_sliding_flow_do_not_meet_the_mesh_resolves_it_and_the
     groups, factors = sb.Groups(5e3, 0.013, 5.4), sb.fluids.PatirCheng(3.2, 3.0, 0.0)
     found, exact = (sb.solve(groups, rtol=rtol, flow_factors=factors) for rtol in (1e-6, 1e-8))
     assert found.flux_gap == pytest.approx(exact.flux_gap, rel=found.error_estimate)
-
-
-def test_drag_where_asperities_close_the_last_paths_of_the_flow_is_within_its_error(subtests):
-    """A film that carries nothing: the drag was wrong by up to 1.2e-2 at a stated 2e-7."""
-    for groups, factors, published in [
-        ((7.9e-11, 1.23, 34.7), sb.fluids.PatirCheng(3.94, 1 / 3), 4.255613066e-11),
-        (
-            (4.758226843202692e-12, 0.12275350586799971, 8.093737587181553e-05),
-            sb.fluids.EffectiveMedium(2.7611058783912155),
-            2.743854397e-05,
-        ),
-    ]:
-        with subtests.test(groups=groups, factors=factors, published=published):
-            found = sb.solve(sb.Groups(*groups), flow_factors=factors)
-            assert found.viscous_published == pytest.approx(published, rel=1e-6)
-            assert found.mesh.size < 600
 
 
 # --- limits ---

@@ -271,7 +271,9 @@ def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
     errors = np.abs([relative_error(formula, groups) for groups in approached])
     assert (np.diff(errors) > 0).all(), errors
     slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
-    assert abs(slope - formula.error_order) < 0.1, (slope, errors)
+    of_a_layer = formula.module in ("edge_layer", "film_layers")
+    assert abs(slope - formula.error_order) < (0.025 if of_a_layer else 0.1), (slope, errors)
+    assert not of_a_layer or errors[0] < 1e-3
 
 
 @NAMED

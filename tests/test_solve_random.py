@@ -11,6 +11,14 @@ import stribeck as sb
 from stribeck import Outcome
 
 SEED = 27_644_437
+TYPICAL = {
+    "mixed": (1e-5, 0.1, 1e-4),
+    "hydrodynamic": (1.0, 0.1, 1e-4),
+    "boundary": (1e-8, 0.1, 1e-2),
+    "thin film": (1e-7, 0.1, 1e-6),
+    "heavy": (1e-3, 3.0, 0.3),
+    "smooth": (1e-6, 0.1, 0.0),
+}
 
 
 def box(number, seed):
@@ -51,6 +59,30 @@ def check(states, true_errors, rtol=1e-6):
         bounded += noted
         assert ratios[-1] < 10, (groups, dict(zip(s.errors, errors, strict=False)), s.error_estimate)
     return np.array(ratios), np.array(singles), bounded
+
+
+@pytest.mark.quick
+def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
+    s = solved(*TYPICAL["boundary"])
+    assert s.errors["fluid_load_share"] < 1e-6  # of a share that is itself far smaller
+    assert s.fluid_load_share < 1e-6
+    # Drag counts relative to the larger of both walls.
+    assert s.error_estimate == max(error for name, error in s.errors.items() if name != "viscous_upper")
+
+
+def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_errors):
+    ratios, singles = {}, {}
+    for name, groups in TYPICAL.items():
+        for rtol in (1e-3, 1e-6, 1e-9):
+            s = solved(*groups, rtol=rtol)
+            error = true_errors(s)
+            assert s.error_estimate <= rtol
+            assert error.max() <= rtol
+            ratios[name, rtol] = error.max() / s.error_estimate
+            singles[name, rtol] = (error / list(s.errors.values())[: len(error)]).max()
+    assert np.mean([ratio <= 1 for ratio in ratios.values()]) >= 0.85, ratios
+    assert max(ratios.values()) < 10, ratios
+    assert max(singles.values()) < 30, singles
 
 
 def test_twenty_random_states_are_solved_and_their_errors_covered(true_errors):
