@@ -2,12 +2,11 @@
 
 import math
 import pickle
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import call
 
 import stribeck as sb
 from stribeck.asperity_friction import Coulomb, ShearStress, ShearStressTable
@@ -179,13 +178,12 @@ def test_one_friction_takes_the_place_of_the_other(seal):
     assert stress.groups == seal.groups
 
 
-def test_a_case_file_and_the_command_take_a_stress(seal, tmp_path):
+def test_a_case_file_and_the_command_take_a_stress(seal, tmp_path, capsys):
     text = (EXAMPLES / "rod_seal.toml").read_text().replace("boundary_friction = 0.3", "")
     path = tmp_path / "case.toml"
     path.write_text(text + '\n[asperity_friction]\nmodel = "shear-stress"\nshear_stress = "0.2 MPa"\n')
     assert sb.load_case(path).contact == seal.replace(shear_stress=TAU)
-    found = subprocess.run([sys.executable, "-m", "stribeck", "solve", path], capture_output=True, text=True, check=True)
-    assert "0.01821" in found.stdout
+    assert "0.01821" in call(capsys, "solve", path).out
     path.write_text(text.replace('load = "770 N/m"', 'load = "770 N/m"\nshear_stress = "0.2 MPa"'))
     with pytest.raises(sb.InputError, match=r"it stands in the table \[asperity_friction\]"):
         sb.load_case(path)

@@ -1,19 +1,15 @@
 """The atlas: its error on states it was not made from, its derivatives, its limits, and what it refuses."""
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
-from numpy.polynomial import chebyshev as reference
 
 import stribeck as sb
 from evidence import atlas_build
 from evidence.atlas_certificate import FRICTION_COUNT, certify, compare, quantities, solved
 from evidence.atlas_states import groups_of, speed_range
-from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
 from stribeck.surfaces import SelfAffine, persson_law
 
@@ -69,8 +65,8 @@ def test_other_models_are_refused_and_not_covered():
 
 
 def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_made_from():
-    found = certify(30, seed=60221)
-    assert found.errors.shape == (30, len(quantities(TABLES[0])))
+    found = certify(16, seed=60221)
+    assert found.errors.shape == (16, len(quantities(TABLES[0])))
     for errors in (found.friction, found.film):
         assert np.median(errors) < 1e-5
         assert errors.max() < 1e-4
@@ -79,9 +75,9 @@ def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_ma
 
 
 def test_where_fluid_and_asperities_share_the_load_it_is_as_good():
-    found = certify(16, seed=141421, mixed=True)
+    found = certify(8, seed=141421, mixed=True)
     assert ((found.contact_share > 0.009) & (found.contact_share < 0.991)).all()
-    assert found.speed.size == 16
+    assert found.speed.size == 8
     assert np.median(found.errors) < 1e-6
     assert np.nanmax(found.errors) < 3e-5
 
@@ -122,7 +118,7 @@ def test_rest_is_that_of_the_solver(subtests):
 
 
 def test_smooth_contacts_are_those_of_the_solver(subtests):
-    for speed in [1e-12, 3.0]:
+    for speed in [1e-9, 3.0]:
         with subtests.test(speed=speed):
             groups = sb.Groups(speed, 0.4, 0.0)
             state = sb.solve(groups, rtol=1e-7, on_failure="return")
@@ -307,11 +303,6 @@ def test_wrong_arguments_are_refused(subtests):
                 sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
 
 
-def test_something_else_than_groups_is_refused():
-    with pytest.raises(sb.InputError, match="must be Groups"):
-        sb.atlas.friction((1e-3, 0.1, 1e-4))
-
-
 # --- the table ---
 
 
@@ -344,49 +335,6 @@ def test_blocks_meet_within_the_stated_error():
     assert np.abs(below / above - 1).max() < 5e-5
 
 
-def test_chebyshev_polynomials_and_slopes_are_those_of_numpy():
-    x = np.linspace(-1, 1, 7)
-    assert np.allclose(atlas_grid.chebyshev(x, 9), reference.chebvander(x, 8).T)
-    slopes = [reference.chebval(x, reference.chebder(row)) for row in np.eye(9)]
-    assert np.allclose(atlas_grid.chebyshev_slopes(x, 9), slopes)
-
-
-def test_coefficients_give_back_the_values_at_the_nodes():
-    values = np.exp(atlas_grid.nodes(9))
-    assert np.allclose(atlas_grid.chebyshev(atlas_grid.nodes(9), 9).T @ (atlas_grid.to_coefficients(9) @ values), values)
-
-
-def test_the_coordinate_of_load_is_undone_and_its_slopes_are_right(subtests):
-    for region in atlas_grid.REGIONS:
-        with subtests.test(region=region):
-            kappa = np.geomspace(*region.roughness, 5)
-            y = np.linspace(-0.95, 0.95, 5)
-            log_load = region.log_load(y, kappa)
-            assert np.allclose(region.load_coordinate(log_load, kappa), y)
-            by_load, by_kappa = region.load_slopes(log_load, kappa)
-            step = 1e-6 * log_load
-            ahead, behind = region.load_coordinate(log_load + step, kappa), region.load_coordinate(log_load - step, kappa)
-            assert np.allclose(by_load, (ahead - behind) / (2 * step), rtol=1e-6)
-            ahead, behind = (region.load_coordinate(log_load, kappa * np.exp(sign * 1e-6)) for sign in (1, -1))
-            assert np.allclose(by_kappa, (ahead - behind) / 2e-6, atol=1e-7)
-
-
-def test_a_table_is_packed_and_unpacked_within_its_unit():
-    table = TABLES[0].table
-    rng = np.random.default_rng(13)
-    shapes = [
-        (n, *region.nodes, 7) for region in atlas_grid.REGIONS for _ in range(math.prod(region.pieces)) for n in region.speeds
-    ]
-    dense = [rng.normal(size=shape) for shape in shapes]
-    about = {"functions": list(atlas_table.LINE_FUNCTIONS)}
-    again = atlas_table.unpack(table.grid, atlas_build.pack(table.breaks, dense, table.film, about))
-    assert again.about == about
-    for block, wanted in zip(again.blocks, dense, strict=True):
-        if block is not None:
-            found = block.coefficients.transpose(0, 2, 1).reshape(wanted.shape)
-            assert np.abs(found - wanted).max() <= 0.5 * atlas_table.COEFFICIENT_UNIT
-
-
 def test_a_build_goes_on_with_what_is_kept(tmp_path):
     calls = []
 
@@ -397,25 +345,6 @@ def test_a_build_goes_on_with_what_is_kept(tmp_path):
     for _ in range(2):
         assert (atlas_build.kept(tmp_path, "rows", make) == np.arange(3.0)).all()
     assert len(calls) == 1
-
-
-def test_lines_are_kept_by_what_they_follow_from(monkeypatch):
-    name = "ball-exponential"
-    row, keys = atlas_build.ROWS[name], [atlas_build.key_of(name, region) for region in (0, 1)]
-    assert keys[0] != keys[1]
-    assert atlas_build.key_of(name, 0, 1e-4) != keys[0]
-    moved = replace(row, grid=replace(row.grid, regions=row.grid.regions[::-1]))
-    monkeypatch.setitem(atlas_build.ROWS, name, moved)
-    assert [atlas_build.key_of(name, region) for region in (1, 0)] == keys
-
-
-@pytest.mark.quick
-def test_nested_nodes_hold_those_of_half_the_degree():
-    finer, coarser = (
-        atlas_grid.Region((1e-3, 1.0), (0.0, 1.0), (1, 1), (n, 2), (0,) * 6, nested=True).roughness_nodes for n in (9, 5)
-    )
-    assert finer[::2] == pytest.approx(coarser, abs=1e-15)
-    assert (finer[0], finer[-1]) == (-1.0, 1.0)
 
 
 # --- curves, diagrams and sensitivities read off it ---
@@ -459,7 +388,7 @@ def test_a_curve_knows_what_it_does_not_have(contact):
 
 def test_a_phase_diagram_read_off_it_is_the_solved_one():
     pytest.importorskip("xarray")
-    grid = {"load": 0.1, "roughness": [0.0, 1e-6, 1e-4], "speed": (1e-8, 1.0), "points": {"speed": 9}}
+    grid = {"load": 0.1, "roughness": [0.0, 1e-5, 1e-4], "speed": (1e-8, 1.0), "points": {"speed": 5}}
     solved, read = (sb.phase_diagram(**grid, rtol=1e-6, method=method) for method in ("solver", "atlas"))
     assert set(read.variables) == set(solved.variables)
     assert (read.outcome == "CONVERGED").all()
@@ -486,20 +415,6 @@ def test_the_atlas_says_which_states_it_covers():
         else:
             with pytest.raises(sb.InputError):
                 sb.atlas.friction(groups)
-
-
-def test_a_curve_off_the_atlas_is_shown_and_drawn_as_a_solved_one(tmp_path):
-    ends = {"speed": (1e-7, 1e-1)}
-    read, solved = (sb.stribeck_curve(sb.Groups(1.0, 0.1, 1e-5), **ends, method=method) for method in ("atlas", "solver"))
-    assert [name for name, *_ in read.regime_ranges] == [name for name, *_ in solved.regime_ranges]
-    for (_, *edges), (_, *there) in zip(read.regime_ranges, solved.regime_ranges, strict=True):
-        assert edges == pytest.approx(there, rel=1e-3)
-    assert "minimum of friction" in repr(read)
-    assert len(repr(read)) < 1000
-    drawn = read.plot(tmp_path / "curve.png").axes[0]
-    above = solved.plot(ax=Figure().add_subplot()).axes[0]
-    assert [line.get_label() for line in drawn.lines[:3]] == [line.get_label() for line in above.lines[:3]]
-    assert drawn.get_xlim() == pytest.approx(above.get_xlim())
 
 
 def test_shares_and_friction_are_those_of_the_single_functions():

@@ -8,7 +8,6 @@ import pytest
 from command_line import run_python
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq, minimize_scalar
 
 import stribeck as sb
 
@@ -54,13 +53,6 @@ def test_points_lie_exactly_where_they_are_asked_for():
         assert solution.groups.speed == pytest.approx(CONTACT.replace(speed=value).groups.speed, rel=1e-14)
 
 
-def test_a_pair_is_a_range_with_points_evenly_in_the_logarithm():
-    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1e-1), points=5)
-    np.testing.assert_allclose(curve.values, np.geomspace(1e-3, 1e-1, 5), rtol=1e-14)
-    assert curve.requested == len(curve) == 5
-    assert curve.outcome is sb.Outcome.CONVERGED
-
-
 @pytest.mark.quick
 def test_every_point_is_the_state_that_a_single_solve_finds(subtests):
     for over, ends in [
@@ -90,11 +82,6 @@ def test_groups_and_a_contact_of_these_groups_give_the_same_curve():
     )
     np.testing.assert_allclose(of_groups.friction, of_contact.friction, rtol=3e-6)
     np.testing.assert_allclose(of_groups.hersey_number, of_contact.hersey_number, rtol=1e-12)
-
-
-def test_a_curve_over_the_load_changes_the_speed_group_too():
-    curve = sb.stribeck_curve(CONTACT, load=("10 N/m", "40 N/m"), points=3)
-    np.testing.assert_allclose(curve.groups.speed * curve.values**2, CONTACT.groups.speed * 30.0**2, rtol=1e-12)
 
 
 @pytest.mark.quick
@@ -185,32 +172,12 @@ def test_the_minimum_lies_where_the_slope_of_cold_solves_vanishes(subtests, curv
             assert root == pytest.approx(s, abs=1e-6)
 
 
-def test_the_minimum_is_no_higher_than_golden_section_finds_it_on_cold_solves(curve):
-    s = math.log(curve.minimum.value)
-    best = minimize_scalar(lambda s: friction(math.exp(s)), bracket=(s - 0.3, s + 0.1, s + 0.4), method="golden", tol=1e-4)
-    assert curve.minimum.friction == pytest.approx(best.fun, rel=1e-7)
-    assert s == pytest.approx(best.x, abs=3e-4)
-    assert curve.minimum.friction < curve.friction.min()
-
-
 @pytest.mark.quick
 def test_the_minimum_does_not_depend_on_the_points_of_the_curve(curve):
     for ends, points in ((("20 mm/s", "40 mm/s"), 2), (("27.53 mm/s", "27.68 mm/s"), 101)):
         other = sb.stribeck_curve(CONTACT, speed=ends, points=points)
         assert other.minimum.value == pytest.approx(curve.minimum.value, rel=1e-6)
         assert other.minimum.friction == pytest.approx(curve.minimum.friction, rel=1e-7)
-
-
-def test_the_minimum_over_load_and_roughness_is_one_of_cold_solves_as_well():
-    contact = CONTACT.replace(speed=0.02)
-    curve = sb.stribeck_curve(contact, load=("1 N/m", "1000 N/m"), points=9)
-    if curve.minimum is not None:
-        here = sb.solve(contact.replace(load=curve.minimum.value), rtol=1e-8).friction().total
-        for factor in (0.98, 1.02):
-            beside = sb.solve(contact.replace(load=factor * curve.minimum.value), rtol=1e-8).friction().total
-            assert beside > here
-    rough = sb.stribeck_curve(contact, roughness=("0.1 um", "3 um"), points=5)
-    assert rough.minimum is None or rough.minimum.friction <= rough.friction.min()
 
 
 def test_a_range_without_minimum_has_none():
@@ -234,17 +201,6 @@ def test_transitions_lie_where_cold_solves_have_these_shares(curve):
         assert marks[name].friction == pytest.approx(alone.friction().total, rel=1e-7)
     alone = sb.solve(CONTACT.replace(speed=marks["asperities cause 10 % of the friction"].value), rtol=1e-9).friction()
     assert alone.asperities / alone.total == pytest.approx(0.1, abs=1e-7)
-
-
-def test_a_transition_agrees_with_the_root_that_cold_solves_have(curve):
-    mark = next(mark for mark in curve.transitions if "50 %" in mark.name)
-    root = brentq(
-        lambda s: sb.solve(CONTACT.replace(speed=math.exp(s)), rtol=1e-8).fluid_load_share - 0.5,
-        math.log(2e-3),
-        math.log(4e-3),
-        xtol=1e-9,
-    )
-    assert math.log(mark.value) == pytest.approx(root, abs=1e-7)
 
 
 @pytest.mark.quick
@@ -362,6 +318,7 @@ def test_an_interrupted_curve_keeps_the_points_it_has():
     np.testing.assert_allclose(part.friction, whole.friction[-3:], rtol=1e-14)
 
 
+@pytest.mark.slow
 def test_a_curve_that_rounding_ends_keeps_the_points_before_and_tells_why():
     curve = sb.stribeck_curve(load=0.1, roughness=1e-6, speed=(1e-8, 1e-3), points=2, rtol=1e-11)
     assert curve.outcome is sb.Outcome.ROUNDING

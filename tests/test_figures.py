@@ -198,12 +198,6 @@ def test_data_in_the_folder_are_used_again_and_lost_pictures_drawn_from_them(fak
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
-def test_force_solves_again(fakes, tmp_path):
-    make_figures(["3"], tmp_path)
-    (made,) = make_figures(["3"], tmp_path, force=True)
-    assert (made.outcome, fakes.computed) == ("solved", ["3", "3"])
-
-
 def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
     make_figures(["3"], tmp_path)
     monkeypatch.setattr(build, "fingerprint", lambda figure: "another")
@@ -348,17 +342,6 @@ print(sorted({"matplotlib", "xarray", "netCDF4", "pandas"} & set(sys.modules)))
 # --- the work of a figure ---
 
 
-def test_work_reports_each_solve_and_keeps_the_largest_error():
-    seen = []
-    work = FigureJob(lambda *step: seen.append(step), steps=2, rtol=1e-5)
-    state = work.solve(0.0, 0.1, 0.01)
-    assert work.attributes == {"rtol": 1e-5, "error_estimate": state.error_estimate}
-    curve = work.curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
-    assert work.error_estimate == max(state.error_estimate, curve.error_estimate)
-    assert seen == [(1, 2), (1, 2), (1, 2), (1, 2), (2, 2)]
-    assert curve.rtol == state.rtol == 1e-5
-
-
 def test_no_state_is_given_that_did_not_converge(monkeypatch):
     work = FigureJob(lambda *step: None, steps=3, rtol=1e-11)
     with pytest.raises(sb.SolveError):
@@ -381,20 +364,6 @@ def test_ctrl_c_inside_a_curve_ends_the_figure():
     for points in (2, 5):
         with pytest.raises(KeyboardInterrupt):
             FigureJob(report, steps=1, rtol=1e-5).curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=points)
-
-
-def test_a_curve_that_is_lost_because_of_ctrl_c_counts_as_interrupted(monkeypatch):
-    def report(done, steps):
-        raise KeyboardInterrupt
-
-    def lost(on_point, **arguments):
-        with pytest.raises(KeyboardInterrupt):
-            on_point(1, 3)
-        raise sb.SolveError(sb.Outcome.PATH_LOST, None, "lost.")
-
-    monkeypatch.setattr("stribeck.figures.build.stribeck_curve", lost)
-    with pytest.raises(KeyboardInterrupt):
-        FigureJob(report, steps=1).curve(load=0.1, roughness=0.01)
 
 
 # --- the command ---

@@ -6,11 +6,6 @@ from figure_data import data_of
 
 
 @pytest.fixture(scope="module")
-def smooth():
-    return data_of("4")
-
-
-@pytest.fixture(scope="module")
 def laws():
     return data_of("5")
 
@@ -30,35 +25,6 @@ def orders(x, y):
     return np.diff(np.log(np.asarray(y))) / np.diff(np.log(np.asarray(x)))
 
 
-# --- Figure 4 ---
-
-
-def test_slow_outlets_tend_to_the_similarity_solution_as_speed_to_two_fifths(smooth):
-    found = orders(smooth.slow_speed, smooth.outlet_distance)
-    assert (np.diff(found) < 0).all() and abs(found[0] - 0.4) < 0.02
-    assert smooth.outlet_distance.values[0] < 0.003
-    inside = smooth.slow_gap.sel(x_slow=0.9, method="nearest").values
-    assert inside[-1] / inside[0] > 900 and smooth.outlet_distance.values[-1] < 0.21
-
-
-def test_the_minimum_film_of_the_outlet_is_three_quarters_of_the_central_film(smooth):
-    assert abs(float(smooth.outlet_limit.min()) - 0.75801) < 1e-5
-    assert 0.37 < float(smooth.xi[int(smooth.outlet_limit.values.argmin())]) < 0.43
-
-
-def test_slow_gaps_tend_to_that_of_hertz_as_speed_to_three_fifths(smooth):
-    distance = np.abs(smooth.slow_gap - smooth.hertz_gap).max("x_slow")
-    assert (np.abs(orders(smooth.slow_speed, distance) - 0.6) < 0.025).all()
-    assert float(distance[0]) < 1e-4
-
-
-def test_fast_gaps_tend_to_the_rigid_parabola_as_one_over_the_cube_root_of_speed(smooth):
-    found = orders(smooth.fast_speed, smooth.rigid_distance)
-    assert abs(found[-1] + 1 / 3) < 0.001 and (np.diff(found) < 0).all()
-    assert smooth.rigid_distance.values[-1] < 0.02
-    assert smooth.rigid_distance.values[1] > 0.3  # "perfect" is for much faster films
-
-
 # --- Figure 5 ---
 
 
@@ -68,34 +34,13 @@ def test_film_and_friction_have_the_powers_of_both_limits(laws):
     assert abs(friction[0] - 2 / 5) < 2e-3 and abs(friction[-1] - 2 / 3) < 1e-4
 
 
-def test_the_laws_of_both_limits_hold_there_and_leave_a_gap_between_them(laws):
-    assert abs(laws.film_large_error.values[0]) < 2e-4 and abs(laws.film_small_error.values[-1]) < 5e-3
-    assert abs(laws.friction_large_error.values[0]) < 3e-3 and abs(laws.friction_small_error.values[-1]) < 5e-5
-    assert 0.16 < -np.maximum(laws.film_large_error, laws.film_small_error).values.min() < 0.18
-
-
-def test_the_printed_constant_of_the_film_is_low_by_more_than_a_per_cent(laws):
-    assert abs(laws.film_large_printed_error.values[0] + 0.0132) < 1e-4
-
-
 def test_the_excellent_description_of_friction_is_seven_per_cent_low_where_the_limits_meet(laws):
     error = laws.friction_squares_error.values
     assert -0.072 < error.min() < -0.071 and 0.011 < error.max() < 0.012
     assert 2e-3 < float(laws.speed[int(error.argmin())]) < 5e-3
 
 
-def test_our_uniform_formulas_are_within_a_third_of_a_per_cent(laws):
-    for name in ("film_uniform", "friction_uniform"):
-        assert 1e-4 < np.abs(laws[f"{name}_error"]).values.max() < 3e-3
-
-
 # --- Figure 6 ---
-
-
-def test_the_rough_contact_gap_holds_inside_to_first_order_in_the_relative_roughness(rest):
-    found = orders(rest.kappa_small, rest.core_distance)
-    assert abs(found[0] - 1) < 0.01
-    assert rest.core_distance.values[2] < 0.005
 
 
 def test_the_edges_tend_to_the_similarity_solution_slowly_on_the_scales_of_the_paper(rest):
@@ -111,24 +56,12 @@ def test_the_edges_tend_to_it_as_fast_again_where_the_edge_is_taken_at_one_minus
     assert rest.shifted_distance.values[0] < 7e-4
 
 
-def test_very_rough_contacts_tend_to_the_rigid_parabola_on_the_film_of_small_indentation(rest):
-    found = orders(rest.kappa_large, rest.rigid_distance)
-    assert ((found < -1) & (found > -1.1)).all()
-    assert rest.rigid_distance.values[-1] < 8e-4
-
-
 def test_the_scale_of_the_caption_makes_another_curve_of_each_load(rest):
     slope = 2 * np.sqrt(rest["load"])  # a/R for beta = 1
     right = 1 + slope * rest.ratio**2 / 2
     assert np.abs(rest.printed_gap / right - 1).max() < 1e-3
     ends = rest.printed_gap.values[:, -1]
     assert ends[0] > 2 * ends[1] > 3 * ends[2]
-
-
-def test_gaps_at_rest_tend_to_that_of_hertz(rest):
-    distance = np.abs(rest.large_gap - rest.hertz_gap).max("x")
-    assert (orders(rest.kappa_small, distance) > 0.89).all()
-    assert float(distance[0]) < 6e-5
 
 
 # --- Figure 8 ---

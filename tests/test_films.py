@@ -233,16 +233,6 @@ def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_i
             assert max(differences(solution, row).values()) < 1e-5
 
 
-def test_a_curve_takes_few_states_where_its_film_passes_the_end_of_the_fits_of_the_flow():
-    """Joined with one derivative it took 22 over three decades: all of a wide contact passes that end at once."""
-    factors = sb.fluids.PatirCheng(2.0)
-    curve = sb.stribeck_curve(sb.Groups(1.0, 0.1, 0.02), speed=(1e-3, 1.0), points=9, flow_factors=factors)
-    assert curve.states < 12
-    state = sb.solve(curve.solutions[4].groups)
-    assert curve.observable("central_gap")[4] == pytest.approx(state.central_gap, rel=1e-6)
-    assert curve.observable("viscous_balanced")[4] == pytest.approx(state.viscous_balanced, rel=1e-6)
-
-
 @pytest.mark.slow
 def test_a_film_that_roughness_lifts_a_hundredfold_is_found():
     """A part of the roughness a thousand times smaller closes the flow already: by equal parts it was lost.  Half a minute."""
@@ -276,16 +266,6 @@ def test_a_note_says_where_the_inlet_feels_the_plateau_of_a_power_law():
     state, lower, notes = power_law_states(0.5, 1e-8)
     assert abs(state.central_gap / lower.central_gap - 1) > 1e-3
     assert any("at a lower rate" in note for note in notes)
-
-
-def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
-    """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the rate is zero."""
-    speeds = np.geomspace(5e-3, 5e-2, 5)
-    curve = sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), speed=speeds, points=5, fluid=sb.fluids.Carreau(0.02, 0.5))
-    assert curve.states < 20
-    state = sb.solve(curve.solutions[3].groups)
-    assert curve.observable("central_gap")[3] == pytest.approx(state.central_gap, rel=1e-6)
-    assert curve.observable("viscous_balanced")[3] == pytest.approx(state.viscous_balanced, rel=1e-6)
 
 
 def test_where_the_fits_of_sliding_flow_do_not_meet_the_mesh_resolves_it_and_the_error_knows():

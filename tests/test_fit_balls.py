@@ -29,6 +29,7 @@ def frictions(contact, values=SPEEDS):
     return np.asarray(sb.stribeck_curve(contact, speed=values, rtol=1e-4).friction)
 
 
+@pytest.mark.slow
 def test_exact_friction_of_a_ball_gives_its_inputs():
     start = TRUE.replace(boundary_friction=0.5, roughness=1.15 * TRUE.roughness)
     steps = []
