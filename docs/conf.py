@@ -42,6 +42,7 @@ CONTENTS = {
         "strokes",
         "experiments",
         "checks",
+        "alpha_beta",
         "troubleshooting",
         "explorer",
         "surfaces",
