@@ -374,7 +374,12 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
         assert text in words.out
     assert re.search(rf"alpha by Persson's theory +{expected['alpha']:.4g} ", words.out)
     table = tomllib.loads(out.read_text())["surface"]
-    again = SelfAffine(**{name: value for name, value in table.items() if name != "gamma"})
+    alpha, beta = analyse(sb.surfaces.read_topography(scan)).limits
+    assert table.pop("alpha_error") == f"{100 * alpha.relative_error:.2g} %"
+    assert beta.low == 0 and beta.relative_error is None and "beta_error" not in table  # it is bounded from above only
+    height, _, error = table.pop("h_rms").partition(" +- ")
+    assert error == f"{100 * expected['h_rms_error'] / expected['h_rms']:.2g} %"
+    again = SelfAffine(height, **{name: value for name, value in table.items() if name != "gamma"})
     assert exponential_limit(again) == pytest.approx((expected["alpha"], expected["beta"]), rel=1e-5, abs=0)
     assert plot.read_bytes()[:4] == b"\x89PNG"
     refused = call(capsys, "surface", scan, "--out", out)

@@ -27,6 +27,8 @@ from stribeck.quantities.units import InputError, show
 Law = str
 """Name of a contact law in a file."""
 
+ERRORS_OF_SURFACES = {"alpha_error": "alpha", "beta_error": "beta"}  # Keys of relative errors, and of what they are
+
 Made = tuple[AsperityLaw | None, dict[str, float]]  # A contact law, and alpha, beta and roughness where its tables give them
 
 INPUTS_OF_SURFACES = ("alpha", "beta", "roughness")  # Inputs of a contact that follow from a table of its surface
@@ -107,6 +109,7 @@ def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: Asperi
 
 def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> Made:
     """Return the law of a surface by the numbers of its spectrum, or by the spectrum itself."""
+    entries = {key: value for key, value in entries.items() if key not in ERRORS_OF_SURFACES}
     measured = [key for key in ("spectrum", "wavenumber", "density") if key in entries]
     if measured:
         extra = [name for name in entries if name not in (*measured, "gamma")]
@@ -194,7 +197,7 @@ def _lists(table: str, entries: dict[str, Any]) -> tuple[Array, Array]:
 SOURCES = {
     "surface": Source(
         ("exponential", "persson"),
-        (*SURFACE.quantities, "gamma", "spectrum", "wavenumber", "density", "shape_only"),
+        (*SURFACE.quantities, "gamma", "spectrum", "wavenumber", "density", "shape_only", *ERRORS_OF_SURFACES),
         _of_surface,
         "spectrum",
         ("wavenumber", "density"),

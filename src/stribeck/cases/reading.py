@@ -12,7 +12,7 @@ from typing import Any, get_args
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
-from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
+from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, preset_facts, take_parts, viscosity_source_text
 from stribeck.cases.stroke_settings import KEYS as KEYS_OF_STROKE
 from stribeck.cases.stroke_settings import StrokeSettings, stroke_settings
@@ -27,7 +27,7 @@ from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.typical_errors import typical_error_text, typical_errors
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
-from stribeck.quantities.uncertain import has_error, split_error
+from stribeck.quantities.uncertain import has_error, relative_error, split_error
 from stribeck.quantities.units import InputError, show
 
 
@@ -180,6 +180,11 @@ def _split_errors(table: dict[str, Any], problems: list[str]) -> dict[str, float
                 value, error = split_error(row.name, numbers[row.name], row.dimension, row.typical)
                 table[where] = numbers | {row.name: value}
                 errors |= {} if error is None else {name: error}
+    surface = table.get("surface")
+    given = surface if isinstance(surface, dict) else {}
+    for key in ERRORS_OF_SURFACES.keys() & given.keys():
+        with noted(problems, "surface"):
+            errors[ERRORS_OF_SURFACES[key]] = relative_error(key, 1.0, given[key], "number")
     return errors
 
 

@@ -73,7 +73,7 @@ def sweep_command(
 
 
 def surface_command(
-    file: Path,
+    file: Annotated[list[Path], Parameter(consume_multiple=True)],
     /,
     *,
     unit: str | None = None,
@@ -95,18 +95,24 @@ def surface_command(
 
     Example: stribeck surface examples/cylinder_profile.csv --plot surface.png --out surface.toml
 
+    Example: stribeck surface place_1.csv place_2.csv place_3.csv --out surface.toml
+
     Example: stribeck surface scan.xyz --unit um --height-unit nm --resolution "1 um"
 
     Text files (.csv, .tsv, .txt, .dat, .xyz) are read directly; .x3p, .sur, .opd, .sdf, .plux and some forty other formats
-    through SurfaceTopography (pip install 'stribeck[surface]').
+    through SurfaceTopography (pip install 'stribeck[surface]').  Several files are scans of one surface at different places:
+    the intervals then count their scatter.
     """
     from stribeck import surfaces
 
     check_outputs(force, plot, out)
     choices = {"trend": trend, "window": window, "resolution": resolution, "gamma": gamma}
     arguments: dict[str, Any] = {name: value for name, value in choices.items() if value is not None}
-    scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
-    surface = surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments)
+    found = []
+    for path in file:
+        scan = surfaces.read_topography(path, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
+        found.append(surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments))
+    surface = found[0] if len(found) == 1 else surfaces.combine(found)
     if plot is not None:
         surface.plot(plot, force=force, notes=not no_notes)
     if out is not None:

@@ -40,12 +40,12 @@ def read_scan(name: str, content: bytes) -> Scan:
             surface = analyse(read_topography(path))
         except InputError as problem:
             raise InputError(_without_options(str(problem).replace(str(path), shown))) from None
-    alpha, beta = surface.fit.exponential_limit(surface.gamma)
+    alpha, beta = surface.limits
     notes = f" {' '.join(surface.notes)}" if surface.notes else ""
     height = format_si(surface.roughness.h_rms, "length")
     limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
     report = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
-    return Scan(tomllib.loads(surface_table(surface))["surface"], report.replace(str(path), shown))
+    return Scan(tomllib.loads(surface_table(surface, has_errors=False))["surface"], report.replace(str(path), shown))
 
 
 def _without_options(sentence: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from stribeck.plot import style
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, new_figure, readable_unit
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.surfaces.analysis import Surface
+from stribeck.surfaces.several_scans import CombinedSurface
 
 MAX_PIXELS = 1024  # Most points along a side of the map that is drawn
 
@@ -26,13 +28,52 @@ def plot_surface(surface: Surface, *, ax: Axes | None = None, title: str = "", n
     footer, said = [_caption(surface)], surface.notes if notes else ()
     headline = title or surface.topography.source or "Surface"
     figure, (heights, *others) = new_figure((14.0, 4.4), footer, said, title=headline, columns=3, right=0.7, ax=ax)
-    if others:
-        heights.get_gridspec().update(wspace=0.42)  # type: ignore[union-attr]
+    _spread([heights, *others] if others else [])
     _draw_heights(figure, heights, surface)
     for axes, draw in zip(others, (_draw_spectrum, _draw_law), strict=False):
         draw(axes, surface)
         axes.legend(fontsize=8, frameon=False, loc="lower left")
     return figure
+
+
+@style.picture()
+def plot_combined_surface(surface: CombinedSurface, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
+    """Draw the spectra of several scans, their mean with the fit, and the contact law.
+
+    Parameters
+    ----------
+    title : str
+        Headline; the number of scans by default.
+    """
+    r, error = surface, format_error(surface.fit.errors["h_rms"], "length")
+    footer = [
+        rf"$h_\mathrm{{rms}}$ = {format_si(r.roughness.h_rms, 'length')} $\pm$ {error}",
+        rf"$\alpha$ = {r.alpha.value:.3f} ({r.alpha.interval})",
+        rf"$\beta$ = {r.beta.value:.3g} ({r.beta.interval})",
+        style.program(),
+    ]
+    headline = title or f"{len(surface.surfaces)} scans of one surface"
+    figure, (spectrum, *others) = new_figure(
+        (10.0, 4.4), [footer], surface.notes if notes else (), title=headline, columns=2, right=0.7, ax=ax
+    )
+    _spread([spectrum, *others] if others else [])
+    for each in surface.surfaces:
+        good = each.measured.reliable
+        label = "each scan" if each is surface.surfaces[0] else None
+        spectrum.plot(each.measured.wavenumber[good], each.measured.density[good], color=GREY, lw=0.6, label=label)
+    for axes, draw in zip([spectrum, *others], (_draw_spectrum, _draw_law), strict=False):
+        draw(axes, surface)
+        axes.legend(fontsize=8, frameon=False, loc="lower left")
+    return figure
+
+
+def _spread(panels: Sequence[Axes]) -> None:
+    """Leave room between panels for the labels of a second axis."""
+    for axes in panels:
+        grid = axes.get_subplotspec()
+        assert grid is not None
+        grid.get_gridspec().update(wspace=0.42)  # type: ignore[attr-defined]
+        axes.set_position(grid.get_position(style.figure_of(axes)))  # which only figures of pyplot follow by themselves
 
 
 def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
@@ -63,22 +104,25 @@ def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
     figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
 
 
-def _draw_spectrum(axes: Axes, surface: Surface) -> None:
+def _draw_spectrum(axes: Axes, surface: Surface | CombinedSurface) -> None:
     measured, fit = surface.measured, surface.fit
     q, density = measured.wavenumber, measured.density
     good = measured.reliable
-    error = 1 / np.sqrt(measured.modes)
+    error = density / np.sqrt(measured.modes)
+    if isinstance(surface, CombinedSurface):  # what the places scatter, where several show it
+        error = np.where(np.isfinite(surface.scatter), surface.scatter, error)
     shown = density > 0
-    axes.plot(q[shown & ~good], density[shown & ~good], "o", ms=3, mfc="white", mec=GREY, label="not reliable")
+    if not good.all():
+        axes.plot(q[shown & ~good], density[shown & ~good], "o", ms=3, mfc="white", mec=GREY, label="not reliable")
     axes.errorbar(
         q[good],
         density[good],
-        yerr=density[good] * np.minimum(np.stack((error, error))[:, good], [[0.95], [np.inf]]),
+        yerr=np.minimum(np.stack((error, error))[:, good], np.stack((0.95 * density, np.full_like(density, np.inf)))[:, good]),
         fmt="o",
         ms=3,
         color=INK,
         elinewidth=0.7,
-        label="measured, standard error",
+        label="mean, standard error" if isinstance(surface, CombinedSurface) else "measured, standard error",
     )
     smooth = np.geomspace(surface.roughness.q0 * 1.0001, surface.roughness.q1 * 0.9999, 200)
     name = f"fit, $H$ = {surface.roughness.hurst:.2f}"
@@ -91,7 +135,7 @@ def _draw_spectrum(axes: Axes, surface: Surface) -> None:
     axes.set_title("Power spectrum", size=10, color=GREY, loc="left")
 
 
-def _draw_law(axes: Axes, surface: Surface) -> None:
+def _draw_law(axes: Axes, surface: Surface | CombinedSurface) -> None:
     law = surface.law
     height = np.linspace(0.005, 4.0, 500)
     s = law.alpha * height
@@ -114,7 +158,7 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
 
 def _caption(surface: Surface) -> list[str]:
     """Return what was found, for the caption."""
-    found, (alpha, beta) = surface.to_dict(), surface.fit.exponential_limit(surface.gamma)
+    found, (alpha, beta) = surface.to_dict(), surface.limits
     parts = [
         rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {format_error(found['h_rms_error'], 'length')}",
         rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",

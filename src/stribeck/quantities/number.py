@@ -34,8 +34,10 @@ class Number:
             return "none" if math.isnan(value) else "infinite", ""
         known = "" if not 0 < error < math.inf else f"± {format_error(error, self.dimension)}{self.sign}"
         if self.interval is not None:
-            low, high = self.interval
-            known = f"{f'{low:.3g} to' if low else 'at most'} {high:.3g} (95 %)"
+            low, high = (
+                format_si(end, self.dimension) if self.dimension != "number" else f"{end:.3g}" for end in self.interval
+            )
+            known = f"{f'{low} to' if self.interval[0] else 'at most'} {high} (95 %)"
         if self.crosses_zero and abs(value) <= error:
             value = 0.0
         if self.dimension != "number":

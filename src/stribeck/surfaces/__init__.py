@@ -10,9 +10,11 @@ from stribeck.surfaces.files import read_topography
 from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, power_spectrum
 from stribeck.surfaces.self_affine_fit import fit_self_affine
+from stribeck.surfaces.several_scans import CombinedSurface, combine
 from stribeck.surfaces.topography import Topography, synthetic_topography
 
 __all__ = [
+    "CombinedSurface",
     "Departures",
     "Estimate",
     "MeasuredSpectrum",
@@ -24,6 +26,7 @@ __all__ = [
     "Surface",
     "Topography",
     "analyse",
+    "combine",
     "detrended",
     "exponential_limit",
     "fit_self_affine",

@@ -25,7 +25,7 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures
 from stribeck.surfaces.detrend import Form, Trend, detrended
-from stribeck.surfaces.fit_result import SelfAffineFit
+from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
 from stribeck.surfaces.height_parameters import height_numbers
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
 from stribeck.surfaces.notes import fit_notes, spike_notes
@@ -85,6 +85,16 @@ class Surface(Exported, Told):
         return _rms(self.topography)
 
     @property
+    def source(self) -> str:
+        """Where the heights come from."""
+        return self.topography.source or "heights in memory"
+
+    @cached_property
+    def limits(self) -> tuple[Estimate, Estimate]:
+        """The numbers alpha and beta of the contact law with their 95 % intervals."""
+        return self.fit.exponential_limit(self.gamma)
+
+    @property
     def roughness(self) -> SelfAffine:
         """The fitted spectrum."""
         return self.fit.roughness
@@ -120,7 +130,7 @@ class Surface(Exported, Told):
         texture, spikes, letter = self.departures, self.spikes, "R" if self.topography.is_line else "S"
         radius, radius_error = self.shape.radius, self.shape.radius_error(r, self.topography)
         convex = "convex" if self.shape.curvatures and self.shape.curvatures[0] < 0 else "concave"
-        alpha, beta = self.fit.exponential_limit(self.gamma)
+        alpha, beta = self.limits
         measured = exponential_limit(self.spectrum, self.gamma)
         with_spikes = f"rms height with {spikes} spike{'s' * (spikes > 1)}" if spikes else ""
         lengths = [(name, getattr(r, name), fitted.get(name)) for name in WAVES]

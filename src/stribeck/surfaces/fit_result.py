@@ -49,6 +49,13 @@ class Estimate:
         """The interval in words, such as ``"1.76 to 1.83"``."""
         return f"at most {self.high:.3g}" if self.low == 0 else f"{self.low:.3g} to {self.high:.3g}"
 
+    @property
+    def relative_error(self) -> float | None:
+        """Standard error over the value, of which 1.96 reach to the farther end of the interval; None without a lower end."""
+        if self.low == 0:
+            return None
+        return math.log(max(self.high / self.value, self.value / self.low)) / STANDARD_ERRORS_95
+
 
 @dataclass(frozen=True, eq=False)
 class FitParameters:

@@ -1,0 +1,327 @@
+r"""Several scans of one surface: their mean spectrum, the law of it, and intervals from their scatter.
+
+The rings of all scans are fitted together; rings that are the same are averaged, weighted by their modes.  The interval of a
+number is the wider of what the fit states and of
+
+.. math:: \bar y \pm t_{0.975,\, n-1} \frac{s}{\sqrt n}
+
+with the standard deviation s of the numbers of the n scans, in logarithms where they are positive.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.files.datasets import number_columns
+from stribeck.files.results import Exported, Labelled
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.number import Number, plain_numbers
+from stribeck.quantities.results import Card, Told
+from stribeck.quantities.units import InputError, show
+from stribeck.surfaces.analysis import WAVES, Surface
+from stribeck.surfaces.fit_result import STANDARD_ERRORS_95, Estimate, SelfAffineFit
+from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
+from stribeck.surfaces.self_affine_fit import fit_self_affine
+
+__all__ = ["CombinedSurface", "combine"]
+
+# Numbers of the heights of each scan, whose mean is printed.
+HEIGHTS = ("scan_rms_height", "mean_deviation", "skewness", "kurtosis", "scan_rms_slope")
+
+SAME_RING = 1e-9  # Relative difference of two wave numbers that are the same ring of two grids, which is rounding
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CombinedSurface(Exported, Told):
+    """What several scans say of one surface; its dataset has its numbers in SI units, each with its interval.
+
+    Attributes
+    ----------
+    surfaces : tuple of Surface
+        The scans, each by itself.
+    measured : MeasuredSpectrum
+        Mean spectrum of all scans.
+    scatter : ndarray
+        Standard error of each mean by the scatter of the scans, nan where one shows it [m^4; m^3 of lines].
+    fit : SelfAffineFit
+        Self-affine spectrum through all rings; 1.96 of its errors are half of the 95 % intervals, scatter included.
+    alpha, beta : Estimate
+        Decay and scale of the contact law, with their 95 % intervals [-].
+    gamma : float
+        Reduction of the elastic energy in Persson's theory [-].
+    notes : tuple of str
+        What must be known before the numbers are used.
+    """
+
+    _picture = "stribeck.plot.surface.plot_combined_surface"
+
+    surfaces: tuple[Surface, ...]
+    measured: MeasuredSpectrum
+    scatter: Array
+    fit: SelfAffineFit
+    alpha: Estimate
+    beta: Estimate
+    gamma: float
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def roughness(self) -> SelfAffine:
+        """The fitted spectrum."""
+        return self.fit.roughness
+
+    @property
+    def limits(self) -> tuple[Estimate, Estimate]:
+        """The numbers alpha and beta of the contact law."""
+        return self.alpha, self.beta
+
+    @property
+    def source(self) -> str:
+        """The scans in words."""
+        return f"{len(self.surfaces)} scans ({', '.join(each.source for each in self.surfaces)})"
+
+    @cached_property
+    def law(self) -> PerssonLaw:
+        """Persson's contact law of the fitted spectrum, tabulated on first use."""
+        return persson_law(self.roughness, self.gamma)
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """The arguments ``roughness`` [m], ``alpha`` and ``beta`` [-] of a contact."""
+        return {"roughness": self.roughness.h_rms, "alpha": self.alpha.value, "beta": self.beta.value}
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Standard errors of :attr:`inputs` over their values, as :func:`stribeck.propagate` takes them [-].
+
+        ``beta`` is left out where the scans bound it from above only.
+        """
+        found = {"roughness": self.fit.errors["h_rms"] / self.roughness.h_rms}
+        return found | {name: error for name in ("alpha", "beta") if (error := getattr(self, name).relative_error)}
+
+    @cached_property
+    def numbers(self) -> tuple[Number, ...]:
+        """Every number of the surface with its unit, meaning and 95 % interval, in the order of reports."""
+        each = [{number.name: number for number in surface.numbers} for surface in self.surfaces]
+        heights = []
+        for name in HEIGHTS:
+            values = np.array([numbers[name].value for numbers in each])
+            mean, half = float(values.mean()), _half_width(values)
+            first = each[0][name]
+            heights.append(replace(first, meaning=f"mean of the {first.meaning}", value=mean, error=math.nan,
+                                   interval=(mean - half, mean + half)))  # fmt: skip
+        fitted = []
+        for name, error in {"h_rms": 0.0, "hurst": 0.0, **self.fit.errors}.items():
+            value = float(getattr(self.roughness, name))
+            low, high = _ends(name, value, error)
+            shown = each[0][name]
+            if shown.unit == "m-1":  # reports have the wavelength
+                value, low, high = (2 * math.pi / end for end in (value, high, low))
+                shown = next(found[length] for found in each if (length := WAVES[name].replace(" ", "_")) in found)
+            fitted.append(replace(shown, value=value, error=math.nan, interval=(low, high)))
+        labels = {"alpha": "decay of the contact law, alpha", "beta": "scale of the contact law, beta"}
+        law = [
+            Number(name, f"{name} by Persson's theory", meaning, found.value, interval=(found.low, found.high))
+            for (name, meaning), found in zip(labels.items(), self.limits, strict=True)
+        ]
+        rest = Number("gamma", "gamma of that theory", "reduction of the elastic energy in Persson's theory", self.gamma, 0.0)
+        return (*heights, *fitted, *law, rest)
+
+    def _card(self) -> Card:
+        each = [{number.name: number for number in surface.numbers} for surface in self.surfaces]
+        rows = []
+        for number in self.numbers:
+            values = [float(found[number.name].value) for found in each if number.name in found]
+            ends = [replace(number, value=end, interval=None).texts[0] for end in (min(values), max(values))] if values else []
+            value, interval = number.texts
+            rows.append((number.label, value, interval.removesuffix(" (95 %)"), " to ".join(ends) if number.interval else ""))
+        return Card(
+            f"{len(self.surfaces)} scans of one surface: {', '.join(each.source for each in self.surfaces)}.",
+            table=[("quantity", "value", "95 % interval", "scans"), *rows],
+            sentences=list(self.notes),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers of :meth:`to_dataset` in SI units, with the scans, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers and text; ``scans`` has what each scan says by itself.
+        """
+        about = {"scans": [each.to_dict() for each in self.surfaces], "found": list(self.fit.found)}
+        return about | plain_numbers(self.numbers) | {"relative_errors": self.errors, "notes": list(self.notes)}
+
+    def _labelled(self) -> Labelled:
+        density = "m3" if self.measured.is_line else "m4"
+        rings = "wavenumber"
+        columns = number_columns(self.numbers) | {
+            "spectrum": (rings, self.measured.density, density, "mean spectrum of the scans"),
+            "spectrum_error": (rings, self.scatter, density, "standard error of spectrum by the scatter of the scans"),
+        }
+        about = {"title": "What several scans say of one surface", "files": [each.source for each in self.surfaces]}
+        coordinates = {rings: (rings, self.measured.wavenumber, "m-1", "wave number")}
+        return columns, coordinates, about | {"notes": "\n".join(self.notes)}
+
+
+def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
+    r"""Combine several scans of one surface into one spectrum and contact law, with intervals from their scatter.
+
+    .. math:: \bar y \pm t_{0.975,\, n-1} \frac{s}{\sqrt n}
+
+    for each number y of the n scans, with their standard deviation s; an interval of the law is never narrower than what the
+    fit of the mean spectrum states.
+
+    Parameters
+    ----------
+    surfaces : sequence of Surface
+        Two scans or more, as of :func:`analyse`, at different places of one surface; all maps or all lines.
+
+    Returns
+    -------
+    CombinedSurface
+        Mean spectrum with its scatter, height parameters, and contact law with intervals.
+
+    Raises
+    ------
+    InputError
+        Where there are fewer than two scans, lines and maps are mixed, gamma differs, or no spectrum fits.
+
+    Notes
+    -----
+    The places must be independent: scans that overlap scatter less than the surface does.  Two scans have wide intervals
+    (t = 12.7), four have t = 3.2.  How often intervals hold the truth is in docs/surfaces.md.
+    Source: Student's interval of a mean; [Whittle53] for the fit of all rings.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> truth = sb.surfaces.SelfAffine(1e-6, 5e4, 3e6, 0.8, 7e5)
+    >>> scans = [sb.surfaces.synthetic_topography(truth, (64, 64), 1e-6, seed) for seed in (1, 2, 3)]
+    >>> surface = sb.surfaces.combine([sb.surfaces.analyse(scan) for scan in scans])
+    >>> sorted(surface.errors)
+    ['alpha', 'beta', 'roughness']
+    """
+    found = tuple(surfaces) if isinstance(surfaces, list | tuple) else ()
+    if len(found) < 2 or not all(isinstance(each, Surface) for each in found):
+        what = f"{len(found)} surface" if len(found) == 1 else show(surfaces)
+        raise InputError(f"surfaces = {what}; give a list of two or more, each as of analyse(scan).")
+    kinds = {each.topography.is_line: each for each in found}
+    if len(kinds) == 2:
+        raise InputError(
+            f"{kinds[True].source} is a profile and {kinds[False].source} a map; their spectra are not the same "
+            "quantity: combine either."
+        )
+    gammas = sorted({each.gamma for each in found})
+    if len(gammas) > 1:
+        raise InputError(f"gamma is {gammas[0]:g} of one surface and {gammas[-1]:g} of another; analyse all with the same.")
+    measured, scatter = _mean_spectrum([each.measured for each in found])
+    own = fit_self_affine(measured)
+    names = [name for name in own.errors if all(name in each.fit.errors for each in found)]
+    spread = {name: _half_width(_scaled(name, np.array([getattr(each.roughness, name) for each in found]))) for name in names}
+    errors = {name: _wider(name, float(getattr(own.roughness, name)), error, spread.get(name, 0.0))
+              for name, error in own.errors.items()}  # fmt: skip
+    gamma, notes = gammas[0], _notes(found, own)
+    numbers = np.log([exponential_limit(each.roughness, gamma) for each in found]).T
+    profile = replace(own, _parameters=replace(own._parameters, covariance=0 * own._parameters.covariance))
+    limits = []
+    for stated, hidden, logs in zip(own.exponential_limit(gamma), profile.exponential_limit(gamma), numbers, strict=True):
+        half = _half_width(logs)
+        low, high = (hidden.low * math.exp(-half), hidden.high * math.exp(half))
+        limits.append(Estimate(stated.value, min(stated.low, low), max(stated.high, high)))
+    alpha, beta = limits
+    return CombinedSurface(found, measured, scatter, replace(own, errors=errors), alpha, beta, gamma, notes)
+
+
+def _mean_spectrum(spectra: Sequence[MeasuredSpectrum]) -> tuple[MeasuredSpectrum, Array]:
+    """Return all reliable rings in one spectrum, and the standard error of each that scans share."""
+    rows = [(float(each.wavenumber[i]), each, int(i)) for each in spectra for i in np.flatnonzero(each.reliable)]
+    rows.sort(key=lambda row: row[0])
+    groups: list[list[tuple[float, MeasuredSpectrum, int]]] = []
+    for row in rows:
+        if groups and row[0] <= groups[-1][0][0] * (1 + SAME_RING):
+            groups[-1].append(row)
+        else:
+            groups.append([row])
+    density, modes, scatter = np.empty((3, len(groups)))
+    for k, group in enumerate(groups):
+        values = np.array([each.density[i] for _, each, i in group])
+        weights = np.array([each.modes[i] for _, each, i in group])
+        density[k], modes[k] = np.average(values, weights=weights), weights.sum()
+        scatter[k] = values.std(ddof=1) / math.sqrt(values.size) if values.size > 1 else math.nan
+    longest, shortest = min(spectra, key=lambda each: each.lowest), max(spectra, key=lambda each: each.highest)
+    counts = np.array([each.modes[each.reliable].sum() for each in spectra])
+    return (
+        MeasuredSpectrum(
+            wavenumber=np.array([group[0][0] for group in groups]),
+            density=density,
+            modes=modes,
+            inner=np.array([group[0][1].inner[group[0][2]] for group in groups]),
+            is_line=spectra[0].is_line,
+            lowest=longest.lowest,
+            highest=shortest.highest,
+            lowest_reason=longest.lowest_reason,
+            highest_reason=shortest.highest_reason,
+            mean_square=float(np.mean([each.mean_square for each in spectra])),
+            texture=complex(np.average([each.texture for each in spectra], weights=counts)),
+        ),
+        scatter,
+    )
+
+
+def _scaled(name: str, values: Array) -> Array:
+    """Return numbers as their scatter is counted: logarithms, but the Hurst exponent as it is."""
+    return values if name == "hurst" else np.log(values)
+
+
+def _half_width(values: Array) -> float:
+    """Return half of the 95 % interval of the mean of a few numbers."""
+    from scipy.stats import t  # here, as it takes a third of a second to import
+
+    return float(t.ppf(0.975, values.size - 1) * values.std(ddof=1) / math.sqrt(values.size))
+
+
+def _wider(name: str, value: float, error: float, half_width: float) -> float:
+    """Return the larger of a standard error and of that of an interval by scatter."""
+    return max(error, half_width * (1.0 if name == "hurst" else value) / STANDARD_ERRORS_95)
+
+
+def _ends(name: str, value: float, error: float) -> tuple[float, float]:
+    """Return the 95 % interval of a number with a standard error, in logarithms but of the Hurst exponent."""
+    half = STANDARD_ERRORS_95 * error
+    return (
+        (value - half, value + half) if name == "hurst" else (value * math.exp(-half / value), value * math.exp(half / value))
+    )
+
+
+def _notes(surfaces: Sequence[Surface], fit: SelfAffineFit) -> tuple[str, ...]:
+    """Return what must be known before the numbers are used."""
+    notes = []
+    sizes = sorted(max(each.topography.size) for each in surfaces)
+    if sizes[-1] > 1.5 * sizes[0]:
+        notes.append(
+            f"The scans are {format_si(sizes[0], 'length')} to {format_si(sizes[-1], 'length')} long: their rms heights differ"
+            " by the longest waves that each shows too, and the intervals count that as scatter."
+        )
+    seen = sum("roll_off" in each.fit.found for each in surfaces)
+    if "roll_off" in fit.found and seen < len(surfaces):
+        notes.append(f"The mean spectrum shows a roll-off, {seen} of {len(surfaces)} scans alone do.")
+    if "roll_off" not in fit.found and "q0" not in fit.found:
+        notes.append(
+            "No roll-off within the scans: h_rms and beta are for wavelengths up to "
+            f"{format_si(2 * math.pi / fit.roughness.q0, 'length')}; measure a larger area."
+        )
+    own: dict[str, list[str]] = {}
+    for each in surfaces:
+        for note in each.topography.notes:
+            own.setdefault(note, []).append(each.source)
+    notes += [note if len(names) == len(surfaces) else f"{', '.join(names)}: {note}" for note, names in own.items()]
+    return tuple(notes)
