@@ -31,7 +31,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 LONG = 30_000  # ms; a shared machine may be slow
 
 CHART = "name => document.querySelector('.chart-' + name).chart.options ?? {series: []}"
-NUMBERS = """() => Object.fromEntries([...document.querySelectorAll('.numbers [data-key]')].map(
+NUMBERS = """() => Object.fromEntries([...document.querySelectorAll('[data-error]')].map(
     row => [row.dataset.key, [row.dataset.value, Number(row.dataset.error)]]))"""
 
 
@@ -70,7 +70,7 @@ def open_page(chromium, address):
     """Return what opens a page; at the end no page may have failed, or asked for anything outside this machine."""
     contexts, faults, asked = [], [], []
 
-    def go(query="", **settings):
+    def go(query="", unfolded=True, **settings):
         context = chromium.new_context(**({"viewport": {"width": 1440, "height": 900}} | settings))
         contexts.append(context)
         page = context.new_page()
@@ -79,8 +79,10 @@ def open_page(chromium, address):
         page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
         page.on("request", lambda request: asked.append(request.url))
         page.goto(f"{address}&{query.lstrip('?')}")
-        page.wait_for_selector(".numbers [data-key=regime]")
+        page.wait_for_selector("[data-key=regime]")
         page.wait_for_function("location.search.includes('abscissa=')")  # it rests
+        if unfolded:
+            page.evaluate("document.querySelectorAll('details.fold').forEach(each => { each.open = true; })")
         return page
 
     yield go
@@ -224,7 +226,7 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
 
 def test_what_is_outside_the_model_is_said_above_the_numbers(open_page):
     page = open_page("?modulus=100+GPa&load=100+kN/m")
-    assert page.locator(".applies .verdict.outside").inner_text().startswith("Outside the range of the model")
+    assert page.locator(".answer .verdict.outside").inner_text().startswith("Outside the range of the model")
 
 
 def test_dragging_a_slider_follows_the_hand(open_page):
@@ -424,7 +426,7 @@ def test_two_hundred_moves_in_twenty_seconds_leave_it_alive_and_right(open_page)
 def test_it_works_by_keyboard_alone(open_page):
     page = open_page()
     reached = []
-    for _ in range(12):
+    for _ in range(16):
         page.keyboard.press("Tab")
         reached.append(page.evaluate("document.activeElement.name || document.activeElement.getAttribute('aria-label')"))
     assert {"speed", "Unit of Speed", "Speed", "load"} <= set(reached)
@@ -448,6 +450,37 @@ def test_it_fits_a_phone(open_page):
     now = at_rest(page, lambda: page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2))
     check_numbers(page, now)
     assert now.contact.viscosity > server.example().contact.viscosity
+
+
+def test_the_answer_comes_first_on_a_phone_and_the_rest_is_folded(open_page):
+    page = open_page(unfolded=False, viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True)
+    page.wait_for_selector(".answer .ways p")
+    parts = (".answer .regime", ".answer dl", ".answer .ways", ".chart-friction")
+    boxes = [page.locator(name).bounding_box() for name in parts]
+    assert boxes == sorted(boxes, key=lambda box: box["y"]) and boxes[2]["y"] + boxes[2]["height"] < 844
+    size = "all => Math.min(...all.map(e => parseFloat(getComputedStyle(e).fontSize)))"
+    assert page.eval_on_selector_all(".answer .regime, .answer dd", size) >= 22
+    shown = [each.get_attribute("data-row") for each in page.locator(".knob").all() if each.is_visible()]
+    assert shown == ["speed", "load", "viscosity", "roughness", "radius", "modulus"]
+    page.goto(f"{page.url}&beta=-1")
+    page.wait_for_selector("[data-row=beta].wrong")
+    assert page.locator("[data-row=beta] .sentence").is_visible()  # what is wrong unfolds
+
+
+def test_words_of_a_data_sheet_are_typed_and_helps_open(open_page):
+    page = open_page()
+    for name, text in (("modulus", "70 Shore A"), ("viscosity", "ISO VG 46 at 60 C"), ("speed", "1500 rpm, 30 mm")):
+        now = at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
+    assert now.contact.viscosity == sb.fluids.PRESETS["iso-vg"](grade=46, temperature=60).viscosity
+    assert now.contact.speed == sb.LineContact.INPUTS.quantities["speed"].checked(2.356194490192345)
+    assert "shore_a = 70" in page.locator("[data-row=modulus] .caption").inner_text()
+    check_numbers(page, now)
+    ask = page.get_by_role("button", name="What is: Load", exact=True)
+    ask.click()
+    assert "It may also be typed as" in page.locator("[data-row=load] .help").inner_text()
+    with page.context.expect_page() as opened:
+        page.locator("[data-row=load] .help a").click()
+    opened.value.wait_for_selector("#load:target")
 
 
 def test_it_is_dark_where_the_system_is(open_page):
@@ -534,6 +567,48 @@ def test_axe_core_finds_no_fault(open_page, scheme):
     page.locator(".chart-pressure .as-table").click()
     found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []
+
+
+def test_the_point_is_dragged_along_the_curve_and_a_drag_elsewhere_zooms(open_page):
+    page = open_page()
+    settled(page)
+    canvas = page.locator(".chart-friction canvas")
+    box = canvas.bounding_box()
+    at = "() => { const {chart} = document.querySelector('.chart-friction'); return chart.handle(); }"
+    x, y = page.evaluate(at)
+
+    def drag(start, stop):
+        page.mouse.move(box["x"] + start[0], box["y"] + start[1])
+        page.mouse.down()
+        page.mouse.move(box["x"] + stop[0], box["y"] + stop[1], steps=8)
+
+    painted = "const { chart } = document.querySelector('.chart-friction'), paint = chart.paint.bind(chart);"
+    painted += " window.painted = 0; chart.paint = () => { window.painted++; paint(); };"
+    drag((x, y), (x + 80, y))
+    now = at_rest(page, page.mouse.up)
+    assert page.evaluate(at)[0] == pytest.approx(x + 80, abs=1.5)
+    assert now.contact.speed > 2 * server.example().contact.speed
+    check_numbers(page, now)
+    lines = page.locator(".chart-friction .tip").inner_text().split("\n")
+    assert re.fullmatch(r"sliding speed U \S+ m/s", lines[0])
+    drag((150, 200), (300, 200))
+    assert page.locator(".chart-friction .band").bounding_box()["width"] == pytest.approx(150, abs=2)
+    page.mouse.up()
+    ends = "() => { const {x} = document.querySelector('.chart-friction').chart.view; return [x.low, x.high]; }"
+    low, high = page.evaluate(ends)
+    whole = page.evaluate(CHART, "friction")["x"]
+    assert whole["low"] < low < high < whole["high"] and page.get_by_role("button", name="whole").is_visible()
+    assert "sliding speed" in canvas.get_attribute("aria-label")
+    page.get_by_role("button", name="whole").click()
+    assert page.evaluate(ends) == [whole["low"], whole["high"]]
+    page.evaluate(f"() => {{ {painted} }}")
+    page.mouse.move(box["x"] + 250, box["y"] + 150, steps=50)
+    # What else is painted meanwhile are answers of slow work.
+    assert page.locator(".chart-friction .cursor").is_visible() and page.evaluate("window.painted") < 10
+    page.locator(".chart-pressure").scroll_into_view_if_needed()
+    gap = page.locator(".chart-pressure canvas").bounding_box()
+    page.mouse.move(gap["x"] + gap["width"] / 2, gap["y"] + gap["height"] / 2)
+    assert re.search(r"total \S+ kPa", page.locator(".chart-pressure .tip").inner_text())
 
 
 def test_nothing_jumps_while_values_change(open_page):

@@ -12,7 +12,6 @@ import sys
 import time
 import tomllib
 from dataclasses import replace
-from html import escape
 from pathlib import Path
 from statistics import NormalDist
 from types import SimpleNamespace
@@ -32,9 +31,11 @@ from stribeck.explorer.answer import Answerer, Pinned
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.history import History
 from stribeck.explorer.measured import fit_measured, read_measured
+from stribeck.explorer.page import parts_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
 from stribeck.explorer.serving.pools import Threads, run
+from stribeck.explorer.words import words_page
 from stribeck.files.toml import toml_text
 from stribeck.plot import style
 from stribeck.quantities import units
@@ -553,6 +554,93 @@ def test_the_cavity_of_a_cylinder_stays_when_it_becomes_a_ball():
     assert choices.list_of(shown, "cavitation")["value"] == "reform"
 
 
+# --- what people type ---
+
+TYPED = [
+    ("modulus", "70 Shore A", {"shore_a": 70}),
+    ("modulus", "Shore D 50", {"shore_d": 50}),
+    ("modulus", "E 2 MPa", {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5}),
+    ("modulus", "Young's modulus 2 MPa, nu 0.49", {"youngs_modulus": "2 MPa", "poisson_ratio": 0.49}),
+    ("roughness", "Ra 0.4 um", {"ra": "0.4 um"}),
+    ("roughness", "0,5 um Rq", {"rq": "0.5 um"}),
+    ("viscosity", "46 cSt", {"kinematic_viscosity": "46 cSt", "density": "870 kg/m^3"}),
+    ("viscosity", "46 cSt, 1000 kg/m^3", {"kinematic_viscosity": "46 cSt", "density": "1000 kg/m^3"}),
+    ("speed", "1500 rpm, 30 mm", {"rotational_speed": "1500 rpm", "shaft_diameter": "30 mm"}),
+    ("speed", "mean 0.5 m/s", {"entrainment_speed": "0.5 m/s"}),
+    ("load", "50 N, 20 mm", {"force": "50 N", "width": "20 mm"}),
+    ("load", "20 N/m, sealed pressure 10 kPa", {"load": "20 N/m", "sealed_pressure": "10 kPa"}),
+    ("load", "sealed pressure 10 kPa", {"load": "30 N/m", "sealed_pressure": "10 kPa"}),
+    (
+        "modulus",
+        "E 2 MPa, Young's modulus of the other body 3 MPa, Poisson's ratio of the other body 0.3",
+        {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5, "youngs_modulus_2": "3 MPa", "poisson_ratio_2": 0.3},
+    ),
+]
+
+
+def test_a_data_sheets_words_are_the_input_that_the_package_converts(subtests):
+    for name, text, given in TYPED:
+        with subtests.test(text):
+            found = choices.typed(START, name, text)
+            own = {key: value for key, value in START.tables["contact"].items() if key != name}
+            assert found.contact == inputs.Inputs.of({"contact": own | given}).contact
+            assert inputs.row_of(found, name)["note"]
+            assert reopened(url.encode(found)).inputs == found
+            plain = choices.typed(found, name, "3")  # a number takes the place of all of it
+            assert not inputs.row_of(plain, name)["note"] and plain.tables["contact"].keys() == START.tables["contact"].keys()
+
+
+def test_a_liquid_is_typed_by_its_grade_and_temperature(subtests):
+    liquids = {
+        "ISO VG 46 at 60 °C": sb.fluids.PRESETS["iso-vg"](grade=46, temperature=60),
+        "vg 68, 40 degC, VI 95": sb.fluids.PRESETS["iso-vg"](grade=68, temperature=40, viscosity_index=95),
+        "glycerol 50 % at 20 C": sb.fluids.glycerol_water(0.5, 20),
+        "water at 310 K": sb.fluids.water("310 K"),
+        "silicone oil 100 cSt": sb.fluids.PRESETS["silicone-oil"](grade=100),
+        "PAO 10": sb.fluids.PRESETS["pao-10"](),
+    }
+    for text, liquid in liquids.items():
+        with subtests.test(text):
+            found = choices.typed(START, "viscosity", text).contact
+            assert found.viscosity == liquid.viscosity and found.fluid == liquid.fluid
+
+
+def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(subtests):
+    refused = {
+        ("speed", "1500 rpm"): 'shaft_diameter = "30 mm", or give speed alone. Type both, with a comma between them.',
+        ("speed", "25 Hz, 30 mm"): "speed = '25 Hz, 30 mm'",
+        ("modulus", "170 Shore A"): "shore_a = 170 must be between 20 and 90",
+        ("modulus", "soft"): "modulus = 'soft' does not begin with a number",
+        ("viscosity", "ISO VG 46 at 600 C"): "temperature = 600 degC must lie between",
+    }
+    for (name, text), said in refused.items():
+        with subtests.test(text), pytest.raises(sb.InputError, match=re.escape(said)):
+            choices.typed(START, name, text)
+
+
+def test_what_to_change_comes_first_with_the_smallest_change(answer):
+    shown = parts_of(answer)["answer"]
+    assert shown["regime"] == answer.regime and shown["main"][0][1] == f"{answer.solution.friction().total:.4g}"
+    model = Answerer()
+    model(START)
+    rest(model, START)
+    at_rest = parts_of(model(START))["answer"]["ways"]
+    assert [each.split()[1] for each in at_rest] == ["boundary:", "hydrodynamic:"]
+    for line in at_rest:
+        factors = [float(each) for each in re.findall(r"[×÷] ([0-9.]+)", line)]
+        assert factors and factors == sorted(factors)
+
+
+def test_every_input_and_number_has_its_words_and_an_anchor_of_the_page_of_words(answer):
+    page, parts = words_page(), parts_of(answer)
+    for geometry in ("line", "point"):
+        for name in (*inputs.FIELDS[geometry], *inputs.GROUP_FIELDS):
+            assert len(inputs.help_of(name, geometry)) > 30 and ":math:" not in inputs.help_of(name, geometry), name
+            assert f'id="{name}"' in page
+    for row in parts["numbers"]:
+        assert row["help"] and f'id="{row["key"]}"' in page, row["key"]
+
+
 # --- whether the model applies ---
 
 
@@ -561,13 +649,13 @@ def test_what_is_outside_the_model_stands_above_every_number():
     shown = Answerer()(steel)
     expected = sb.check(steel.contact)
     assert not expected.applies and shown.checks.verdict == "outside"
-    html = table.verdict_html(shown)
-    assert html.startswith('<details class="verdict outside"') and " open>" in html
-    assert all(escape(each.sentence) in html for each in expected.with_verdict("outside"))
+    main = parts_of(shown)["answer"]
+    assert main["verdict"] == "outside" and main["headline"] == shown.checks.headline
+    assert {each.sentence for each in expected.with_verdict("outside")} <= set(main["reasons"])
     model = Answerer()
     model(START)
     rest(model, START)
-    assert escape(sb.check(START.contact).headline) in table.verdict_html(model(START))
+    assert parts_of(model(START))["answer"]["headline"] == sb.check(START.contact).headline
 
 
 def test_a_change_ends_the_checks_that_need_curves():
@@ -622,12 +710,11 @@ def pinned(name, contact=START.contact, definition="balanced", speeds=(1e-5, 1.0
 
 
 def test_pinned_contacts_stand_beside_the_present_one(answer):
-    assert table.comparison_html(answer) == ""
-    html = table.comparison_html(replace(answer, pins=[pinned("half", START.contact.replace(load=15))]))
-    rows = ElementTree.fromstring(html).findall("tr")
-    assert [cell.text for cell in rows[0][1:]] == ["present", "half"]
+    assert table.comparison(answer) == []
+    rows = table.comparison(replace(answer, pins=[pinned("half", START.contact.replace(load=15))]))
+    assert rows[0] == ["", "present", "half"]
     friction = sb.solve(START.contact.replace(load=15)).friction(definition="balanced").total
-    [shown] = [row[2].text for row in rows if row[0].text == "Friction µ"]
+    [shown] = [row[2] for row in rows if row[0] == "Friction µ"]
     assert float(shown) == pytest.approx(friction, rel=1e-3)
 
 
@@ -1222,9 +1309,8 @@ def test_the_numbers_have_the_intervals_of_the_command_and_the_error_of_the_solv
     rows = {row.key: row for row in table.numbers(answer)}
     low, high = sb.propagate(case.contact, case.errors)["friction"].interval_95
     assert rows[f"friction_{case.definition}"].interval == f"{low:.3g} to {high:.3g}"
-    shown = table.numbers_html(answer, list(rows.values()))
-    assert ">95 %</th>" in shown and "count as exact" in shown
-    assert "95 %" not in table.numbers_html(Answerer()(START), table.numbers(Answerer()(START)))
+    assert any("count as exact" in each for each in parts_of(answer)["remarks"])
+    assert not any(each["interval"] for each in parts_of(Answerer()(START))["numbers"])
 
 
 def test_the_curve_has_the_band_of_the_propagated_errors(uncertain):
@@ -1238,7 +1324,7 @@ def test_the_curve_has_the_band_of_the_propagated_errors(uncertain):
 
 def test_the_verdict_and_the_notes_are_those_of_the_commands(uncertain):
     case, answer = uncertain
-    assert answer.checks.headline in table.verdict_html(answer).replace("&#x27;", "'")
+    assert parts_of(answer)["answer"]["headline"] == answer.checks.headline
     assert answer.checks.headline.split(":")[0] in str(sb.check(case.contact, **case.facts)).split("\n")[0]
 
 

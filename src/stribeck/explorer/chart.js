@@ -1,13 +1,15 @@
 // One chart on a canvas: axes, areas, lines, points, or the film of a ball as an image. The page of the explorer and the front
 // page of the site draw with it. It is a classic script, since a page that is opened from a folder loads no modules.
 //
-// Options are {x, y, series}. An axis is {name, unit, low, high, log}. A series is {id, name, type, look, data}, quiet where the
+// Options are {x, y, series, drag}; with drag, {name, scale}, the mark of the present point follows the pointer along the axis.
+// The cursor is a layer of its own: no move of the pointer paints the chart. A mouse that is dragged over a chart zooms. An axis is {name, unit, low, high, log}. A series is {id, name, type, look, data}, quiet where the
 // legend leaves it out and faint where it is old. Colours are the variables of chart.css, which follow light and dark.
 "use strict";
 
 const StribeckChart = (() => {
   const FONT = "Roboto, system-ui, sans-serif";
   const CLOSE = 24; // pixels: so far from the pointer a lonely point still belongs to it
+  const MOVED = 8; // pixels: a shorter drag is a click
   const FILM = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"]; // From thin to thick, as in pictures
 
   const LOOKS = {
@@ -116,7 +118,8 @@ const StribeckChart = (() => {
     names({ data }, { brush, x, box, colour }) {
       [brush.textAlign, brush.fillStyle, brush.font] = ["center", colour("grey"), `italic 12px ${FONT}`];
       for (const [low, high, name] of data) {
-        if (brush.measureText(name).width < x(high) - x(low)) brush.fillText(name, 0.5 * (x(low) + x(high)), box.top + 12);
+        const from = Math.max(x(low), box.left), to = Math.min(x(high), box.left + box.width);
+        if (brush.measureText(name).width < to - from) brush.fillText(name, 0.5 * (from + to), box.top + 12);
       }
     },
     area(series, { brush, x, y, colour }) {
@@ -258,17 +261,23 @@ const StribeckChart = (() => {
 
   return class StribeckChart {
     constructor(place, label) {
-      Object.assign(this, { label, options: null, series: [], hidden: new Set(), asTable: false, size: [0, 0], colours: {} });
+      Object.assign(this, { label, options: null, hidden: new Set(), asTable: false, size: [0, 0], colours: {} });
       this.legend = element("div", { class: "legend", role: "group", "aria-label": `Lines of: ${label}` });
       this.table = element("div", { class: "scrolled", role: "region", "aria-label": label, tabindex: 0, hidden: "" });
       this.canvas = element("canvas", { role: "img", "aria-label": label, tabindex: 0 });
       this.tip = element("div", { class: "tip", role: "status", hidden: "" });
+      this.cursor = element("div", { class: "cursor", hidden: "" });
+      this.band = element("div", { class: "band", hidden: "" });
       place.classList.add("chart");
-      place.replaceChildren(this.legend, this.table, this.canvas, this.tip);
+      place.replaceChildren(this.legend, this.table, this.canvas, this.cursor, this.band, this.tip);
       place.chart = this;
       this.brush = this.canvas.getContext("2d");
-      for (const type of ["pointermove", "pointerdown"]) this.canvas.addEventListener(type, (event) => this.move(event));
-      for (const type of ["pointerleave", "blur"]) this.canvas.addEventListener(type, () => this.leave());
+      const on = (type, act) => this.canvas.addEventListener(type, act);
+      on("pointerdown", (event) => this.press(event));
+      on("pointermove", (event) => this.move(event));
+      on("pointerup", (event) => this.release(event));
+      on("dblclick", () => this.zoomTo(null));
+      for (const type of ["pointerleave", "pointercancel", "blur"]) on(type, () => this.leave());
       this.canvas.addEventListener("keydown", (event) => this.walk(event));
       // The size is kept, as asking for it in every frame would lay out the page in the middle of it.
       new ResizeObserver(([{ contentRect }]) => {
@@ -294,6 +303,7 @@ const StribeckChart = (() => {
     }
 
     show(options) {
+      if (options.x.name !== this.options?.x.name) this.zoom = null;
       this.options = { ...options, series: options.series.map((each) => ({ ...LOOKS[each.look ?? each.id], ...each })) };
       this.film = this.options.series.find(({ type }) => type === "film");
       const listed = this.options.series.filter(({ quiet, type }) => !quiet && !["bands", "text", "film"].includes(type));
@@ -325,7 +335,22 @@ const StribeckChart = (() => {
         this.asTable = !this.asTable;
         [this.table.hidden, this.canvas.hidden] = [!this.asTable, this.asTable];
       }, { class: "as-table", "aria-label": `As a table: ${this.label}` });
-      this.legend.replaceChildren(...names, table);
+      this.whole = button("whole", () => false, "Show all again, as Escape and a double click do", () => this.zoomTo(null), { class: "whole" });
+      this.whole.hidden = !this.zoom;
+      this.legend.replaceChildren(...names, this.whole, table);
+    }
+
+    // The axes that are shown: a part of them after a zoom.
+    get view() {
+      const { x, y } = this.options;
+      return { x: { ...x, ...this.zoom?.x }, y: { ...y, ...this.zoom?.y } };
+    }
+
+    zoomTo(zoom) {
+      this.zoom = zoom;
+      this.whole.hidden = !zoom;
+      this.paint();
+      this.tellAll();
     }
 
     shown() {
@@ -335,10 +360,10 @@ const StribeckChart = (() => {
     // The chart as words, and as a table where that is wanted.
     tellAll() {
       if (!this.options) return;
-      const words = wordsOf(this.options, this.shown(), this.film);
+      const words = wordsOf(this.view, this.shown(), this.film);
       this.canvas.setAttribute("aria-label", `${this.label}: ${words}; arrow keys read its values`);
       if (!this.asTable) return;
-      const [head, ...rows] = tableOf(this.options, this.shown(), this.film);
+      const [head, ...rows] = tableOf(this.view, this.shown(), this.film);
       const row = ([first, ...others], scope, tag) =>
         element("tr", {}, element("th", { scope }, first), ...others.map((each) => element(tag, tag === "th" ? { scope } : {}, each)));
       this.table.replaceChildren(element("table", {}, element("caption", {}, words), row(head, "col", "th"), ...rows.map((each) => row(each, "row", "td"))));
@@ -353,7 +378,7 @@ const StribeckChart = (() => {
       brush.clearRect(0, 0, width, height);
       const [left, bottom] = film ? [50, 84] : [62, 44], box = { left, top: 6, width: width - left - 16, height: height - 6 - bottom };
       if (film) box.width = box.height = Math.min(box.width, box.height);
-      const { x, y } = this.options;
+      const { x, y } = this.view;
       const on = {
         brush, box, x: scaleOf(x, left, left + box.width), y: scaleOf(y, box.top + box.height, box.top),
         colour: (name) => (this.colours[name] ??= getComputedStyle(canvas).getPropertyValue(`--${name}`).trim()),
@@ -382,7 +407,7 @@ const StribeckChart = (() => {
     }
 
     paintAxes({ brush, box, x, y, colour }) {
-      const { options: { x: across, y: up }, film } = this, [right, foot] = [box.left + box.width, box.top + box.height];
+      const { view: { x: across, y: up }, film } = this, [right, foot] = [box.left + box.width, box.top + box.height];
       const stroke = (name, lines) => {
         [brush.strokeStyle, brush.lineWidth] = [colour(name), 1];
         brush.beginPath();
@@ -439,62 +464,106 @@ const StribeckChart = (() => {
       brush.fillText(thick, left + width + 6, top + 6);
     }
 
+    // Where the mark of the present point stands, if it can be dragged.
+    handle() {
+      const point = this.options?.drag && this.options.series.find(({ id }) => id === "point")?.data[0];
+      return point && [this.on.x(point[0]), this.on.y(point[1])];
+    }
+
+    isOnHandle([across, up]) {
+      const at = this.on && this.handle();
+      return Boolean(at) && Math.hypot(at[0] - across, at[1] - up) < CLOSE;
+    }
+
+    press(event) {
+      this.pointer = [event.offsetX, event.offsetY];
+      this.held = this.isOnHandle(this.pointer) ? "point" : event.pointerType === "mouse" && !this.film ? this.pointer : null;
+      if (this.held) this.canvas.setPointerCapture(event.pointerId);
+      this.tell();
+    }
+
     move(event) {
       this.pointer = [event.offsetX, event.offsetY];
-      this.paint();
+      if (this.held === "point") {
+        const { box } = this.on, { name, scale } = this.options.drag;
+        const part = Math.min(Math.max((this.pointer[0] - box.left) / box.width, 0), 1);
+        this.onDrag?.(name, Math.log10(valueOn(this.view.x, part) / scale));
+      } else if (!this.held) this.canvas.style.cursor = this.isOnHandle(this.pointer) ? "grab" : "";
+      this.tell();
+    }
+
+    release() {
+      const { held, pointer, on: { box } } = this;
+      this.held = null;
+      this.band.hidden = true;
+      if (!held || held === "point" || Math.abs(pointer[0] - held[0]) < MOVED) return;
+      const inside = (value, from, size) => Math.min(Math.max((value - from) / size, 0), 1);
+      const ends = (axis, parts) => {
+        const [low, high] = parts.sort((one, two) => one - two).map((part) => valueOn(axis, part));
+        return { low, high };
+      };
+      const { x, y } = this.view, [across, up] = [0, 1].map((i) => [held, pointer].map((place) => place[i]));
+      const zoom = { x: ends(x, across.map((each) => inside(each, box.left, box.width))) };
+      // A drag along the axis leaves the other axis as it is.
+      if (Math.abs(up[0] - up[1]) > MOVED * 3) zoom.y = ends(y, up.map((each) => 1 - inside(each, box.top, box.height)));
+      else zoom.y = this.zoom?.y;
+      this.zoomTo(zoom);
     }
 
     // A readout by keyboard: arrow keys move it, with Shift faster, Escape removes it.
     walk(event) {
       const step = (event.shiftKey ? 40 : 8) * { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (event.key === "Escape") this.leave();
+      if (event.key === "Escape") this.leave(this.zoom && this.zoomTo(null));
       if (!step || !this.on) return;
       event.preventDefault();
       const { left, width, top, height } = this.on.box, [across, up] = this.pointer ?? [left + 0.5 * width, top + 0.5 * height];
       this.pointer = [Math.min(Math.max(across + step, left), left + width), up];
-      this.paint();
+      this.tell();
     }
 
     leave() {
-      this.pointer = null;
-      this.tip.hidden = true;
-      this.paint();
+      this.pointer = this.held = null;
+      for (const each of [this.tip, this.cursor, this.band]) each.hidden = true;
     }
 
-    // What is under the pointer, in words.
+    // What is under the pointer, in words, beside a line there.
     tell() {
-      const { on: { brush, box, x, colour }, tip, canvas, pointer: [across, up] } = this;
+      if (!this.on || !this.pointer) return;
+      const { on: { box, x }, tip, canvas, cursor, band, held, pointer: [across, up] } = this;
       const inside = across >= box.left && across <= box.left + box.width && up >= box.top && up <= box.top + box.height;
       const lines = inside ? this.under(box, x, across, up) : [];
       tip.hidden = lines.length === 0;
+      cursor.hidden = tip.hidden || Boolean(this.film);
+      band.hidden = !Array.isArray(held);
+      const put = (part, left, top, width, height) =>
+        Object.assign(part.style, { left: `${canvas.offsetLeft + left}px`, top: `${canvas.offsetTop + top}px`, width: `${width}px`, height: `${height}px` });
+      put(cursor, across, box.top, 0, box.height);
+      if (!band.hidden) put(band, Math.min(across, held[0]), box.top, Math.abs(across - held[0]), box.height);
       if (tip.hidden) return;
-      if (!this.film) {
-        [brush.strokeStyle, brush.lineWidth] = [colour("grey"), 1];
-        brush.setLineDash([2, 3]);
-        brush.beginPath();
-        brush.moveTo(across, box.top);
-        brush.lineTo(across, box.top + box.height);
-        brush.stroke();
-        brush.setLineDash([]);
-      }
       tip.replaceChildren(...lines.map(([words, name]) => element("div", name ? { style: `--curve: var(--${name})` } : {}, words)));
       const beside = across + 14 + tip.offsetWidth > canvas.clientWidth ? across - 14 - tip.offsetWidth : across + 14;
       tip.style.left = `${canvas.offsetLeft + Math.max(0, beside)}px`;
       tip.style.top = `${canvas.offsetTop + Math.max(0, Math.min(up, canvas.clientHeight - tip.offsetHeight))}px`;
     }
 
+    // Lines have a value everywhere; marks and measured points are told where they are near.
     under(box, x, across, up) {
-      const part = (across - box.left) / box.width;
+      const part = (across - box.left) / box.width, { x: axis, y } = this.view, at = valueOn(axis, part);
       if (this.film) return [[`film ${filmAt(this.film, part, (up - box.top) / box.height)}`]];
       const found = [];
-      for (const { type, name, data, colour } of this.shown()) {
+      for (const each of this.shown()) {
+        const { type, name, data, colour } = each;
         if ((type !== "line" && type !== "points") || data.length === 0) continue;
         const away = ([one]) => Math.abs(x(one) - across);
         const near = data.reduce((best, each) => (away(each) < away(best) ? each : best));
-        if (near[1] !== null && away(near) < CLOSE) found.push([`${name} ${short(near[1], 4)}`, colour]);
+        if (isMark(each)) {
+          if (away(near) < CLOSE) found.push([`${name} at ${inWords(near[0])} ${axis.unit}`, colour]);
+          continue;
+        }
+        const value = type === "line" && data.length > 2 ? valueAt(data, at, axis, y) : away(near) < CLOSE || type === "line" ? near[1] : null;
+        if (Number.isFinite(value)) found.push([`${name} ${short(value, 4)} ${y.unit}`, colour]);
       }
-      const { x: axis } = this.options;
-      return found.length ? [[`${short(valueOn(axis, part), 3)} ${axis.unit}`], ...found] : [];
+      return found.length ? [[`${axis.name.replace(/ \(.*/, "")} ${short(at, 3)} ${axis.unit}`], ...found] : [];
     }
   };
 })();

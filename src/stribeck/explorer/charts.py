@@ -78,7 +78,8 @@ def friction_chart(answer: Answer) -> Options:
     series.append(_point(contact.speed * scale if contact.speed > 0 else ends[0], friction))
     symbol = RULES[contact.groups.geometry].hersey_symbol.replace("_N", "")
     across = axis(f"{speed_words(contact)} U", "m/s", *ends) if over_speed else axis(f"Hersey number {symbol}", "", *ends)
-    return {"x": across, "y": axis("friction coefficient µ", "", low, high), "series": series}
+    drag = {"name": "speed", "scale": scale}
+    return {"x": across, "y": axis("friction coefficient µ", "", low, high), "series": series, "drag": drag}
 
 
 def gap_chart(answer: Answer) -> Options:
@@ -160,7 +161,8 @@ def diagram_chart(answer: Answer) -> Options:
     height = min(max(1e6 * contact.roughness, ends[0]), ends[1])
     path = line("path", "changing speed", np.array([low, high]), np.full(2, height), "plain")
     series += [path | {"quiet": True}, _point(min(max(contact.speed, low), high), height)]
-    return {"x": axis(f"{speed_words(contact)} U", "m/s", low, high), "y": axis("roughness", "µm", *ends), "series": series}
+    across, drag = axis(f"{speed_words(contact)} U", "m/s", low, high), {"name": "speed", "scale": 1.0}
+    return {"x": across, "y": axis("roughness", "µm", *ends), "series": series, "drag": drag}
 
 
 def axis(name: str, unit: str, low: float, high: float, log: bool = True) -> Options:

@@ -1,13 +1,38 @@
 // The page: what Python sends is shown, and what the user does is sent to Python as ["what", ...].
 // Native elements, so that keyboard, phone and screen reader know them.
 
+// What a name means, behind a question mark, with a link to all words.
+const Ask = {
+  props: { name: String, label: String, words: String },
+  template: `<button type="button" class="ask" :aria-label="'What is: ' + label" :aria-expanded="String(open)" @click="open = !open">?</button>
+    <p class="help" v-if="open">{{ words }} <a :href="'/words#' + name" target="_blank">All words</a></p>`,
+  data: () => ({ open: false }),
+};
+
+// What is folded away until it is wanted, or something in it is wrong.
+const Fold = {
+  props: { name: String, title: String, wrong: Boolean },
+  template: `<details class="fold" ref="fold" :data-fold="name"><summary>{{ title }}</summary><slot/></details>`,
+  watch: { wrong: "follow" },
+  mounted() {
+    this.follow();
+  },
+  methods: {
+    follow() {
+      if (this.wrong) this.$refs.fold.open = true;
+    },
+  },
+};
+
 // A quantity: its name, a field, its unit and a slider.
 const Knob = {
+  components: { Ask },
   props: { now: Object, busy: Function },
   emits: ["act"],
   template: `
     <div class="knob" :class="{wrong: sentence}" :data-row="now.name">
       <label class="name" :for="'field-' + now.name">{{ now.label }}<i v-html="now.symbol"></i></label>
+      <ask :name="now.name" :label="now.label" :words="now.help"></ask>
       <input class="field" type="text" :id="'field-' + now.name" :name="now.name" v-model="text" autocomplete="off" spellcheck="false"
         :aria-invalid="String(Boolean(sentence))" :aria-describedby="'sentence-' + now.name"
         @keydown.enter="commit" @keydown.esc="restore" @blur="commit" @keydown.ctrl="text === now.text || $event.stopPropagation()">
@@ -19,6 +44,7 @@ const Knob = {
         :aria-valuetext="text + ' ' + now.unit" @input="$emit('act', ['slide', now.name, place])"
         @pointerdown="held = true" @pointerup="held = false" @pointercancel="held = false">
       <div class="sentence" role="alert" :id="'sentence-' + now.name">{{ sentence }}</div>
+      <div class="caption" v-if="now.note">{{ now.note }}</div>
     </div>`,
   data() {
     return { text: "", sentence: "", place: 0, held: false };
@@ -99,7 +125,7 @@ const CHARTS = {
 const say = (message, timeout = 6000) => Quasar.Notify.create({ message, timeout, closeBtn: "Close" });
 
 export default {
-  components: { Knob, List },
+  components: { Ask, Fold, Knob, List },
   props: { client: String, kinds: Object, examples: Array, endings: String, toggles: Object },
   emits: ["act"],
   template: `
@@ -111,7 +137,7 @@ export default {
           <q-item clickable v-close-popup @click="$refs.upload.click()"><q-item-section>File: a case (TOML), a measured curve (CSV) or a height map ...</q-item-section></q-item>
           <q-item v-for="each in examples" :key="each" clickable v-close-popup @click="act('example', each)"><q-item-section>{{ each }}</q-item-section></q-item>
         </q-list></q-menu></q-btn>
-        <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case"><q-menu><q-list>
+        <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case, or copy the link or the code"><q-menu><q-list>
           <q-item v-for="(kind, label) in kinds" :key="kind" clickable v-close-popup @click="download(kind)"><q-item-section>{{ label }}</q-item-section></q-item>
         </q-list></q-menu></q-btn>
         <q-btn flat dense no-caps icon="undo" aria-label="Undo" title="Undo (Ctrl-Z)" :disable="!undo" @click="act('undo')"/>
@@ -120,55 +146,82 @@ export default {
         <q-btn flat dense no-caps icon="link" label="Link" title="Copy the address of this state (l)" @click="copy"/>
         <q-btn flat dense no-caps icon="contrast" aria-label="Toggle dark mode" title="Toggle dark mode (t)" @click="toggleDark"/>
       </header>
-      <div class="applies" role="status" v-html="verdict"></div>
+      <section class="card answer" aria-label="Answer">
+        <div class="status" :class="{said: !failed}" role="status">{{ message }}</div>
+        <div class="retry" v-if="failed">
+          <q-btn flat dense no-caps icon="refresh" label="Try again" title="Compute this once more" @click="act('retry')"/>
+          <q-btn flat dense no-caps icon="undo" label="Back" title="Go back to what is shown" @click="act('back')"/>
+        </div>
+        <template v-if="answer">
+          <div class="regime" :class="answer.regime" data-key="regime" :data-value="answer.regime" data-error="0">{{ answer.regime }}<small>{{ answer.meaning }}</small></div>
+          <dl><div v-for="[label, text, interval] in answer.main" :key="label"><dt>{{ label }}</dt><dd>{{ text }}<small v-if="interval">95 %: {{ interval }}</small></dd></div></dl>
+          <div class="verdict" :class="answer.verdict" data-key="verdict" :data-value="answer.verdict" role="status">
+            <details v-if="answer.reasons.length" :open="answer.verdict === 'outside'"><summary>{{ answer.headline }}</summary><p v-for="each in answer.reasons">{{ each }}</p></details>
+            <template v-else>{{ answer.headline }}</template>
+          </div>
+          <div class="ways"><h2>What to change</h2><p v-for="each in answer.ways" :key="each">{{ each }}</p></div>
+        </template>
+      </section>
       <section class="card controls" aria-label="Inputs">
         <h2>Contact</h2>
         <list v-for="each in lists.slice(0, 1)" :key="each.name" :now="each" @act="forward"></list>
-        <knob v-for="each in rows" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
-        <h2>Dimensionless groups</h2>
-        <knob v-for="each in groups" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
-        <p class="caption">Changing one group changes speed, load and roughness; the other two groups stay fixed.</p>
+        <knob v-for="each in rows.slice(0, 6)" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
+        <fold name="more" title="More inputs" :wrong="isWrong(rows.slice(6))">
+          <knob v-for="each in rows.slice(6)" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
+        </fold>
+        <fold name="model" title="Model and definition of friction" :wrong="isWrong(lists.slice(1))">
+          <list v-for="each in lists.slice(1)" :key="each.name" :now="each" @act="forward"></list>
+          <div class="choice-row"><span class="name">Fluid friction</span><div class="choice"><q-btn-toggle no-caps unelevated dense aria-label="definition"
+            :options="optionsOf('definition')" :model-value="chosen.definition" @update:model-value="value => act('choose', 'definition', value)"/></div></div>
+        </fold>
+        <fold name="groups" title="Dimensionless groups" :wrong="isWrong(groups)">
+          <knob v-for="each in groups" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
+          <p class="caption">Changing one group changes speed, load and roughness; the other two groups stay fixed.</p>
+        </fold>
       </section>
       <div class="middle">
         <section class="card friction" aria-label="Stribeck curve">
           <div class="head">
             <h2>Stribeck curve</h2><div class="caption source">{{ source }}</div>
-            <div class="choice">
-              <q-btn-toggle v-for="(options, name) in toggles" :key="name" no-caps unelevated dense :aria-label="name"
-                :options="Object.entries(options).map(([value, label]) => ({ value, label }))"
-                :model-value="chosen[name]" @update:model-value="value => act('choose', name, value)"/>
-            </div>
+            <div class="choice"><q-btn-toggle no-caps unelevated dense aria-label="abscissa"
+              :options="optionsOf('abscissa')" :model-value="chosen.abscissa" @update:model-value="value => act('choose', 'abscissa', value)"/></div>
           </div>
           <div class="below">
             <div class="chips"><q-chip v-for="(each, i) in chips" :key="each.name" removable :icon="each.icon" :style="'--curve: var(--' + each.colour + ')'"
               @remove="act('remove', i)">{{ each.name }}</q-chip></div>
-            <q-btn v-if="fit" flat dense no-caps icon="insights" label="Fit" title="Fit dry friction and roughness to the measured curve" @click="act('fit')"/>
+            <q-btn v-if="fit" flat dense no-caps icon="insights" label="Fit" title="Fit inputs to the measured curve" @click="act('fit')"/>
           </div>
           <div class="chart-friction" ref="friction"></div>
-          <div class="curve-notes" tabindex="0" role="region" aria-label="Notes on the curve" v-html="notes"></div>
-          <div class="comparison" v-html="comparison"></div>
+          <div class="curve-notes" tabindex="0" role="region" aria-label="Notes on the curve"><p class="note" v-for="each in notes">{{ each }}</p></div>
+          <div class="comparison" v-if="comparison.length"><table>
+            <tr v-for="([label, ...texts], i) in comparison" :key="i"><component :is="i ? 'th' : 'td'" :scope="i ? 'row' : null">{{ label }}</component>
+              <component :is="i ? 'td' : 'th'" v-for="(each, k) in texts" :key="k" :scope="i ? null : 'col'">{{ each }}</component></tr>
+          </table></div>
         </section>
         <section class="card fields" aria-label="Gap and pressure">
           <h2>Gap and pressure along the contact</h2>
           <div class="pair"><div class="chart-gap" ref="gap"></div><div class="chart-pressure" ref="pressure"></div></div>
           <div class="of-ball" v-show="geometry === 'point'"><h2>Film on the plane of the contact</h2><div class="chart-plane" ref="plane"></div></div>
         </section>
-        <section class="card model" aria-label="Model"><h2>Model</h2>
-          <div class="rows"><list v-for="each in lists.slice(1)" :key="each.name" :now="each" @act="forward"></list></div>
-        </section>
       </div>
       <div class="side">
         <section class="card numbers" aria-label="Numbers">
-          <div class="status" :class="{said: !failed}" role="status">{{ message }}</div>
-          <div class="retry" v-if="failed">
-            <q-btn flat dense no-caps icon="refresh" label="Try again" title="Compute this once more" @click="act('retry')"/>
-            <q-btn flat dense no-caps icon="undo" label="Back" title="Go back to what is shown" @click="act('back')"/>
-          </div>
-          <div v-html="numbers"></div>
+          <h2>Numbers</h2>
+          <table>
+            <tr v-if="numbers.some(each => each.interval)"><td></td><td></td><th scope="col">95 %</th></tr>
+            <tr v-for="each in numbers" :key="each.key" :data-key="each.key" :data-value="each.value" :data-error="each.error">
+              <th scope="row">{{ each.label }}<ask :name="each.key" :label="each.label" :words="each.help"></ask></th>
+              <td :title="each.tip.startsWith('±') ? 'error of the solver: ' + each.tip : each.tip">{{ each.text }}</td><td>{{ each.interval }}</td>
+            </tr>
+          </table>
+          <p class="note" v-for="each in remarks">{{ each }}</p>
         </section>
         <section class="card more" aria-label="Margins">
           <h2>Margins to the next regimes <span class="caption waits">{{ waits }}</span></h2>
-          <div class="margins" :class="{old: waits}" v-html="margins"></div>
+          <div class="margins" :class="{old: waits}"><table v-if="margins.length">
+            <tr v-for="([[name], ...cells], i) in margins" :key="name" :data-key="name || null"><component :is="i ? 'th' : 'td'" :scope="i ? 'row' : null">{{ name }}</component>
+              <component :is="i ? 'td' : 'th'" v-for="([text, small, value], k) in cells" :key="k" :scope="i ? null : 'col'" :data-value="value || null">{{ text }} <small>{{ small }}</small></component></tr>
+          </table><p class="note" v-for="each in marginNotes.filter(Boolean)">{{ each }}</p></div>
         </section>
         <section class="card diagram" aria-label="Phase diagram">
           <h2>Regimes <span class="caption">{{ map }}</span></h2><div class="chart-diagram" ref="diagram"></div>
@@ -179,10 +232,10 @@ export default {
       </q-card></q-dialog>
     </div>`,
   data() {
-    const texts = ["title", "verdict", "source", "notes", "comparison", "message", "numbers", "margins", "waits", "map", "address"];
-    const lists = ["lists", "rows", "groups", "chips", "complaint"], flags = ["working", "undo", "redo", "fit", "failed"];
+    const texts = ["title", "source", "message", "waits", "map", "address"], flags = ["working", "undo", "redo", "fit", "failed"];
+    const lists = ["lists", "rows", "groups", "chips", "complaint", "notes", "numbers", "remarks", "comparison", "margins", "marginNotes"];
     const empty = [...texts.map((each) => [each, ""]), ...lists.map((each) => [each, []]), ...flags.map((each) => [each, false])];
-    return { ...Object.fromEntries(empty), geometry: "line", chosen: {} };
+    return { ...Object.fromEntries(empty), geometry: "line", chosen: {}, answer: null };
   },
   watch: {
     address(query) {
@@ -192,6 +245,7 @@ export default {
   mounted() {
     document.documentElement.lang = "en";
     this.charts = Object.fromEntries(Object.entries(CHARTS).map(([name, label]) => [name, new StribeckChart(this.$refs[name], label)]));
+    for (const chart of Object.values(this.charts)) chart.onDrag = (name, place) => this.forward(["slide", name, place]);
     document.addEventListener("keydown", this.press);
   },
   unmounted() {
@@ -200,6 +254,10 @@ export default {
   methods: {
     act(...what) {
       this.$emit("act", what);
+    },
+    isWrong: (some) => some.some((each) => each.sentence),
+    optionsOf(name) {
+      return Object.entries(this.toggles[name]).map(([value, label]) => ({ value, label }));
     },
     // One move of a slider is on its way to Python at a time; while it is, only the last place is kept.
     forward(what) {

@@ -16,6 +16,7 @@ from stribeck.explorer.downloads import KINDS, examples
 from stribeck.explorer.inputs.choices import CHOICES, list_of
 from stribeck.explorer.inputs.inputs import GROUP_FIELDS, Inputs, row_of
 from stribeck.explorer.scans import SCAN_ENDINGS
+from stribeck.regimes.margins import RegimeMargins
 
 UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 
@@ -70,23 +71,23 @@ def form_of(now: Inputs, problems: Problems) -> dict[str, Any]:
 
 def parts_of(answer: Answer) -> dict[str, Any]:
     """Return what shows an answer: numbers, sentences and charts."""
-    curve, margins = answer.curve, answer.margins
+    curve, margins, rows = answer.curve, answer.margins, table.numbers(answer)
     chips = [{"name": pin.name, "icon": "push_pin", "colour": f"pin{i}"} for i, pin in enumerate(answer.pins)]
     chips += [{"name": found.name, "icon": "scatter_plot", "colour": "ink"} for found in answer.measured]
     parts = {
-        "verdict": table.verdict_html(answer),
-        "notes": "" if curve is None else table.notes_html(note for note in curve.notes if not answer.checks.covers(note)),
-        "numbers": table.numbers_html(answer, table.numbers(answer)),
-        "comparison": table.comparison_html(answer),
-        "margins": table.notes_html([without_rtol(margins)]) if isinstance(margins, str) else "",
+        "answer": table.main_of(answer, rows),
+        "notes": [] if curve is None else table.notes_of(note for note in curve.notes if not answer.checks.covers(note)),
+        "numbers": table.number_rows(rows),
+        "remarks": table.notes_of_state(answer),
+        "comparison": table.comparison(answer),
+        "margins": table.margin_rows(margins) if isinstance(margins, RegimeMargins) else [],
+        "marginNotes": table.margin_notes(margins) if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")],
         "waits": UPDATING_TEXT if "margins" in answer.stale else "",
         "map": f"at this load (group {float(answer.inputs.contact.groups.load):.3g}){_map_text(answer)}",
         "chips": chips,
         "fit": bool(answer.measured),
         "charts": all_charts(answer),
     }
-    if margins is not None and not isinstance(margins, str):
-        parts["margins"] = table.margins_html(margins)
     if curve is not None and "curve" not in answer.stale:
         parts["source"] = curve.source
     elif answer.why:

@@ -20,6 +20,7 @@ from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
 from stribeck.explorer.serving.guard import Guard, check_host
 from stribeck.explorer.serving.pools import FILES, run
 from stribeck.explorer.serving.tidy import set_aside
+from stribeck.explorer.words import words_page
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, to_si
 
@@ -138,6 +139,10 @@ def build(start: Inputs, port: int, token: str) -> None:
         name = quote(name_of(kind, tab.inputs.case.title))
         return Response(content, media_type="application/octet-stream", headers={"x-file-name": name})
 
+    async def words(request: Request) -> Response:
+        return Response(await run(FILES, words_page), media_type="text/html")
+
+    app.add_route("/words", words, methods=["GET"])
     app.add_route("/upload/{tab}", upload, methods=["POST"])
     app.add_route("/download/{tab}/{kind}", download, methods=["GET"])
 

@@ -81,7 +81,7 @@ class Tab:
         self.page.client.on_connect(self.rest)
         self.actions: dict[str, Callable[..., Any]] = {
             "slide": lambda name, place: self.attempt(name, "", place, inputs.with_slider, name, float(place)),
-            "type": lambda name, text: self.attempt(name, "", text, inputs.with_text, name, str(text)),
+            "type": lambda name, text: self.attempt(name, "", text, choices.typed, name, str(text)),
             "unit": lambda name, unit: self.attempt(name, "", unit, inputs.in_unit, name, str(unit)),
             "pick": lambda name, value: self.attempt(name, "", "", choices.choose, name, str(value)),
             "detail": lambda name, key, text: self.attempt(name, key, text, choices.with_detail, name, key, str(text)),

@@ -1,11 +1,11 @@
-"""The numbers of an answer, each with its error, as rows and as HTML."""
+"""The numbers of an answer, each with its error, as rows for the page."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from html import escape
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import INPUT_TABLES
@@ -14,7 +14,6 @@ from stribeck.quantities.formats import format_factor, format_percent, format_si
 from stribeck.quantities.number import Number
 from stribeck.regimes.margin_scan import Crossing
 from stribeck.regimes.margins import RegimeMargins
-from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution, regime_of_state
 from stribeck.solver.numbers import report_rows
 
@@ -24,6 +23,8 @@ LEFT_OUT = (
     *("minimum_film_position", "minimum_film_radius", "minimum_angle", "undeformed_height"),
 )
 
+SHARE = "share of asperities in friction"
+
 # Rows that stand side by side for pinned contacts.
 COMPARED = ("central_film_thickness", "minimum_film_thickness", "lambda_ratio", "fluid_load_share", "hersey_number")
 
@@ -32,6 +33,8 @@ TRANSITION_LABELS = {
     "hydrodynamic": "Speed at start of hydrodynamic regime",
     "minimum": "Speed of minimum friction",
 }
+
+TRANSITION_HELP = "where the curve passes from one regime to the next, and how far that is from the present speed"
 
 # The regime that is entered where a transition is passed.
 ENTERED = {
@@ -57,6 +60,7 @@ class Row:
     value: float  # The number, in SI units
     error: float  # Its estimated absolute error; zero for what follows from the inputs alone, nan where it is not known
     text: str  # The number as shown, with its unit
+    help: str = ""  # What it is
     tip: str = ""  # The error of the solver, for a tooltip
     interval: str = ""  # The 95 % interval by the errors of the inputs; empty where none are given
 
@@ -76,10 +80,10 @@ def state_rows(solution: BaseSolution, definition: Definition) -> Iterator[Row]:
     friction = solution.friction(definition=definition)
     share = friction.contact_share, friction.relative_error
     numbers = [each for each in report_rows(solution) if each.name not in LEFT_OUT]
-    for each in (*numbers, Number("contact_friction_share", "share of asperities in friction", "", *share)):
+    for each in (*numbers, Number("contact_friction_share", SHARE, f"{SHARE}: the rest is shear of the fluid", *share)):
         value, error = map(_plain, each.texts)
         tip = "from the inputs" if each.error == 0 else error
-        yield Row(each.name, each.label[0].upper() + each.label[1:], each.value, each.error, value, tip)
+        yield Row(each.name, _capital(each.label), each.value, each.error, value, each.meaning, tip)
 
 
 def _transition_rows(answer: Answer) -> Iterator[Row]:
@@ -99,7 +103,8 @@ def _transition_rows(answer: Answer) -> Iterator[Row]:
         tip = "located on solved states" if math.isnan(mark.error) else f"± {format_percent(mark.error, 1)}"
         entered = ENTERED.get((answer.regime, name), "")
         crossing = over["speed"].crossing_into(entered) if "speed" in over else None
-        yield Row(key, label, factor, factor * mark.error, text, tip, "" if crossing is None else _interval(crossing))
+        interval = "" if crossing is None else _interval(crossing)
+        yield Row(key, label, factor, factor * mark.error, text, TRANSITION_HELP, tip, interval)
 
 
 def _interval(mark: Crossing) -> str:
@@ -119,46 +124,68 @@ def _plain(text: str) -> str:
     return text.replace("*", "·")
 
 
-def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
-    """Return regime, numbers and notes as HTML; each value stands in full in ``data-value``."""
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]
+
+
+def number_rows(rows: Iterable[Row]) -> list[dict[str, Any]]:
+    """Return rows as the page takes them; values stand there in full, as text."""
+    return [asdict(row) | {"value": repr(row.value), "error": repr(row.error)} for row in rows]
+
+
+def main_of(answer: Answer, rows: Iterable[Row]) -> dict[str, Any]:
+    """Return what comes first: regime, friction, film over roughness, the verdict of the checks, and what to change."""
+    found, checks = {row.key: row for row in rows}, answer.checks
+    wanted = {f"friction_{answer.inputs.case.definition}": "Friction", "lambda_ratio": "Film over roughness"}
+    return {
+        "regime": answer.regime,
+        "meaning": MEANINGS[answer.regime],
+        "main": [[label, found[key].text, found[key].interval] for key, label in wanted.items() if key in found],
+        "verdict": checks.verdict,
+        "headline": checks.headline,
+        "reasons": [each.sentence for each in checks.said],
+        "ways": _ways(answer),
+    }
+
+
+def _ways(answer: Answer) -> list[str]:
+    """Return how the next regimes are reached, the smallest changes first; by the speed alone where no more is known."""
+    margins, speed = answer.margins, answer.inputs.contact.speed
+    if isinstance(margins, RegimeMargins) and "margins" not in answer.stale:
+        ways = {target: _steps(margins, target) for target in margins.targets}
+        return [f"To {target}: {', or '.join(steps) or 'no single input reaches it'}." for target, steps in ways.items()]
+    marks = {} if answer.curve is None or "curve" in answer.stale or speed == 0 else answer.curve.marks
+    passed = {ENTERED.get((answer.regime, name)): mark.value for name, mark in marks.items()}
+    return [f"To {into}: {_step('speed', value / speed, value, 'speed')}." for into, value in passed.items() if into]
+
+
+def _steps(margins: RegimeMargins, target: str) -> list[str]:
+    """Return what each input alone would have to be for a regime, the smallest change first."""
+    found = [(each.name, mark) for each in margins.margins if (mark := each.crossing_into(target)) is not None]
+    marks = sorted((abs(math.log(mark.factor)), name, mark) for name, mark in found if 0 < mark.factor < math.inf)
+    rows = INPUT_TABLES[margins.geometry].quantities
+    return [_step(name, mark.factor, mark.value, rows[name].dimension) for _, name, mark in marks]
+
+
+def _step(name: str, factor: float, value: float, dimension: str) -> str:
+    return f"{name} {_times(factor)} ({_plain(format_si(value, dimension))})"
+
+
+def notes_of(notes: Iterable[str]) -> list[str]:
+    """Return notes with the words of the page."""
+    return [each.replace("lambda ", "λ ").replace("wetted_radius", "a radius of the wetted disc") for each in notes if each]
+
+
+def notes_of_state(answer: Answer) -> list[str]:
+    """Return the notes on a state, and which errors its intervals count."""
     notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
-    notes += [] if answer.spread is None else answer.spread.sources
-    head = '<tr><td></td><td></td><th scope="col">95 %</th></tr>' if any(row.interval for row in rows) else ""
-    regime = f'<div class="regime {answer.regime}" data-key="regime" data-value="{answer.regime}">{answer.regime}'
-    lines = "".join(map(_line, rows))
-    return f"{regime}<small>{MEANINGS[answer.regime]}</small></div><table>{head}{lines}</table>{notes_html(notes)}"
+    return notes_of([*notes, *([] if answer.spread is None else answer.spread.sources)])
 
 
-def _line(row: Row) -> str:
-    solver = f"error of the solver: {row.tip}" if row.tip.startswith("±") else row.tip
-    tip = f' title="{escape(solver)}"' if solver else ""
-    return (
-        f'<tr data-key="{row.key}" data-value="{row.value!r}" data-error="{row.error!r}">'
-        f'<th scope="row">{escape(row.label)}</th><td{tip}>{escape(row.text)}</td><td>{escape(row.interval)}</td></tr>'
-    )
-
-
-def verdict_html(answer: Answer) -> str:
-    """Return the verdict of the checks as HTML: what ``stribeck check`` says first, and the sentences behind it."""
-    checks = answer.checks
-    look = f'class="verdict {checks.verdict}" data-key="verdict" data-value="{checks.verdict}"'
-    if not checks.said:
-        return f"<p {look}>{escape(checks.headline)}</p>"
-    more = "".join(f"<p>{escape(each.sentence)}</p>" for each in checks.said)
-    opened = " open" if checks.verdict == "outside" else ""
-    return f"<details {look}{opened}><summary>{escape(checks.headline)}</summary>{more}</details>"
-
-
-def notes_html(notes: Iterable[str]) -> str:
-    """Return notes as HTML."""
-    found = "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
-    return found.replace("lambda ", "λ ").replace("wetted_radius", "a radius of the wetted disc")
-
-
-def comparison_html(answer: Answer) -> str:
-    """Return numbers of the pinned contacts beside those of the present one; empty where nothing is pinned."""
+def comparison(answer: Answer) -> list[list[str]]:
+    """Return numbers of the pinned contacts beside those of the present one, names first; empty where nothing is pinned."""
     if not answer.pins:
-        return ""
+        return []
     states: list[tuple[str, BaseSolution, Definition]] = [("present", answer.solution, answer.inputs.case.definition)]
     states += [(pin.name, pin.state, pin.definition) for pin in answer.pins]
     found: dict[str, list[str]] = {"": [], "Regime": [], "Friction µ": []}
@@ -167,29 +194,28 @@ def comparison_html(answer: Answer) -> str:
         said = {"": name, "Regime": regime_of_state(state, definition), "Friction µ": rows[f"friction_{definition}"].text}
         for label, text in (said | {rows[key].label: rows[key].text for key in COMPARED}).items():
             found.setdefault(label, []).append(text)
-    head, *lines = found.items()
-    cells = "".join(f'<th scope="col">{escape(name)}</th>' for name in head[1])
-    html = [f"<table><tr><td></td>{cells}</tr>"]
-    for label, texts in lines:
-        html.append(f'<tr><th scope="row">{escape(label)}</th>{"".join(f"<td>{escape(text)}</td>" for text in texts)}</tr>')
-    return "".join([*html, "</table>"])
+    return [[label, *texts] for label, texts in found.items()]
 
 
-def margins_html(margins: RegimeMargins) -> str:
-    """Return the margins to the next regimes in each input as HTML."""
-    lines = ["<table><tr><td></td>", *(f'<th scope="col">to {target}</th>' for target in margins.targets), "</tr>"]
+def margin_rows(margins: RegimeMargins) -> list[list[list[str]]]:
+    """Return the margins to the next regimes in each input as rows of cells: text, small text beside it, and the factor."""
+    rows = [[["", "", ""], *([f"to {target}", "", ""] for target in margins.targets)]]
     for margin in margins.margins:
-        lines.append(f'<tr data-key="{margin.name}"><th scope="row">{margin.name}</th>')
+        cells = [[margin.name, "", ""]]
         for target in margins.targets:
             mark = margin.crossing_into(target)
             if mark is None:
                 another = margin.less is not None or margin.more is not None  # at which the search that way ended
-                lines.append(f"<td>{'not directly' if another else 'not reachable'}</td>")
+                cells.append(["not directly" if another else "not reachable", "", ""])
                 continue
             value = _plain(format_si(mark.value, INPUT_TABLES[margins.geometry].quantities[margin.name].dimension))
-            factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
-            interval = f"<br><small>95 %: {_interval(mark)}</small>" if mark.interval_95 is not None else ""
-            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>({escape(value)})</small>{interval}</td>')
-        lines.append("</tr>")
-    exact = (f'<p class="caption">{escape(line)}</p>' for line in ways_to(margins) if "exact" in line)
-    return "".join([*lines, "</table>", *exact, notes_html(margins.notes)])
+            interval = f" 95 %: {_interval(mark)}" if mark.interval_95 is not None else ""
+            factor = _times(mark.factor) if 0 < mark.factor < math.inf else ""
+            cells.append([factor, f"({value}){interval}", repr(mark.factor)])
+        rows.append(cells)
+    return rows
+
+
+def margin_notes(margins: RegimeMargins) -> list[str]:
+    """Return what to know of margins."""
+    return notes_of([margins.counted, *margins.notes])

@@ -24,7 +24,8 @@ from stribeck.contact_laws.persson import GAMMA_INPUT
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
-from stribeck.explorer.inputs.inputs import Inputs, exact_text, fluid_table
+from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_liquid, with_text
+from stribeck.explorer.inputs.typed import liquid_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import needed_of, numbers_of
@@ -156,6 +157,13 @@ def chosen_value(choice: Choice, tables: Mapping[str, Any]) -> str:
 
 
 @functools.cache
+def typical(geometry: str) -> Inputs:
+    """Return the inputs of a contact that has the typical value of each."""
+    numbers = {key: row.typical_value for key, row in INPUT_TABLES[geometry].kept.items() if not row.optional}
+    return Inputs.of({"contact": {"geometry": geometry, **numbers}})
+
+
+@functools.cache
 def available_values(name: str, geometry: str) -> tuple[str, ...]:
     """Return what contacts of a geometry can have of a choice."""
     choice = CHOICES[name]
@@ -163,11 +171,10 @@ def available_values(name: str, geometry: str) -> tuple[str, ...]:
         return (choice.first,)
     if geometry != "point" or choice.table in ("", "contact"):
         return tuple(choice.options)
-    numbers = {key: row.typical_value for key, row in INPUT_TABLES[geometry].kept.items() if not row.optional}
-    typical, found = Inputs.of({"contact": {"geometry": geometry, **numbers}}), []
+    found = []
     for value in choice.options:
         with suppress(InputError):
-            choose(typical, name, value)
+            choose(typical(geometry), name, value)
             found.append(value)
     return tuple(found)
 
@@ -202,8 +209,7 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
     if name == "preset":
         if not value:
             return now
-        liquid = PRESETS[value]()
-        return _with(now, tables | {"fluid": fluid_table(liquid.fluid)}, viscosity=liquid.viscosity)
+        return _solvable(with_liquid(now, PRESETS[value]()))
     old = chosen_value(choice, tables)
     needed = {key: first_value(key) for key in choice.options[value].needed}
     contact = tables["contact"]
@@ -282,9 +288,19 @@ def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
     return _with(now, tables | {"surface": surface | {"shape_only": True}}, alpha=found["alpha"], beta=found["beta"])
 
 
+def typed(now: Inputs, name: str, text: str) -> Inputs:
+    """Return the inputs after ``text`` was typed into a field: a number, or words, of the viscosity a liquid too."""
+    liquid = liquid_of(text) if name == "viscosity" else None
+    return with_text(now, name, text) if liquid is None else _solvable(with_liquid(now, liquid))
+
+
 def _with(now: Inputs, tables: dict[str, Any], **numbers: float | None) -> Inputs:
     """Return the inputs with other tables and numbers, if the equations of their geometry have such a model."""
-    found = now.edited(numbers, tables)
+    return _solvable(now.edited(numbers, tables))
+
+
+def _solvable(found: Inputs) -> Inputs:
+    """Return inputs whose model the equations of their geometry have."""
     if found.table.geometry == "point":
         check_model(found.contact.groups.model)
     return found

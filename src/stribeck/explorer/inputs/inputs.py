@@ -23,11 +23,14 @@ from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, preset
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.forms import FORMS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PURE_SLIDING
+from stribeck.explorer.inputs.typed import entries_of, examples
 from stribeck.fluids.description import Fluid
+from stribeck.fluids.liquids import Liquid
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input, numbers_of
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
@@ -140,9 +143,12 @@ class Inputs:
             # Of a ball and a disc that both move a case has the mean of their speeds.
             if "speed" not in entries and rolls == ("speed" in contact):
                 entries = {**entries, "speed": float(self.contact.speed)}
+        joined = {name for form in known.forms if form.joins for name in form.names}
         for name, entry in entries.items():
-            for key in [key for key in contact if known.stands_for.get(key, key) == name]:
-                del contact[key]
+            of_same = known.stands_for.get(name, name)
+            for key in [key for key in contact if known.stands_for.get(key, key) == of_same and name not in joined]:
+                if key == name or key not in entries:
+                    del contact[key]
             if entry is None:
                 continue
             row = known.quantities[name]
@@ -227,6 +233,11 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
     return found
 
 
+def with_liquid(inputs: Inputs, liquid: Liquid) -> Inputs:
+    """Return the inputs with a liquid: its viscosity, and how that changes."""
+    return inputs.edited({"viscosity": liquid.viscosity}, inputs.tables | {"fluid": fluid_table(liquid.fluid)})
+
+
 def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
     """Refuse tables that name files, which did not come with them; ``instead`` is what to do."""
     for name, key in (*((name, source.file) for name, source in SOURCES.items()), ("profile", "x")):
@@ -259,7 +270,13 @@ def with_text(inputs: Inputs, name: str, text: str) -> Inputs:
         float(text)
         text = f"{text} {unit}"
     except ValueError:
-        pass
+        found = entries_of(inputs.table, name, text)
+        if found is not None:
+            try:
+                return inputs.edited(found)
+            except InputError as problem:
+                together = any(str(problem).partition(" ")[0] in form.names and form.names[0] in found for form in FORMS)
+                raise InputError(f"{problem}{' Type both, with a comma between them.' if together else ''}") from None
     try:
         row.checked(text)
     except InputError as problem:
@@ -303,6 +320,8 @@ def row_of(inputs: Inputs, name: str) -> dict[str, Any]:
     return {
         "name": name,
         "label": row.label[0].upper() + row.label[1:],
+        "help": help_of(name, inputs.table.geometry),
+        "note": " ".join(_conversions(inputs, name)).replace("*", "·"),
         "symbol": letter + (f"<sub>{index}</sub>" if index else ""),
         "ends": [math.log10(end) for end in row.usual],
         "text": number_text(inputs, name),
@@ -310,6 +329,23 @@ def row_of(inputs: Inputs, name: str) -> dict[str, Any]:
         "units": list(dict.fromkeys((*row.units, unit))) if unit else [],
         "place": round(position(inputs, name), 4),
     }
+
+
+@functools.cache
+def help_of(name: str, geometry: str) -> str:
+    """Return what an input is, and how else it may be typed, in the words of its row."""
+    row, table = GROUP_FIELDS.get(name) or FIELDS[geometry][name], INPUT_TABLES[geometry]
+    also = "" if name in GROUP_FIELDS else "; ".join(examples(table, name))
+    words = re.sub(r", :math:`[^`]*`| \[-\]", "", row.description)
+    return f"{words} It may also be typed as {also}." if also else words
+
+
+def _conversions(inputs: Inputs, name: str) -> list[str]:
+    """Return the sentences on what an input was converted from."""
+    table, given = inputs.table, inputs.tables["contact"]
+    said = [each for each in inputs.case.conversions if table.stands_for.get(first := each.partition(" ")[0], first) == name]
+    others = [f"{table.quantities[key].label} {given[key]}" for key in given if table.stands_for.get(key) == name]
+    return said or ([f"From {', '.join(others)}."] if others else [])
 
 
 def exact_text(value: float, dimension: str, unit: str = "") -> str:

@@ -1,0 +1,128 @@
+"""What people type: a number of a data sheet in its own words becomes the input that the package converts.
+
+The words are those of the rows: "70 Shore A", "Ra 0.4 um", "46 cSt", "1500 rpm, 30 mm", "mean 0.5 m/s". A liquid is named
+as in the table of presets, with its conditions: "ISO VG 46 at 60 degC".
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from stribeck.contacts.forms import FORMS, Form
+from stribeck.contacts.inputs import InputTable
+from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.presets import PRESETS
+from stribeck.quantities.schema import Input
+from stribeck.quantities.units import InputError, show
+
+Entries = dict[str, str | float]
+
+_PARTS = re.compile(r"\s*(?:;|,\s|\b(?:and|with|on|at)\b)\s*")
+_CONDITION = re.compile(r"(?:\b(vi)\s*)?([-+]?[0-9]+(?:\.[0-9]+)?)\s*(%|°?c(?:st)?\b|deg ?c\b|k\b)?", re.IGNORECASE)
+
+
+def forms_of(table: InputTable, name: str) -> list[Form]:
+    """Return the forms in which an input may be given in other words."""
+    return [each for each in FORMS if each in table.forms and table.stands_for.get(each.of, each.of) == name]
+
+
+def words_of(row: Input) -> tuple[str, ...]:
+    """Return what people call a number, the shortest last."""
+    return (row.label, row.name, *row.letters)
+
+
+def examples(table: InputTable, name: str) -> Iterator[str]:
+    """Yield how an input may be typed in other words."""
+    for form in forms_of(table, name):
+        if not form.joins:
+            said = (
+                each.typical if each.dimension != "number" else f"{words_of(each)[-1]} {each.typical}" for each in form.inputs
+            )
+            alone = [each for each in form.inputs if each.dimension in (table.quantities[name].dimension, "pressure")]
+            yield ", ".join([f"{words_of(alone[0])[-1]} {alone[0].typical}"] if alone else said)
+    if name == "viscosity":
+        yield "ISO VG 46 at 60 °C"
+
+
+def entries_of(table: InputTable, name: str, text: str) -> Entries | None:
+    """Return the inputs that a text in words means, or None where it is a number in units of the input itself."""
+    own, found = table.quantities[name], Entries()
+    with suppress(InputError):
+        own.checked(text)
+        return None
+    forms = forms_of(table, name)
+    rows = [own, *(each for form in forms for each in (*form.inputs, *form.second))]
+    for part in filter(None, _PARTS.split(text)):
+        named = _named(rows, part) or _by_unit(rows, part)
+        if named is None:
+            return None  # which its own row then refuses
+        found |= {named[0].name: _plain(*named)}
+    for form in forms:
+        if not form.joins and form.names[0] in found:
+            for each in form.inputs:
+                # A typical value of materials stands for one that is left out; the sentence of the conversion names it.
+                if each.name not in found and each.source and each.name != form.names[0]:
+                    found[each.name] = each.typical if each.units or each.dimension != "number" else float(each.typical)
+    return found or None
+
+
+def _named(rows: list[Input], part: str) -> tuple[Input, str] | None:
+    """Return the row whose words begin or end a text, and the rest of it; the longest words first."""
+    words = sorted(((word, row) for row in rows for word in words_of(row)), key=lambda each: -len(each[0]))
+    for word, row in words:
+        sign = re.escape(word).replace("_", "[ _]")
+        found = re.fullmatch(rf"(?:{sign}\b\s*[=:]?\s*(.+)|(.+?)\s*\b{sign})", part, re.IGNORECASE if len(word) > 1 else 0)
+        if found:
+            return row, found[1] or found[2]
+    return None
+
+
+def _by_unit(rows: list[Input], part: str) -> tuple[Input, str] | None:
+    """Return the row whose kind a unit is of."""
+    for row in rows:
+        if row.dimension != "number" and re.search(r"[^\d.eE+\- ]", part):
+            with suppress(InputError):
+                row.checked(part)
+                return row, part
+    return None
+
+
+def _plain(row: Input, text: str) -> str | float:
+    """Return the value of a row from its text, a number without a unit as such."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    if row.dimension != "number":
+        raise InputError(f"{row.name} = {show(text)} has no unit; write, for example, {row.typical}.")
+    return int(number) if number.is_integer() else number
+
+
+@functools.lru_cache(maxsize=64)
+def liquid_of(text: str) -> Liquid | None:
+    """Return the liquid that a text names with its conditions, or None where it names none."""
+    plain = text.lower().replace("-", " ").strip()
+    for name, preset in sorted(PRESETS.items(), key=lambda each: not plain.startswith(each[0].partition("-")[0])):
+        first, _, rest = name.partition("-")
+        begins = re.match(rf"{first}\b(?: {rest}\b)?|{rest or first}\b", plain)
+        if not begins:
+            continue
+        given: dict[str, Any] = {}
+        for vi, number, unit in _CONDITION.findall(plain[begins.end() :]):
+            main = next(iter(preset.conditions), "temperature")
+            if not preset.conditions:
+                continue
+            if vi:
+                given["viscosity_index"] = float(number)
+            elif unit == "%":
+                given[main] = float(number) / 100
+            elif unit in ("", "cst") and main != "temperature" and main not in given:
+                given[main] = float(number)
+            else:
+                given["temperature"] = f"{number} {'K' if unit == 'k' else 'degC'}"
+        return preset(**given)
+    return None
