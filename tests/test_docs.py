@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import importlib.util
 import pkgutil
 import re
 import shlex
@@ -120,6 +121,35 @@ def test_links_lead_somewhere(subtests):
 def anchor_of(title):
     """Return the anchor that GitHub gives a heading."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+def test_the_table_of_limits_is_that_of_the_checks():
+    """``python docs/limits.py`` writes it."""
+    spec = importlib.util.spec_from_file_location("limits", ROOT / "docs" / "limits.py")
+    limits = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(limits)
+    page = TEXT[ROOT / "docs" / "checks.md"]
+    assert limits.with_table(page) == page
+
+
+# What people type into the search of the site, and the page that answers it.
+SEARCHED = {
+    "O-ring": "data_sheet",
+    "Ra": "data_sheet",
+    "Young's modulus": "data_sheet",
+    "viscosity": "fluids",
+    "alpha": "alpha_beta",
+    "cavitation": "fluids",
+    "leakage": "leakage",
+    "no minimum": "troubleshooting",
+}
+
+
+@pytest.mark.parametrize(("words", "page"), SEARCHED.items())
+def test_a_page_is_found_by_the_words_in_its_headings(words, page):
+    """The search of the site ranks words in titles and headings first."""
+    headings = re.findall(r"^#+ (.*)$", FENCE.sub("", TEXT[ROOT / "docs" / f"{page}.md"]), re.M)
+    assert any(re.search(rf"(?<!\w){re.escape(words)}(?!\w)", heading, re.I) for heading in headings)
 
 
 def test_no_page_stands_alone():

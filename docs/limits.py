@@ -1,0 +1,149 @@
+"""Write the table of limits into docs/checks.md, from the constants by which ``stribeck.checks`` judges.
+
+``python docs/limits.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares it.
+"""
+
+import re
+from pathlib import Path
+
+from stribeck.checks import body, film, law
+from stribeck.checks.table import ROWS
+from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
+from stribeck.contacts.notes import (
+    ATMOSPHERE,
+    LAW_RANGE,
+    MAX_CONTACT_SLOPE,
+    MAX_FILM_SLOPE,
+    MAX_PRESSURE_EXPONENT,
+    OIL_COEFFICIENT,
+)
+from stribeck.quantities.formats import format_si
+
+PAGE = Path(__file__).parent / "checks.md"
+MARKED = re.compile(r"(<!-- limits -->\n\n).*?(\n<!-- end of limits -->)", re.DOTALL)
+HEAD = ("Check", "Value", "Fine up to", "Outside beyond", "Why, and what to do")
+
+
+def rows():
+    """Return by name of a check: the value, up to where it is fine, beyond what it is outside, and why."""
+    per_gpa, gel = f"{OIL_COEFFICIENT * 1e9:g} 1/GPa", format_si(body.GEL_MODULUS_PA, "pressure")
+    return {
+        "inputs": (
+            "factor beyond the usual range of an input", f"{body.USUAL_RANGE_FACTOR:g}", "never",
+            "a slip of a unit; a dry friction above 3",
+        ),
+        "Hertz pressure": (
+            r"$\alpha_p \, p_\mathrm{Hz}$", f"{body.STIFFENING_FINE:g}", f"{MAX_PRESSURE_EXPONENT:g}",
+            "[viscosity grows with pressure](when_not_to_use.md#steel-in-oil-pressure-makes-the-fluid-stiff); "
+            f"without `pressure_coefficient` that of an oil, {per_gpa}",
+        ),
+        "stiffness": (
+            "$E^*$", format_si(body.MODULUS_FINE_PA, "pressure"), format_si(body.MODULUS_OUTSIDE_PA, "pressure"),
+            "asperities of metal yield",
+        ),
+        "contact width": (
+            "$a/R$", f"{MAX_CONTACT_SLOPE:g}", f"{body.WIDTH_RATIO_OUTSIDE:g}",
+            "[a parabola on a half-space](#what-a-wide-contact-costs); a note has its cost",
+        ),
+        "shape": (
+            "steepest slope of a [profile](fluids.md#profiles) in its dry contact", f"{MAX_CONTACT_SLOPE:g}",
+            f"{body.WIDTH_RATIO_OUTSIDE:g}", 'replaces the width; doubtful also with `cavitation = "none"`',
+        ),
+        "adhesion": (
+            r"pull-off force over load: $\tfrac32 \pi w R$ (ball), $\tfrac34 (4 \pi E^* R w^2)^{1/3}$ (cylinder)",
+            f"{body.PULL_OFF_FINE:g}", f"{body.PULL_OFF_OUTSIDE:g}",
+            f"`work_of_adhesion` $w$ in the liquid; without it named below $E^*$ = {gel}",
+        ),
+        "pores": (
+            r"$U a/D$, $D = k E^*/\eta$", f"{body.PECLET_FINE:g}", f"{body.PECLET_OUTSIDE:g}",
+            "`diffusivity` $D$ or `permeability` $k$: liquid in pores carries load, as in cartilage; without them named "
+            f"below {gel}",
+        ),
+        "layer": (
+            "$a$ over `layer_thickness`", f"{body.LAYER_RATIO_FINE:g}", f"{body.LAYER_RATIO_OUTSIDE:g}",
+            "[the substrate counts](when_not_to_use.md#thin-layers-and-wide-contacts)",
+        ),
+        "loss tangent": (
+            "`loss_tangent` at $U/a$", f"{body.LOSS_TANGENT_FINE:g}", f"{body.LOSS_TANGENT_OUTSIDE:g}",
+            "[hysteresis](when_not_to_use.md#viscoelastic-solids)",
+        ),
+        "rms slope": (
+            r"$h'_\mathrm{rms}$ of the law's spectrum, or `rms_slope`", f"{law.RMS_SLOPE_FINE:g}",
+            f"{law.RMS_SLOPE_OUTSIDE:g}", "[steep asperities](#how-steep-is-too-steep)",
+        ),
+        "stroke": (
+            "`stroke`, from stop to stop, over $a$", f"from {film.STROKE_FINE:g}", f"below {film.STROKE_OUTSIDE:g}",
+            "[a stroke is not a row of steady states](when_not_to_use.md#strokes-starts-and-stops)",
+        ),
+        "viscous heating": (
+            r"viscosity lost, $\beta_T \eta (u_1 - u_2)^2/(8 k)$", f"{film.HEATING_FINE:g}", f"{film.HEATING_OUTSIDE:g}",
+            "[hot fluids](when_not_to_use.md#hot-or-thinning-fluids); `thermal_conductivity`, `thermal_thinning`",
+        ),
+        "contact law at the centre": (
+            r"gap over $h_\mathrm{rms}$", f"{LAW_RANGE[0]:g} to {LAW_RANGE[1]:g}", f"below {LAW_RANGE[0]:g}",
+            "[range of the exponential law](contact_laws.md), only where asperities matter",
+        ),
+        "suction": (
+            "suction behind the contact", format_si(ATMOSPHERE, "pressure"), "never",
+            "[cavitation](when_not_to_use.md#cavitation-behind-the-contact)",
+        ),
+        "laws of the fluid": (
+            "number of laws left by the state", "0", "never",
+            "fits of flow factors, laws of viscosity and density in suction, plateaus of power laws",
+        ),
+        "film over radius": (
+            "central gap of a ball over $R$", f"{MAX_FILM_SLOPE:g}", "never", "lubrication theory is for thin films",
+        ),
+        "edge of the liquid": (
+            "`wetted_radius` of a ball over $a$", f"from {FAR_FILM_MIN_RADIUS:g}", "never",
+            "nearer, films and load shares feel the edge",
+        ),
+        "shear rate": (
+            r"$U/h_\mathrm{min}$, or of the sliding speed if larger",
+            f"`thinning_rate`, else {film.OIL_THINNING_RATE:.0e} 1/s, or {film.WATER_THINNING_RATE:.0e} 1/s up to "
+            f"{1e3 * film.SMALL_MOLECULE_VISCOSITY:g} mPa s",
+            f"{film.THINNING_OUTSIDE_RATIO:g} times a given rate",
+            "[thinning](when_not_to_use.md#hot-or-thinning-fluids); presets of water, glycerol and PAO know theirs",
+        ),
+        "supply": (
+            "$h^*/2$ over `supply_film`", f"{film.SUPPLY_FINE:g}", f"{film.SUPPLY_OUTSIDE:g}",
+            "[starvation](when_not_to_use.md#too-little-fluid)",
+        ),
+        "film against molecules": (
+            r"$h_\mathrm{min}$ over `molecular_size` "
+            f"({1e9 * film.OIL_MOLECULE_SIZE:g} nm, up to {1e3 * film.SMALL_MOLECULE_VISCOSITY:g} mPa s "
+            f"{1e9 * film.WATER_MOLECULE_SIZE:g} nm)",
+            f"from {film.MOLECULES_FINE:g}", f"below {film.MOLECULES_OUTSIDE:g}", "a continuum",
+        ),
+        "inertia": (
+            r"$\varrho U h^{*2}/(\eta a)$", f"{film.REYNOLDS_FINE:g}", f"{film.REYNOLDS_OUTSIDE:g}",
+            "Reynolds' equation; `density`",
+        ),
+        "contact law at the minimum": (
+            r"gap over $h_\mathrm{rms}$ at the minimum of friction", f"{LAW_RANGE[1]:g}", "never",
+            "few asperities reach that high: the minimum is off [by 10 to 20 %](contact_laws.md#the-tail-decides-the-minimum)",
+        ),
+        "tail of the contact law": (
+            "largest move of minimum and transitions", f"{law.TAIL_CHANGE_FINE:.0%}".replace("%", " %"), "never",
+            "stated as their error; without a scan `beta` is known to a factor of 1.3",
+        ),
+    }  # fmt: skip
+
+
+def table():
+    """Return the table, a row for each check in their order."""
+    found = rows()
+    lines = [HEAD, ("---",) * len(HEAD), *((row.name, *found[row.name]) for row in ROWS)]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def with_table(text):
+    """Return the text of the page with the table of now."""
+    changed, count = MARKED.subn(lambda found: found[1] + table() + found[2], text)
+    if count != 1:
+        raise ValueError(f"{PAGE.name} has {count} places for the table of limits")
+    return changed
+
+
+if __name__ == "__main__":
+    PAGE.write_text(with_table(PAGE.read_text()))
