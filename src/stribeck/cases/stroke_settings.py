@@ -6,6 +6,8 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from stribeck.cases.tables import AS_GIVEN, Key, Keys, one_of, whole
 from stribeck.motions.motion import Motion
 from stribeck.quantities.registry import laws_of
@@ -36,6 +38,11 @@ class StrokeSettings:
     def arguments(self) -> dict[str, Any]:
         """What :func:`stribeck.stroke` is given."""
         return {name: value for name, value in vars(self).items() if value is not None}
+
+    @property
+    def facts(self) -> dict[str, float]:
+        """What checks know of it, in SI units: the length from end to end."""
+        return {"stroke": float(np.ptp(self.motion.position(self.motion.times(self.steps or 400))))}
 
 
 def stroke_settings(table: dict[str, Any]) -> StrokeSettings:

@@ -186,6 +186,8 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
     Facts that only checks use go into the table [check] of the case: pressure_coefficient, layer_thickness, loss_tangent,
     supply_film, stroke, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
 
+    A table [stroke] gives the stroke, unless [check] does.
+
     The exit code is 0 whatever the verdict.
     """
     from stribeck.checks.subject import Subject
@@ -193,7 +195,8 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
 
     loaded = sb.load_case(case)
     with interruptible() as progress:
-        found = checks_of(Subject(loaded.contact, loaded.facts, loaded.definition, on_point=progress))
+        facts = (loaded.stroke.facts if loaded.stroke else {}) | loaded.facts
+        found = checks_of(Subject(loaded.contact, facts, loaded.definition, on_point=progress))
     from stribeck.cli.reports.text import conversion_lines
 
     headline, *lines = str(found).splitlines()

@@ -42,7 +42,7 @@ def stroke_command(
 
     The motion is in the table [stroke] of the case: motion = "sine", "ramp", "stop" or "table", with its numbers.
 
-    Strokes are solved of full films: --cavitation none takes a film that ends, in the case, as a full one.
+    --cavitation exit ends the film where it would suck, --cavitation none takes it as full; without it the case says which.
 
     Ctrl-C ends the work; nothing is written then.
     """

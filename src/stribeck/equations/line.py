@@ -44,7 +44,7 @@ from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import Volterra
 from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.numerics.trace import Matrix, Term, Trace, act, mapped, matrix_of, pointwise
+from stribeck.numerics.trace import Matrix, Operator, Term, Trace, act, mapped, matrix_of, pointwise
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["LOAD", "Coupled", "Eliminated", "Equations", "Operators"]
@@ -192,10 +192,14 @@ class Equations:
         """Return the speed group, traced by its logarithm where asked for."""
         return Trace.number("speed", np.atleast_1d(self.speed), self.speed) if by == "speed" else self.speed
 
+    def integral_to_end(self, u: Fields, g: Any) -> tuple[Operator, Operator]:
+        """Return the operators from the gradient to the pressure, and to its whole integral, over the film."""
+        return self.operators.integral, self.operators.net
+
     def fluid_of_gradient(self, u: Fields, g: Any, by: str | None = None) -> Any:
         """Return the pressure of the fluid that follows from its gradient."""
         op, d = self.operators, u.cavity_stretch
-        fluid = act(op.integral, self.speed_of(by) * g)
+        fluid = act(self.integral_to_end(u, g)[0], self.speed_of(by) * g)
         return fluid if d is None else d * fluid + op.in_cavity * op.model.cavity_pressure
 
     def balances_of(self, u: Fields, fluid: Any, g: Any, by: str | None = None) -> Fields:
@@ -212,7 +216,7 @@ class Equations:
         shape = u.gap - u.offset - (op.parabola if d is None else 0.5 * x * x) - op.deflected(pressure, d)
         shape = shape - op.model.profile.departure(op.mesh, u.exit)
         load = act(op.load, pressure)
-        flux, exit, stretch = act(op.net, g), None, None
+        flux, exit, stretch = act(self.integral_to_end(u, g)[1], g), None, None
         if u.exit is not None:
             shape = shape - u.exit * (x + 0.5 * u.exit)
             exit = scale * act(op.exit_value, at_end)

@@ -1,13 +1,15 @@
-r"""A film in time: the steady equations, whose flux changes along the contact by what the gap swallows.
+r"""A film in time: the steady equations, whose flux changes along the contact by what the film swallows.
 
-With time in 2a/U_0 and s the speed over U_0, of a full Newtonian film,
+With time in 2a/U_0 and s the speed over U_0, the film is that between walls at the share s of their speeds, and
 
 .. math::
 
-    p_f' = \lambda \frac{s h - m}{h^3}, \qquad m(x) = m_0 - \int_0^x \partial_t h \, dx
+    p_f' = \lambda \, G_s(h, p_f, m), \qquad m(x) = m_0 - \int_0^x \partial_t (\rho h) \, dx
 
 All else is the residual of :mod:`stribeck.equations.line`, m_0 in the place of the flux gap.  At the end of a step the rate of
-the gap is ``rate * h - before``, with what the formula of the step takes from earlier states in ``before``.
+:math:`\rho h` is ``rate * held - before``, with what the formula of the step takes from earlier states in ``before``.
+
+A film that ``ends`` lies between the edges of :mod:`stribeck.equations.free_edge`.
 """
 
 from __future__ import annotations
@@ -18,11 +20,13 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.line import Equations, Fields
+from stribeck.equations.free_edge import FilmBetween, film_between
+from stribeck.equations.line import Coupled, Equations, Fields
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.numerics.trace import Matrix, act, pointwise
+from stribeck.numerics.trace import Matrix, Operator, act, value_of
+from stribeck.quantities.lazy import cached_property
 
 __all__ = ["Unsteady", "swallowed"]
 
@@ -32,29 +36,38 @@ class Unsteady(Equations):
     """The discretised problem at the end of one step in time."""
 
     share: float = 1.0  # Speed over U_0, with its sign
-    rate: float = 0.0  # Factor of the gap in its rate
+    rate: float = 0.0  # Factor of the mass in its rate
     before: Array | float = 0.0  # What earlier states leave of it
     volume: Matrix | None = None  # That of swallowed
+    ends: bool = False  # Whether the film ends where its pressure would fall below the ambient one
+
+    @cached_property
+    def film(self) -> Film:
+        """The film between walls at this share of their speeds."""
+        return Equations(self.operators, self.speed, self.law).film.moving(self.share)
 
     def carried(self, u: Fields) -> Any:
         """Return m at the nodes."""
         if self.volume is None or self.rate == 0.0:
             return u.flux_gap
-        return u.flux_gap - act(self.volume, self.rate * u.gap - self.before)
+        return u.flux_gap - act(self.volume, self.rate * self.film.held(u.gap, u.pressure) - self.before)
 
     def gradient(self, film: Film, u: Fields, by: str | None = None) -> Any:
-        """Return the gradient of the pressure over the speed group at the nodes."""
-        s = self.share
+        """Return the gradient of the pressure over the speed group at the nodes, as if the film went on for ever."""
+        return super().gradient(film, u._replace(flux_gap=self.carried(u)), by)
 
-        def over(h: Array, m: Array) -> tuple[Array, Array, Array]:
-            cube = h**-3
-            return (s * h - m) * cube, (3 * m / h - 2 * s) * cube, -cube
+    def between(self, u: Fields, g: Any) -> FilmBetween | None:
+        """Return the film between its edges; None of one that goes on for ever."""
+        return film_between(self.operators.integral, value_of(u.gap), value_of(g)) if self.ends else None
 
-        return pointwise(over, u.gap, self.carried(u))
+    def integral_to_end(self, u: Fields, g: Any) -> tuple[Operator, Operator]:
+        """Return the operators from the gradient to the pressure, and to its whole integral, over the film."""
+        film = self.between(u, g)
+        return super().integral_to_end(u, g) if film is None else (film, film.net)
 
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in units of the unknowns, by LU factors."""
-        return LU.of(self.jacobian(y, self.units(y)), overwrite=True)
+        return Coupled(self, y) if self.film.uses_pressure else LU.of(self.jacobian(y, self.units(y)), overwrite=True)
 
 
 def swallowed(mesh: Mesh) -> Matrix:

@@ -57,6 +57,12 @@ class Film(Protocol):
     def at(self, speed: Any) -> Self:
         """Return the film at a speed group, or a column of them: what all below are asked of."""
 
+    def moving(self, share: float) -> Self:
+        """Return the film between walls at a share of their speeds, of either sign; that of the whole is the film itself."""
+
+    def held(self, gap: Any, pressure: Any) -> Any:
+        """Return the mass across the film: what it gains in time, the flux loses."""
+
     def gradient(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return G, the pressure gradient over lambda [u_Hz**-2]."""
 

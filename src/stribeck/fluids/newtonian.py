@@ -10,7 +10,7 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -23,11 +23,6 @@ from stribeck.numerics.dual import with_slope
 from stribeck.numerics.trace import mapped, pointwise, value_of
 
 ONE = np.ones(())
-
-
-def gradient(gap: Any, flux_gap: Any) -> Any:
-    """Return ``(h - h*)/h**3``: the pressure gradient over lambda [u_Hz**-2]."""
-    return (gap - flux_gap) / (gap * gap * gap)
 
 
 class _Factors(NamedTuple):
@@ -52,6 +47,7 @@ class Newtonian:
     density: DensityLaw = Incompressible()  # Density as a function of pressure
     flow: FlowFactors = Smooth()  # Of rough surfaces
     slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
+    entrained: float = 1.0  # Sum of the speeds over U, see :meth:`moving`
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     is_smooth: bool = field(init=False, repr=False, compare=False)
     is_plain: bool = field(init=False, repr=False, compare=False)
@@ -80,12 +76,21 @@ class Newtonian:
         """Return the film itself: no speed matters."""
         return self
 
+    def moving(self, share: float) -> Self:
+        """Return the film between walls at a share of their speeds."""
+        return replace(self, slide=share * self.slide, entrained=share * self.entrained)
+
+    def held(self, gap: Any, pressure: Any) -> Any:
+        """Return the gap times the density ratio."""
+        return gap * self._of_pressure(pressure)[1] if self.uses_pressure else gap
+
     def gradient(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return G."""
+        carried_along = gap if self.entrained == 1.0 else self.entrained * gap
         if self.is_plain:
-            return gradient(gap, flux_gap)
+            return (carried_along - flux_gap) / (gap * gap * gap)
         eta, rho = self._of_pressure(pressure)
-        thick, resistance = gap - flux_gap / rho, eta / (gap * gap * gap)
+        thick, resistance = carried_along - flux_gap / rho, eta / (gap * gap * gap)
         if self.is_smooth:
             return resistance * thick
         phi, carried = self.roughness(gap)
@@ -117,7 +122,7 @@ class Newtonian:
         r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""
         # Shear flow factors can carry more than the gap holds.
         eta, rho = self._of_pressure(pressure)
-        return self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * gap))
+        return self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * self.entrained * gap))
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return where the state leaves the range of the laws."""

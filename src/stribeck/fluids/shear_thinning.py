@@ -55,6 +55,7 @@ class ShearThinning:
     viscosity: ViscosityLaw = Constant()  # Viscosity at low rates as a function of pressure
     density: DensityLaw = Incompressible()  # Density as a function of pressure
     slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
+    entrained: float = 1.0  # Sum of the speeds over U, see :meth:`moving`
     speed: Any = field(default=1.0, compare=False)  # Speed group at which the film is looked at, see :meth:`at`
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     _known: dict[int, _Flow] = field(init=False, repr=False, compare=False)
@@ -82,10 +83,20 @@ class ShearThinning:
         object.__setattr__(found, "_known", self._known)
         return found
 
+    def moving(self, share: float) -> Self:
+        """Return the film between walls at a share of their speeds."""
+        found = replace(self, slide=share * self.slide, entrained=share * self.entrained)
+        object.__setattr__(found, "_known", self._known)
+        return found
+
+    def held(self, gap: Any, pressure: Any) -> Any:
+        """Return the gap times the density ratio."""
+        return gap * of_pressure(self.viscosity, self.density, pressure)[1] if self.uses_pressure else gap
+
     @property
     def at_low_rates(self) -> Newtonian:
         """The film without shear thinning: its G vanishes at the same gap."""
-        return Newtonian(self.viscosity, self.density, slide=self.slide)
+        return Newtonian(self.viscosity, self.density, slide=self.slide, entrained=self.entrained)
 
     def decay(self, speed: float) -> Decay:
         """Return how the pressure falls off far away: there the rate is about 1/h, and h about x**2/2."""
@@ -108,7 +119,7 @@ class ShearThinning:
 
         # Above zero, where the viscosity of some laws has no slope.
         size = np.maximum(wi * abs(self.slide) / gap, MIN_WEISSENBERG)
-        wet = np.minimum(1.0, flux_gap / (rho * gap))
+        wet = np.minimum(1.0, flux_gap / (rho * self.entrained * gap))
         return math.copysign(1.0, self.slide) * eta / wi * mapped(self.law.stress, size) * wet
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Any) -> tuple[str, ...]:
@@ -137,7 +148,8 @@ class ShearThinning:
         """Return the viscosity, and over it the mean of the stress across the film and its change from wall to wall."""
         eta, rho, wi = self._of_pressure(gap, pressure)
         r_0 = -(wi * self.slide / gap)
-        r_1 = 0.5 * wi * (gap - flux_gap / rho) / (gap * gap)
+        carried_along = gap if self.entrained == 1.0 else self.entrained * gap
+        r_1 = 0.5 * wi * (carried_along - flux_gap / rho) / (gap * gap)
         at_rest = (value_of(r_0) == 0) & (value_of(r_1) == 0)
         if at_rest.any():
             r_1 = r_1 + np.where(at_rest, MIN_WEISSENBERG * value_of(wi) / value_of(gap), 0.0)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["Motion", "checked_motion"]
+__all__ = ["Motion", "checked_motion", "dense_where_slow"]
 
 
 class Motion(Protocol):
@@ -34,6 +35,16 @@ class Motion(Protocol):
         """Return ``steps`` + 1 instants from zero to the duration, dense where the speed turns [s]."""
 
 
+def dense_where_slow(motion: Motion, steps: int, corners: Sequence[float] = ()) -> Array:
+    """Return instants of a motion, denser as its speed falls, for the films change with the speed over itself."""
+    fine = np.union1d(np.linspace(0.0, motion.duration, steps * MAX_REFINEMENTS + 1), corners)
+    speed = np.abs(motion.speed(0.5 * (fine[1:] + fine[:-1])))
+    count = np.append(0.0, np.cumsum(np.diff(fine) / np.sqrt(NEGLIGIBLE + speed / (speed.max() or 1.0))))
+    found = np.interp(np.linspace(0.0, count[-1], steps + 1), count, fine)
+    found[-1] = motion.duration
+    return np.asarray(found)
+
+
 def checked_motion(motion: Any) -> Motion:
     """Return a motion whose members agree with each other, or refuse it by the member that does not."""
     members = ("duration", "repeats", "speed", "position", "times")
@@ -53,7 +64,7 @@ def checked_motion(motion: Any) -> Motion:
         raise InputError(f"motion = {show(motion)} is at rest all the time: it must move.")
     moved = np.diff(path) / np.diff(times)
     bounds = np.sort([speed[:-1], speed[1:], _values("speed", found.speed, 0.5 * (times[1:] + times[:-1]), 64)], axis=0)
-    if np.any(moved > bounds[-1] + 0.1 * largest) or np.any(moved < bounds[0] - 0.1 * largest):
+    if np.any(moved > bounds[-1] + NEGLIGIBLE * largest) or np.any(moved < bounds[0] - NEGLIGIBLE * largest):
         raise InputError(f"motion = {show(motion)}: its speed is not the rate of its position; mend one of the two.")
     return found
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.motions.motion import Motion
+from stribeck.motions.motion import Motion, dense_where_slow
 from stribeck.quantities.schema import Input
 
 __all__ = ["Ramp"]
@@ -44,6 +44,4 @@ class Ramp(Motion):
 
     def times(self, steps: int) -> Array:
         """Return instants that are denser where the speed is small [s]."""
-        part = np.linspace(0.0, 1.0, steps + 1)
-        found = part * (1 + part) / 2 if self.start < self.end else 1 - (1 - part) * (2 - part) / 2
-        return np.asarray(found * self.duration)
+        return dense_where_slow(self, steps)

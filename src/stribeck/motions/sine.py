@@ -9,12 +9,10 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.motions.motion import Motion
+from stribeck.motions.motion import Motion, dense_where_slow
 from stribeck.quantities.schema import Input
 
 __all__ = ["Sine"]
-
-DENSER = 0.35  # How much denser than even the instants are at the reversals
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,4 @@ class Sine(Motion):
 
     def times(self, steps: int) -> Array:
         """Return instants that are denser at the reversals [s]."""
-        phase = np.linspace(0.0, 2 * math.pi, steps + 1)
-        found = (phase + 0.5 * DENSER * np.sin(2 * phase)) / (2 * math.pi * self.frequency)
-        found[-1] = self.duration
-        return np.asarray(found)
+        return dense_where_slow(self, steps)

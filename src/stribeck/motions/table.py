@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.motions.motion import Motion
+from stribeck.motions.motion import Motion, dense_where_slow
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Table"]
@@ -69,9 +69,4 @@ class Table(Motion):
 
     def times(self, steps: int) -> Array:
         """Return instants that are denser where the speed is small [s]."""
-        fine = np.union1d(np.linspace(0.0, self.duration, 8 * steps + 1), self.time)
-        speed = np.abs(self.speed(0.5 * (fine[1:] + fine[:-1]))) / (np.abs(self.velocity).max() or 1.0)
-        count = np.append(0.0, np.cumsum(np.diff(fine) / np.sqrt(0.1 + speed)))
-        found = np.interp(np.linspace(0.0, count[-1], steps + 1), count, fine)
-        found[-1] = self.duration
-        return np.asarray(found)
+        return dense_where_slow(self, steps, self.time)

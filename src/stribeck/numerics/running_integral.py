@@ -83,7 +83,7 @@ class RunningIntegral:
         return np.concatenate([inner, tail[None]])
 
     @cached_property
-    def _tail_weights(self) -> tuple[Array, Array]:
+    def tail_weights(self) -> tuple[Array, Array]:
         """Weights on the last panel of the integrals over ``x < -X`` and over ``x > X``."""
         mesh = self.mesh
         left = mesh.half_widths[-1] * reference(mesh.order).left_half * mesh.stretch[-mesh.order :]
@@ -97,7 +97,7 @@ class RunningIntegral:
         found = np.zeros(self.mesh.size)
         upstream = slice(0, self.middle * self.mesh.order)
         found[upstream] = self.mesh.weights[upstream]
-        found[-self.mesh.order :] = self._tail_weights[0]
+        found[-self.mesh.order :] = self.tail_weights[0]
         return found
 
     @cached_property
@@ -106,7 +106,7 @@ class RunningIntegral:
         found = np.zeros(self.mesh.size)
         beyond = slice(self.second * self.mesh.order, -self.mesh.order)
         found[beyond] = self.mesh.weights[beyond]
-        found[-self.mesh.order :] = self._tail_weights[1]
+        found[-self.mesh.order :] = self.tail_weights[1]
         return found
 
     @cached_property
@@ -116,9 +116,9 @@ class RunningIntegral:
         each = self.mesh.weights.reshape(panels, order)
         for k, row in enumerate(found[:-1].reshape(panels - 1, panels, order)):
             if k < self.middle:
-                row[:k], row[-1] = each[:k], self._tail_weights[0]
+                row[:k], row[-1] = each[:k], self.tail_weights[0]
             elif k >= self.second:
-                row[k + 1 : -1], row[-1] = -each[k + 1 : -1], -self._tail_weights[1]
+                row[k + 1 : -1], row[-1] = -each[k + 1 : -1], -self.tail_weights[1]
         return found
 
     def __call__(self, values: Array) -> Array:
@@ -175,7 +175,7 @@ class Volterra:
     def _chains(self) -> list[tuple[Indices, Array, float, Array]]:
         """Each side of infinity: its panels towards zero, weights and sign of the last panel, and the matrix of sums."""
         integral = self.integral
-        left, right = integral._tail_weights
+        left, right = integral.tail_weights
         chains = [(np.arange(integral.middle), left, 1.0)]
         if not integral.one_sided:
             chains.append((np.arange(integral.mesh.panels - 2, integral.second - 1, -1), right, -1.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck.plot import style
-from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, new_figure, readable_unit, with_unit
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, add_legend, new_figure, readable_unit, with_unit
 from stribeck.strokes.result import Stroke
 
 
@@ -32,12 +32,11 @@ def plot_stroke(stroke: Stroke, *, ax: Axes | None = None, title: str = "", note
     loop.plot(x * factor, np.asarray(data["friction_fluid"])[last], color=FLUID, lw=1.0, label="by the fluid")
     loop.axhline(0.0, color=GREY, lw=0.6, zorder=0)
     loop.set(xlabel=with_unit("position", unit), ylabel="friction coefficient")
-    loop.legend(frameon=False, fontsize=8)
     if others:
         time, film = np.asarray(data["time"])[last], np.asarray(data["central_gap"])[last]
         factor, unit = readable_unit("length", float(film.max()))
         others[0].plot(time, film * factor, color=FLUID, lw=1.4, label="film at the centre")
         others[0].plot(time, np.asarray(data["minimum_gap"])[last] * factor, color=MARK, lw=1.2, label="thinnest film")
         others[0].set(xlabel="time (s)", ylabel=with_unit("film", unit))
-        others[0].legend(frameon=False, fontsize=8)
+    add_legend(figure, [loop, *others], columns=5, inside=ax)
     return figure

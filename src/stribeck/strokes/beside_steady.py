@@ -9,13 +9,12 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.settings import COARSE_RTOL, NEGLIGIBLE
 from stribeck.strokes.result import Stroke
 
 __all__ = ["BesideSteady", "beside_steady"]
 
-SLOWEST = 1e-2  # Speed over the largest from which on steady friction is solved
-RTOL = 1e-4  # Tolerance of steady states, finer than that of a stroke
-POINTS = 3  # Points of a curve that is read between them
+SLOWEST = NEGLIGIBLE**2  # Speed over the largest from which on steady friction is solved
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,11 @@ def beside_steady(stroke: Stroke, on_point: Callable[[int, int], None] | None = 
     top = int(np.argmax(speed))
     largest = float(speed[top])
     curve = stribeck_curve(
-        stroke.contact, speed=(0.99 * SLOWEST * largest, 1.01 * largest), points=POINTS, rtol=RTOL, on_point=on_point
+        stroke.contact,
+        speed=(0.99 * SLOWEST * largest, 1.01 * largest),
+        points=2,
+        rtol=NEGLIGIBLE * COARSE_RTOL,
+        on_point=on_point,
     )
     steady = curve.at(np.clip(speed, SLOWEST * largest, largest)).friction
     total, error = np.asarray(steady), np.asarray(steady.error)

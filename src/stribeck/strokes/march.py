@@ -16,21 +16,18 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.drag import friction_scale
+from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import central_gap, minimum_gaps
 from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators
-from stribeck.equations.state import State
+from stribeck.equations.state import State, unknowns_of
 from stribeck.equations.unsteady import Unsteady, swallowed
-from stribeck.numerics.newton import Inverse, StepControl, root_find
-from stribeck.numerics.settings import MAX_STEPS, SHARE
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
+from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_REFINEMENTS, MAX_STEPS, NEGLIGIBLE, SHARE, STEP_GROWTH
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
 
 __all__ = ["March", "StepLost"]
-
-MAX_HALVINGS = 8  # Times that a step which fails is halved
-SLOWEST_GROWTH = 0.5  # Least ratio of gaps in the guess of a step
-STEP_RTOL = 1e-7  # Error that Newton's iteration may leave
 
 
 class StepLost(Exception):  # noqa: N818
@@ -41,14 +38,21 @@ class StepLost(Exception):  # noqa: N818
 
 
 class Past(NamedTuple):
-    """A state on the way, and the one before it."""
+    """A state on the way, the equations that it fulfils, and what a step from it takes of the state before."""
 
     time: float
     y: Array
+    equations: Unsteady
     inverse: Inverse | None
     step: float = 0.0  # The step that led here; zero for none
     y_before: Array | None = None
-    equations: Unsteady | None = None  # Those that it fulfils
+    held_before: Array | None = None
+
+    @property
+    def held(self) -> Array:
+        """The mass across the film at the nodes."""
+        u = self.equations.fields(self.y)
+        return np.asarray(self.equations.film.held(u.gap, u.pressure))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,32 +63,47 @@ class March:
     law: ContactLaw
     speed: float  # Speed group of U_0
     load: float  # Load group
+    ends: bool  # Whether the film ends where its pressure would fall below the ambient one
 
     @cached_property
     def volume(self) -> Matrix:
-        """The integral of the rate of the gap."""
+        """The integral of the rate of the mass."""
         return swallowed(self.operators.mesh)
 
-    def over(self, start: State, times: Array, share: Callable[[float], float], on_step: Callable[[int], None]) -> Array:
-        """Return a row of :meth:`numbers` for each instant, that of the start first."""
-        past = Past(float(times[0]), start.y, start.root.inverse)
-        rows = [self.numbers(self.at(past, float(share(past.time))), past.y)]
+    def over(self, guess: State, times: Array, share: Callable[[float], float], on_step: Callable[[int], None]) -> Array:
+        """Return a row of :meth:`numbers` for each instant, the first one of the steady state near a guess."""
+        past = self._start(guess, float(times[0]), float(share(times[0])))
+        rows = [self.numbers(past)]
         for k, time in enumerate(times[1:]):
-            past = self._reach(past, float(time), share, MAX_HALVINGS)
-            assert past.equations is not None
-            rows.append(self.numbers(past.equations, past.y))
+            past = self._reach(past, float(time), share, MAX_REFINEMENTS)
+            rows.append(self.numbers(past))
             on_step(k + 1)
         return np.array(rows)
 
-    def at(self, past: Past, share: float, rate: float = 0.0, before: Array | float = 0.0) -> Unsteady:
-        """Return the equations at an instant."""
-        scale = float(past.y[self.blocks.layout.gap].min()) ** 2
-        return Unsteady(self.operators, self.speed, self.law, scale, share, rate, before, self.volume)
+    def equations(self, share: float, scale: float = 1.0, rate: float = 0.0, before: Array | float = 0.0) -> Unsteady:
+        """Return the equations at an instant; the rows of the gradient have the factor ``scale``."""
+        return Unsteady(self.operators, self.speed, self.law, scale, share, rate, before, self.volume, self.ends)
 
-    @cached_property
-    def blocks(self) -> Unsteady:
-        """Equations that know the layout of the unknowns."""
-        return Unsteady(self.operators, self.speed, self.law)
+    def _start(self, guess: State, time: float, share: float) -> Past:
+        """Return the steady state at a share of the speed, by Newton's iteration from a state on another mesh."""
+        equations = self.equations(share, guess.flux_gap**2)
+        y, at = unknowns_of(equations, guess), equations.layout
+        x = self.operators.mesh.nodes - guess.exit
+        logs, pressure = guess.fields(x)
+        y[at.gap], y[at.flux_gap] = np.exp(logs), share * guess.flux_gap
+        if at.pressure.start < at.pressure.stop:
+            y[at.pressure] = np.where(share * x < 0, pressure, 0.0) if self.ends else pressure
+        root = root_find(equations, y, self._control(equations))
+        if not self._arrived(root):
+            raise StepLost(time)
+        return Past(time, root.x, equations, root.inverse)
+
+    def _control(self, equations: Unsteady) -> StepControl:
+        return StepControl(HALF_DIGITS, MAX_STEPS, SHARE, monotone=is_thinning(equations.film))
+
+    def _arrived(self, root: Root) -> bool:
+        """Return whether an iteration left an error that does not count."""
+        return root.outcome.ok or root.last_step < NEGLIGIBLE * COARSE_STEP
 
     def _reach(self, past: Past, time: float, share: Callable[[float], float], halvings: int) -> Past:
         """Return the state at an instant; a step that fails is halved."""
@@ -97,29 +116,36 @@ class March:
         return self._reach(middle, time, share, halvings - 1)
 
     def _step(self, past: Past, time: float, share: Callable[[float], float]) -> Past | None:
-        step, at = time - past.time, self.blocks.layout.gap
-        gap, start = past.y[at], past.y
-        if past.y_before is None:
-            rate, before = 1 / step, gap / step
+        step, at = time - past.time, past.equations.layout.gap
+        gap, held, start = past.y[at], past.held, past.y
+        if past.y_before is None or past.held_before is None:
+            rate, before = 1 / step, held / step
         else:
             r = step / past.step
             rate = (1 + 2 * r) / (1 + r) / step
-            before = ((1 + r) * gap - r * r / (1 + r) * past.y_before[at]) / step
+            before = ((1 + r) * held - r * r / (1 + r) * past.held_before) / step
             start = past.y + r * (past.y - past.y_before)
-            start[at] = gap * np.clip(gap / past.y_before[at], SLOWEST_GROWTH, 1 / SLOWEST_GROWTH) ** r
-        equations = self.at(past, float(share(time)), rate, before)
+            start[at] = gap * np.clip(gap / past.y_before[at], 1 / STEP_GROWTH, STEP_GROWTH) ** r
+        equations = self.equations(float(share(time)), float(gap.min()) ** 2, rate, before)
         # A step with a kept inverse is many times cheaper than a new inverse.
-        root = root_find(equations, start, StepControl(STEP_RTOL, MAX_STEPS, SHARE), past.inverse)
-        if not (root.outcome.ok or root.last_step < STEP_RTOL):
-            return None
-        return Past(time, root.x, root.inverse, step, past.y, equations)
+        root = root_find(equations, start, self._control(equations), past.inverse)
+        return Past(time, root.x, equations, root.inverse, step, past.y, held) if self._arrived(root) else None
 
-    def numbers(self, equations: Unsteady, y: Array) -> Array:
+    def numbers(self, past: Past) -> Array:
         """Return the share of asperities, the viscous friction for beta = 1, central and minimum gap."""
-        # The traction of the film on the moving surface is eta U/h + h p'/2.
-        u, mesh = equations.fields(y), self.operators.mesh
+        equations, mesh = past.equations, self.operators.mesh
+        u = equations.fields(past.y)
+        g = equations.gradient(equations.film, u)
+        between, share = equations.between(u, g), equations.share
+        sheared = equations.film.tractions(u.gap, u.pressure, equations.carried(u))[0]
+        if between is not None and share:
+            # Behind an edge the liquid that has passed it goes on with the speed of the walls, half of it.
+            for edge, outside in zip(
+                between.edges, (mesh.nodes < between.edges[0], mesh.nodes > between.edges[1]), strict=True
+            ):
+                passed = share * mesh.interpolate(u.gap, np.array([edge]))
+                sheared = np.where(outside, equations.film.cavity_traction(u.gap, u.pressure, passed), sheared)
         asperities = mesh.weights @ equations.contact(u.gap) / LOAD
-        sheared = equations.share / u.gap + 3 * u.gap * equations.gradient(equations.film, u)
         viscous = friction_scale(self.load, self.speed) * (mesh.weights @ sheared)
         lowest = minimum_gaps(mesh, np.log(u.gap[None, : -mesh.order]))[1][0]
         return np.array([asperities, viscous, central_gap(mesh, u.gap), lowest])

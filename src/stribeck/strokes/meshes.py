@@ -2,38 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh
 
 __all__ = ["shared_mesh"]
 
-RATIO = 0.5  # A panel is at most so much longer than the next one wants
-SLIVER = 0.3  # Part of a panel below which what is left is joined to it
 
-
-def shared_mesh(meshes: Sequence[Mesh], places: Array, order: int) -> Mesh:
-    """Return a mesh that is as fine as each of several and their mirror images, with places of both sides as edges."""
-    reach = max(float(mesh.edges[-1]) for mesh in meshes)
-    sides = [np.sort(sign * mesh.edges) for mesh in meshes for sign in (1.0, -1.0)]
-
-    def width(x: float) -> float:
-        rows = [(edges, int(np.searchsorted(edges, x, side="right"))) for edges in sides]
-        return min(float(edges[k] - edges[k - 1]) for edges, k in rows if 0 < k < len(edges))
-
-    inside = np.unique(np.abs(places))
-    fixed = [0.0, *(float(x) for x in inside if 0 < x < reach), reach]
+def shared_mesh(states: Sequence[State], order: int) -> Mesh:
+    """Return a mesh that is as fine as those of several states and their mirror images, which shares its places with them."""
+    known = [state.mesh.edges + state.exit for state in states]
+    reach = max(float(edges[-1]) for edges in known)
+    sides = [np.sort(sign * edges) for edges in known for sign in (1.0, -1.0)]
+    ends = np.unique([x for edges in sides for x in edges if 0 < x < reach])
+    ends = np.concatenate([[0.0], ends, [reach]])
+    # Panels for a length, between one edge and the next: as many as the finest mesh has there.
+    middles = 0.5 * (ends[1:] + ends[:-1])
+    finest = np.full(middles.size, math.inf)
+    for edges in sides:
+        row = np.searchsorted(edges, middles)
+        inside = (row > 0) & (row < len(edges))
+        finest[inside] = np.fmin(finest[inside], np.diff(edges)[row[inside] - 1])
+    count = np.append(0.0, np.cumsum(np.diff(ends) / finest))
+    model = states[0].groups.model
+    places = np.unique(np.abs(model.profile.places))
     found = [0.0]
-    for end in fixed[1:]:
-        x = found[-1]
-        small = 1e-9 * reach
-        while x < end:
-            step = width(x + small)
-            step = min(step, max(width(min(x + step, reach) - small), RATIO * step))
-            x = end if end - x - step < SLIVER * step else x + step
-            found.append(x)
+    for start, end in pairwise(np.interp([0.0, *places[(places > 0) & (places < reach)], reach], ends, count)):
+        found.extend(np.interp(np.linspace(start, end, math.ceil(end - start) + 1)[1:], count, ends))
     positive = np.array(found)
-    return Mesh(np.append(-positive[:0:-1], positive), order, meshes[0].scale)
+    return Mesh(np.append(-positive[:0:-1], positive), order, states[0].mesh.scale)

@@ -13,11 +13,10 @@ from stribeck.contacts.geometries import LineContact
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.operators import Operators
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.newtonian import Newtonian
 from stribeck.motions.motion import Motion, checked_motion
-from stribeck.numerics.settings import COARSE_ORDER, COARSE_STEP, SAFETY
+from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
@@ -30,11 +29,7 @@ from stribeck.strokes.result import Stroke
 
 __all__ = ["stroke"]
 
-SLOWEST, SPEEDS = 1e-2, 3  # Lowest speed over the largest whose film the mesh resolves, and how many from there on
-MESH_RTOL = 1e-4  # Tolerance of the states whose meshes are taken
-FEWER = 2  # Nodes of a panel that the coarse march has less
-NEARBY = 2  # Instants of the coarse march before and after one whose differences count as its error
-MIN_STEPS, MAX_STEPS = 16, 100_000  # Steps of a cycle
+MIN_STEPS, MAX_STEPS = 16, 100_000  # Steps of a cycle that may be asked for
 
 
 @one_blas_thread
@@ -53,7 +48,8 @@ def stroke(
 
     .. math:: \partial_x \left(\tfrac12 U h - \frac{h^3}{12 \eta} p_f'\right) + \partial_t h = 0
 
-    and all else is as in steady sliding, :func:`stribeck.solve`.
+    and all else is as in steady sliding, :func:`stribeck.solve`: any fluid, with its own law of flow; a film that ends
+    (``cavitation="exit"``) does so where its pressure would fall below the ambient one, on the side that trails.
 
     Parameters
     ----------
@@ -80,16 +76,16 @@ def stroke(
     Raises
     ------
     InputError
-        If an argument is outside its range, or the model has what is not solved in time: a film that ends, a ball, fluids that
-        thin or stiffen, bodies that remember.
+        If an argument is outside its range, or the model has what is not solved in time: a film that re-forms, a ball, bodies
+        that remember, smooth surfaces.
     SolveError
         If a step or the first state fails.
 
     Notes
     -----
-    The film is full.  Errors are those of time steps and mesh: twice the largest difference nearby from a march with half of
-    the steps and fewer nodes; they cover the difference from one with four times the steps at 95 % of instants
-    (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse of its length.
+    The inlet is always flooded, after a reversal too.  Errors are those of time steps and mesh: twice the largest difference
+    nearby from a march with half of the steps and fewer nodes; they cover the difference from one with four times the
+    steps at 95 % of instants (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse of its length.
 
     Source: theory.md, Eqs. (1)-(5), with the squeeze term of Reynolds' equation; strokes.md.
 
@@ -134,14 +130,14 @@ def stroke(
         return float(motion.speed(np.array([min(max(inside, 0.0), motion.duration)]))[0]) / largest
 
     total = len(time) - 1 + (len(time) - 1) // 2
-    meshes = _states(groups, first / largest)
+    states = _states(groups, first / largest)
+    ends = groups.model.cavitation is Cavitation.EXIT
+    model = replace(groups.model, cavitation=Cavitation.NONE)  # The mesh of a stroke is that of a full film
     marches = []
     done = 0
-    for order, instants in ((COARSE_ORDER, time), (COARSE_ORDER - FEWER, time[::2])):
-        operators = Operators(shared_mesh([state.mesh for state in meshes], groups.model.profile.places, order), groups.model)
-        start = solve_state(replace(groups, speed=groups.speed * first / largest), operators, meshes[0], COARSE_STEP)
-        march = March(operators, contact_law(groups), float(groups.speed), float(groups.load))
-        start = _in_time(start, march, first / largest)
+    for order, instants in ((COARSE_ORDER, time), (LEAST_DEGREE + 1, time[::2])):
+        operators = Operators(shared_mesh(states, order), model)
+        march = March(operators, contact_law(groups), float(groups.speed), float(groups.load), ends)
         before = done
 
         def note(k: int, before: int = before) -> None:
@@ -149,7 +145,7 @@ def stroke(
                 on_step(before + k, total)
 
         try:
-            marches.append(march.over(start, instants / unit, share, note))
+            marches.append(march.over(states[0], instants / unit, share, note))
         except StepLost as lost:
             raise SolveError(
                 Outcome.STALLED,
@@ -177,18 +173,13 @@ def _checked_contact(contact: Any) -> LineContact:
 
 def _check_model(groups: Groups) -> None:
     """Refuse by name what is not solved in time."""
-    model, film = groups.model, groups.model.film
-    if model.cavitation is not Cavitation.NONE:
+    model = groups.model
+    if model.cavitation is Cavitation.REFORM:
         raise InputError(
-            f"cavitation = {str(model.cavitation.value)!r}: strokes are solved of full films alone, whose exit does not move; "
-            "take cavitation = 'none', and mind that a full film holds against any suction."
+            "cavitation = 'reform': strokes are solved of films that end at ambient pressure, cavitation = 'exit', or that "
+            "never end, 'none': a cavity that closes again behind the contact would have an edge more."
         )
-    if not (isinstance(film, Newtonian) and film.is_plain):
-        raise InputError(
-            "fluid: strokes are solved of fluids alone whose viscosity and density are constant, between smooth walls; leave "
-            "out laws of shear, viscosity and density and flow factors."
-        )
-    if film.slide != 1.0:
+    if model.film.slide != 1.0:
         raise InputError("slide_to_roll: strokes are solved in pure sliding, slide_to_roll = 2.")
     if lengths_of(model.solid).memories or getattr(model.solid, "uses_speed", False):
         raise InputError(
@@ -213,21 +204,12 @@ def _checked_cycles(motion: Motion, cycles: int | None) -> int:
 def _states(groups: Groups, first: float) -> list[State]:
     """Return steady states of the first and of slower speeds, whose meshes the stroke shares."""
     found = []
-    for part in (first, *np.geomspace(1.0, SLOWEST, SPEEDS)):
-        state = solved_point(replace(groups, speed=groups.speed * part), MESH_RTOL).state
+    for part in (first, 1.0, NEGLIGIBLE, NEGLIGIBLE**2):
+        state = solved_point(replace(groups, speed=groups.speed * part), COARSE_RTOL).state
         if state is None:
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}")
         found.append(state)
     return found
-
-
-def _in_time(start: State, march: March, share: float) -> State:
-    """Return the first state with its flux gap as the flux at the speed of the march."""
-    if not start.outcome.ok:
-        raise SolveError(start.outcome, None, f"{describe(start.groups)}: {start.outcome.value}")
-    y = start.y.copy()
-    y[start.equations.layout.flux_gap] *= share
-    return replace(start, y=y, root=replace(start.root, x=y, inverse=None))
 
 
 def _result(
@@ -257,8 +239,19 @@ def _result(
         errors=errors,
         work=work,
         work_error=SAFETY * abs(work - coarse_work),
-        notes=("The film is full: it holds against any suction, and is not starved by its own wake after a reversal.",),
+        notes=(_notes(contact),),
     )
+
+
+def _notes(contact: LineContact) -> str:
+    """Return how the film ends and is fed."""
+    ends = contact.groups.model.cavitation is Cavitation.EXIT
+    end = (
+        "The film ends where its pressure would fall below the ambient one"
+        if ends
+        else "The film is full: it holds any suction"
+    )
+    return f"{end}; its inlet is flooded, not starved by its own wake after a reversal."
 
 
 def _columns(rows: Array, speed: Array, boundary: float, beta: float, indentation: float) -> dict[str, Array]:
@@ -278,8 +271,9 @@ def _columns(rows: Array, speed: Array, boundary: float, beta: float, indentatio
 def _error(fine: Array, coarse: Array) -> Array:
     """Return the difference of two marches, the largest nearby: where it passes zero both err alike."""
     known = SAFETY * np.abs(fine[::2] - coarse)
-    padded = np.pad(known, NEARBY, mode="edge")
-    widest = np.max([padded[k : k + len(known)] for k in range(2 * NEARBY + 1)], axis=0)
+    # A step takes from two instants before it, so that errors reach over two on either side.
+    padded = np.pad(known, 2, mode="edge")
+    widest = np.max([padded[k : k + len(known)] for k in range(5)], axis=0)
     found = np.empty_like(fine)
     found[::2] = widest
     found[1::2] = np.maximum(widest[:-1], widest[1:])
