@@ -85,7 +85,8 @@ def stroke(
     -----
     The inlet is always flooded, after a reversal too.  Errors are those of time steps and mesh: twice the largest difference
     nearby from a march with half of the steps and fewer nodes; they cover the difference from one with four times the
-    steps at 95 % of instants (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse of its length.
+    steps at 95 % of instants (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse
+    of its length.
 
     Source: theory.md, Eqs. (1)-(5), with the squeeze term of Reynolds' equation; strokes.md.
 
