@@ -12,7 +12,7 @@ from scipy.special import k0, k1, kn
 
 import stribeck as sb
 from evidence.formulas import relative_error
-from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, film_layers, point
+from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, film_layers
 from stribeck.asymptotics.point import (
     boundary,
     film,
@@ -90,14 +90,6 @@ def test_the_gap_of_hertz_is_that_of_its_pressure():
     for r in (1.01, 1.2, 2.0, 5.0):
         assert math.isclose(float(hertz.gap(groups, r)), hertz.HERTZ_OFFSET + r * r / 2 + deflection(r), rel_tol=1e-6)
     assert float(hertz.gap(groups, 0.7)) == 0 and float(hertz.pressure(groups, 0.6)) == pytest.approx(0.8)
-
-
-@pytest.mark.quick
-def test_the_edge_of_hertz_opens_as_the_power_three_halves():
-    xi = 1e-6
-    with pytest.warns(OutOfRangeWarning):
-        found = float(hertz.gap(ball(1.0), 1 + xi))
-    assert math.isclose(found, 4 / math.pi * (2 * xi) ** 1.5 / 3, rel_tol=1e-5)
 
 
 # --- at rest ---
@@ -178,13 +170,6 @@ def test_the_minimum_of_the_outlet_over_the_film_that_comes_is_the_stated_power(
         assert math.isclose(lowest(share) / constants.MINIMUM_CONSTANT, math.exp(log * (one + two * log)), rel_tol=3e-4)
 
 
-def test_the_film_along_the_middle_has_the_film_of_the_middle():
-    groups = ball(1e-5)
-    assert math.isclose(float(film.gap_slow(groups, 0.0)), float(film.central_gap_slow(groups)), rel_tol=1e-12)
-    along = film.gap_slow(groups, np.linspace(-0.8, 0.8, 9))
-    assert (np.diff(along) < 0).all()
-
-
 # --- fast ---
 
 
@@ -248,25 +233,6 @@ def test_the_pressure_of_slow_fluid_obeys_its_equation_and_is_found_by_other_ele
         assert math.isclose(getattr(finer, name), getattr(contact, name), rel_tol=1e-11)
 
 
-def test_the_fluids_share_and_friction_come_to_the_solved_ones_as_the_edges_narrow():
-    # Solved at load 1e-3: fluid's share over lambda**2, balanced integral and moment of the contact pressure at 1e-7.
-    share = {0.1: 1.5845, 1e-2: 7.09e3, 1e-3: 5.143208534e7}
-    ratios = [float(boundary.phi(1e-3)) / kappa**4 / found for kappa, found in share.items()]
-    assert abs(order(list(share), [1 - ratio for ratio in ratios]) - 0.4) < 0.1  # towards 2/3 as kappa falls
-    assert math.isclose(ratios[-1], 0.893, abs_tol=1e-3)
-    contact = slow_contact.slow_contact(-math.log(1e-3) / 3)
-    assert math.isclose(contact.shear, 2.1987864e-5 / 1e-4, rel_tol=0.12)
-    assert math.isclose(contact.moment, -3.5236263e-4 / 1e-1, rel_tol=0.16)
-
-
-def test_the_published_friction_exceeds_the_balanced_one_by_the_moment_of_the_contact_pressure():
-    groups = ball(1e-9, kappa=1e-4)
-    each = {name: float(boundary.viscous_friction(groups, 0.05, name)) for name in ("balanced", "published")}
-    # -J_pcx of the state solved at kappa = 1e-4, over lambda/kappa**2 (a whole ball: no rim).
-    excess = 0.75 * 0.05 * 0.1 * 1e-9 / 1e-8 * 3.0921e-3
-    assert math.isclose(each["published"] - each["balanced"], excess, rel_tol=0.03)
-
-
 # --- the trade ---
 
 
@@ -300,10 +266,6 @@ def test_the_regressions_are_off_by_what_is_stated():
 def test_a_slope_that_is_none_is_refused():
     with pytest.raises(sb.InputError, match="slope = 0; it is a/R and must be positive"):
         regressions.de_vicente(ball(1e-3), 0)
-
-
-def test_the_package_of_the_ball_is_reached_by_name():
-    assert sb.asymptotics.point is point
 
 
 # --- the fitted laws, on the states of the solver ---
@@ -427,13 +389,6 @@ def test_share_and_speed_of_a_share_are_inverse():
     assert np.isnan(sharing.speed_of_share(ball(1.0, 2.0, 1e-3)))
     with pytest.raises(sb.InputError, match="share = 1; a fraction of the load"):
         sharing.speed_of_share(groups, 1)
-
-
-@pytest.mark.quick
-def test_at_rest_and_without_roughness_the_uniform_law_of_friction_is_exact():
-    assert float(friction.friction.function(ball(0.0, 0.1, 1e-3), 0.6, 0.1)) == 0.6
-    smooth = ball(1e-3, 0.1)
-    assert float(friction.friction.function(smooth, 0.6, 0.1)) == float(friction.viscous_friction_smooth(smooth, 0.1))
 
 
 # --- judged by the solver ---

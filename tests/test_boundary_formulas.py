@@ -231,20 +231,6 @@ def test_the_viscous_part_makes_the_friction_right_to_the_next_order():
 # --- out of range ---
 
 
-def test_loads_from_one_on_are_nan_and_said_so():
-    groups = sb.Groups(1e-12, [0.1, 1.0, 3.0], 1e-6)
-    with pytest.warns(OutOfRangeWarning, match="at load groups of 1 or more"):
-        found = perturbation.phi(groups.load)
-    assert np.isnan(found).tolist() == [False, True, True]
-    laws = (boundary.fluid_load_share, boundary.contact_load_share, boundary.viscous_friction, boundary.friction)
-    for law in (*laws, perturbation.flux_gap):
-        with pytest.warns(OutOfRangeWarning, match=f"{law.name} is undefined"):
-            assert np.isnan(law(groups)).tolist() == [False, True, True]
-    for law in (perturbation.fluid_pressure_first, perturbation.fluid_pressure_second, perturbation.gap_first):
-        with pytest.warns(OutOfRangeWarning, match=f"{law.name} is undefined"):
-            assert np.isnan(law(groups, 0.3)).tolist() == [False, True, True]
-
-
 def test_from_the_edge_outwards_the_contact_has_no_gap():
     groups = sb.Groups(1e-14, 0.1, 1e-6)
     for law in (rest.gap, perturbation.gap_first):

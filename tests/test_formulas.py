@@ -383,6 +383,21 @@ def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_co
                     assert caught[0].filename == __file__
 
 
+ENDS_AT_LOAD_ONE = ("boundary", "perturbation", "load_sharing", "uniform", "transitions.speed_boundary_to_mixed")
+"""Laws of slow speed and load sharing, which know of no contact whose asperities cannot carry the load."""
+
+
+def test_from_load_one_on_the_laws_of_load_sharing_have_no_value_and_say_so():
+    laws = [law for law in LINE if law.name.startswith(ENDS_AT_LOAD_ONE)]
+    assert len(laws) >= 13
+    for law in laws:
+        with pytest.warns(OutOfRangeWarning, match=f"{law.name} is undefined .nan. outside its range"):
+            found = law(sb.Groups(1e-12, [0.1, 1.0, 3.0], 1e-6), *((0.3,) if law.interval else ()))
+        assert np.isnan(found).tolist() == [False, True, True], law.name
+    with pytest.warns(OutOfRangeWarning, match="at load groups of 1 or more"):
+        assert np.isnan(asymptotics.perturbation.phi([0.1, 1.0, 3.0])).tolist() == [False, True, True]
+
+
 def test_an_option_is_one_of_what_it_may_be(subtests):
     for option in [{"printed": "no"}, {"printed": np.nan}, {"form": np.array(["closed"])}]:
         with subtests.test(option=option):
@@ -421,9 +436,11 @@ def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their
 def check_arrays(formula):
     """Check the values of a formula for arrays of three states against those for each state."""
     some = states(formula)[:3]
-    one_by_one = [formula.function(groups, *arguments(formula, some[0])) for groups in some]
+    ends = formula.interval(some[0]) if formula.interval else ()
+    x = (np.mean(ends) + np.array([-0.1, 0.0, 0.1]) * np.ptp(ends),) if ends else ()
+    one_by_one = [formula.function(groups, *(each[i] for each in x)) for i, groups in enumerate(some)]
     speed, load, roughness = (np.array([getattr(groups, name) for groups in some]) for name in ("speed", "load", "roughness"))
-    together = formula.function(sb.Groups(speed, load, roughness), *arguments(formula, some[0]))
+    together = formula.function(sb.Groups(speed, load, roughness), *x)
     np.testing.assert_allclose(together, one_by_one, rtol=1e-8, err_msg=formula.name)
     grid = formula.function(sb.Groups(speed[:, None], load[0], roughness[0]), *arguments(formula, some[0]))
     first = formula.function(some[0], *arguments(formula, some[0]))

@@ -1,6 +1,5 @@
 """Any contact law: its derivatives, what the equations make of it, user's laws, and the law in every part of the package."""
 
-import json
 import math
 import pickle
 from dataclasses import replace
@@ -14,7 +13,6 @@ from scipy.integrate import quad
 import stribeck as sb
 from stribeck.contact_laws import GreenwoodTripp, TableLaw
 from stribeck.numerics.dual import with_slope
-from stribeck.regimes.margins import regime_margins
 
 EXPONENTIAL = sb.contact_laws.FunctionLaw(lambda s: -s, lowest=-math.inf)
 """The exponential law by the way of any other."""
@@ -80,13 +78,6 @@ def test_a_table_of_persson_goes_where_persson_goes():
     table = TableLaw(s, np.exp(persson.log_pressure(s)))
     groups = sb.Groups(1e-6, 3.0, 0.03)
     assert sb.solve(groups, law=table).central_gap == pytest.approx(sb.solve(groups, law=persson).central_gap, rel=1e-5)
-
-
-def test_at_large_separation_persson_is_exponential_and_at_small_it_is_stiffer():
-    persson = laws()["persson"]
-    thin, thick = sb.Groups(1e-6, 1.0, 0.01), sb.Groups(1e-3, 1e-6, 1e-6)
-    assert sb.solve(thick, law=persson).central_gap == pytest.approx(sb.solve(thick).central_gap, rel=1e-3)
-    assert sb.solve(thin, law=persson).central_gap > 1.5 * sb.solve(thin).central_gap
 
 
 @pytest.mark.quick
@@ -178,23 +169,6 @@ def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
     assert {f"contact_law_{name}" for name in shape.parameters} <= set(data.attrs)
 
 
-def test_states_between_the_solved_ones_of_a_curve_have_its_law():
-    curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-3, 1e-2), points=41, law=laws()["persson"])
-    assert curve.solutions[0].law == "persson"
-    for i in (5, 17, 30):
-        alone = sb.solve(curve.solutions[i].groups, rtol=1e-8)
-        assert curve.solutions[i].central_gap == pytest.approx(alone.central_gap, rel=2e-6)
-
-
-def test_curves_over_load_and_roughness_and_at_rest_follow_a_law():
-    law = GreenwoodTripp()
-    over_load, over_roughness = {"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}
-    for over, speed in ((over_load, 1e-4), (over_roughness, 0.0)):
-        curve = sb.stribeck_curve(**over, speed=speed, points=5, law=law)
-        last = sb.solve(curve.solutions[-1].groups, rtol=1e-8)
-        assert curve.observable("central_gap")[-1] == pytest.approx(last.central_gap, rel=1e-5)
-
-
 def test_a_phase_diagram_is_made_with_a_law():
     found = sb.phase_diagram(load=0.3, roughness=0.003, speed=[0.0, 1e-6, 1e-2], law=laws()["persson"])
     assert found.attrs["contact_law"] == "persson"
@@ -217,14 +191,6 @@ def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
         sb.asymptotics.boundary.gap(groups, 0.0)
     smooth = sb.asymptotics.hydrodynamic.friction
     assert smooth(groups) == smooth(replace(groups, law=None))
-
-
-def test_distances_reach_beyond_load_one_under_a_law_that_holds_there():
-    contact = line_contact(law=laws()["persson"])
-    found = regime_margins(contact, rtol=1e-4)
-    highest = next(d for d in found.margins if d.name == "load").searched[1]
-    factor = highest / contact.load
-    assert float(contact.groups.load) * factor == pytest.approx(10.0, rel=1e-6)
 
 
 # --- real contact ---
@@ -435,25 +401,12 @@ def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):
         TableLaw.read(tmp_path / "none.csv")
 
 
-def test_parameters_of_laws_are_plain_numbers_and_text(shape):
-    assert json.loads(json.dumps(shape.parameters)) == shape.parameters
-
-
 # --- what keeps Newton's iteration on the ground ---
 
 
 def test_a_law_that_is_steep_right_below_a_state_is_solved():
     state = sb.solve(sb.Groups(0.05, 1.0, 0.1), law=Wall(), rtol=1e-4)
     assert state.outcome.ok and state.central_gap > 0.01
-
-
-def test_the_roughness_without_a_minimum_depends_on_the_law():
-    grid = {"load": 0.1, "roughness": 1e-3, "speed": 1e-3, "merging": True, "rtol": 1e-3}
-    found = [sb.phase_diagram(**grid, law=law).roughness_without_minimum.squeeze().item() for law in (None, GreenwoodTripp())]
-    assert found[0] != pytest.approx(found[1], rel=0.05)
-    for factor, falls in ((0.95, True), (1.05, False)):
-        curve = sb.stribeck_curve(load=0.1, roughness=factor * found[1], law=GreenwoodTripp(), rtol=1e-5)
-        assert (np.diff(curve.friction.total).min() < 0) == falls
 
 
 def test_formulas_and_atlas_say_for_which_laws_they_hold(tmp_path):

@@ -22,11 +22,6 @@ def graded(order=12, towards=1.0, levels=10):
     return Mesh(np.concatenate([-outer[::-1], [-1.0, 0.0], around, outer]), order)
 
 
-def on_panel(left, right, order):
-    """Nodes of one panel in x."""
-    return 0.5 * (left + right) + 0.5 * (right - left) * reference(order).nodes
-
-
 def bernstein(pole, panel):
     """Parameter of the largest ellipse around a panel in which a function with that pole is analytic."""
     z = (pole - 0.5 * sum(panel)) / (0.5 * (panel[1] - panel[0]))
@@ -91,15 +86,6 @@ def test_interpolation_is_exact_for_polynomials_in_x_and_beyond_in_its_inverse()
     assert np.abs(mesh.interpolate(field(mesh.nodes), x) - field(x)).max() < 2e-12
 
 
-def test_interpolation_takes_several_fields_at_once():
-    mesh = graded()
-    fields = np.random.default_rng(SEED).normal(size=(3, 2, mesh.size))
-    x = np.linspace(-9, 9, 37)
-    together = mesh.interpolate(fields, x)
-    assert together.shape == (3, 2, 37)
-    assert np.array_equal(together[2, 1], mesh.interpolate(fields[2, 1], x))
-
-
 def test_more_nodes_on_the_same_panels_carry_the_same_polynomials():
     mesh = graded(order=8)
     fine = mesh.refined(14)
@@ -135,13 +121,6 @@ def test_rational_functions_are_integrated_over_the_whole_line(function, integra
     assert abs(mesh.weights @ function(mesh.nodes) / integral - 1) < 1e-13
 
 
-def test_the_panel_through_infinity_holds_what_the_others_leave():
-    mesh = graded()
-    values = 1 / (1 + mesh.nodes**2)
-    inside = np.arange(mesh.size) < mesh.size - mesh.order
-    assert abs(mesh.weights[~inside] @ values[~inside] - 2 * np.arctan(1 / 8)) < 1e-14
-
-
 def test_the_integral_converges_at_the_rate_of_the_nearest_pole():
     edges, pole = base_edges(1.0, 16.0), 1j
     orders = np.arange(4, 11, 2)
@@ -157,20 +136,6 @@ def test_the_running_integral_vanishes_at_both_ends():
     x = mesh.nodes
     values = RunningIntegral(mesh)(-2 * x / (1 + x * x) ** 2)
     assert np.abs(values * (1 + x * x) - 1).max() < 1e-12
-
-
-def test_the_running_integral_comes_from_the_left_left_of_zero_and_from_the_right_beyond():
-    mesh = Mesh(base_edges(0.5, 16.0), 20)
-    x = mesh.nodes
-    values = RunningIntegral(mesh)(1 / (1 + x * x))
-    assert np.abs(values + np.arctan(1 / x)).max() < 1e-14
-
-
-def test_the_running_integral_of_a_lopsided_graded_mesh_is_the_same():
-    mesh = graded(order=20)
-    x = mesh.nodes
-    values = RunningIntegral(mesh)(1 / (1 + x * x))
-    assert np.abs(values + np.arctan(1 / x)).max() < 1e-13
 
 
 LOPSIDED = np.array([-5.0, 0.0, 0.25, 1.0, 5.0])
@@ -227,22 +192,6 @@ def test_the_panels_resolve_the_field_to_four_times_the_tolerance(width, centre)
         x = np.random.default_rng(SEED).uniform(centre - 10 * width, centre + 10 * width, 400)
         error = np.abs(mesh.interpolate(field, x) - bump(width, centre)(x)[0]).max()
         assert error < tolerance
-
-
-def halvings(field, left, right):
-    """Panels that halving alone makes of one panel."""
-    if legendre_tail(field(on_panel(left, right, 10))[0], 10)[0] <= 1e-6:
-        return 1
-    middle = 0.5 * (left + right)
-    return halvings(field, left, middle) + halvings(field, middle, right)
-
-
-@pytest.mark.parametrize("centre", [0.0, 0.3, 1.0])
-def test_panels_laid_anew_are_a_seventh_fewer_than_halving_leaves(centre):
-    field = bump(1e-2, centre)
-    mesh = adapt(field, 1.0, 16.0, 10, 1e-6)
-    base = base_edges(1.0, mesh.edges[-1])
-    assert mesh.panels - 1 <= 6 / 7 * sum(halvings(field, *panel) for panel in zip(base[:-1], base[1:], strict=True))
 
 
 def test_panels_of_a_field_known_on_other_panels_are_not_shortened_where_those_end():
@@ -312,13 +261,6 @@ def test_a_step_is_not_chased_beyond_double_precision():
     mesh = adapt(lambda x, *_: np.sign(x - 0.3)[None] * (np.abs(x) < 4), 1.0, 8.0, 10, 1e-6)
     assert mesh.panels <= MAX_PANELS
     assert np.diff(mesh.edges).min() >= 2.0**-45
-
-
-def test_panels_that_halve_towards_a_place_are_told_from_those_before():
-    edges = np.array([-7.0, -4.0, -1.5, 0.0, 0.9, 2.0, 3.1, 7.0])
-    found = halved_towards(Mesh(edges, 10), [0.0, 2.0], 9)
-    assert found.panels == len(edges) + 36
-    np.testing.assert_array_equal(found.coarse_edges, edges)
 
 
 def test_an_edge_that_rounding_keeps_apart_from_a_place_leaves_no_panel_between():

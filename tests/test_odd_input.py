@@ -140,14 +140,6 @@ def test_a_range_that_is_none_is_refused_by_its_name(subtests):
             assert not faults(over, calls)
 
 
-def test_a_number_of_points_that_is_none_is_refused():
-    def curve(points):
-        return sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-4, 1e-3), points=points)
-
-    values = (0, 1, -3, 2.5, math.nan, "3", None, True, np.array([]))
-    assert not faults("^points = ", [(value, curve, value) for value in values])
-
-
 def test_a_curve_without_a_range_where_none_is_found_asks_for_one(subtests):
     for load, roughness in [(1e-100, 1e100), (1e-200, 1.0)]:
         with subtests.test(load=load, roughness=roughness):
@@ -197,39 +189,3 @@ def test_a_formula_asks_for_groups():
     values = (0.1, None, "x", (1.0, 1.0, 1.0), sb.Groups)
     calls = [((formula.name, value), formula, value) for formula in asymptotics.FORMULAS for value in values]
     assert not faults(r"^groups = .*give Groups\(speed, load, roughness\)", calls)
-
-
-# --- surfaces and laws ---
-
-SURFACE = sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8)
-HEIGHTS = np.sin(np.arange(64.0))
-OF_SURFACES = {
-    "SelfAffine": (sb.surfaces.SelfAffine, {"h_rms": 1e-6, "q0": 1e4, "q1": 1e7, "hurst": 0.8}),
-    "Spectrum": (sb.surfaces.Spectrum, {"wavenumber": [1.0, 2.0], "density": [1.0, 0.5]}),
-    "between": (SURFACE.spectrum.between, {"lowest": 1e5, "highest": 1e6}),
-    "scaled": (SURFACE.scaled, {"rms_height": 1e-6}),
-    "exponential_limit": (sb.surfaces.exponential_limit, {"spectrum": SURFACE, "gamma": 0.45}),
-    "synthetic": (sb.surfaces.synthetic_topography, {"roughness": SURFACE, "points": (64,), "spacing": 1e-6, "seed": 1}),
-    "Topography": (sb.surfaces.Topography, {"heights": HEIGHTS, "spacing": (1e-6,)}),
-    "analyse": (sb.surfaces.analyse, {"topography": HEIGHTS}),
-    "FiniteSurface": (sb.contact_laws.FiniteSurface, {"alpha": 2.0, "base": None}),
-    "TableLaw": (sb.contact_laws.TableLaw, {"separation": [0, 1, 2, 3], "pressure": [8, 4, 2, 1]}),
-    "regime_of": (sb.regime_of, {"fluid_load_share": 0.5, "contact_friction_share": 0.5}),
-}
-ARGUMENTS = [(name, key) for name, (_, given) in OF_SURFACES.items() for key in given if key != "seed"]
-
-
-@pytest.mark.quick
-def test_what_is_no_surface_or_law_is_refused_in_words(subtests):
-    for name, argument in ARGUMENTS:
-        with subtests.test(name=name, argument=argument):
-            call, good = OF_SURFACES[name]
-            for value in NO_NUMBERS:
-                if (value is None and argument == "base") or (name == "regime_of" and isinstance(value, float | int)):
-                    continue  # no base is the exponential law; any number is a share
-                try:
-                    call(**good | {argument: value})
-                except sb.InputError as problem:
-                    assert re.fullmatch(r"[^\n]{20,600}[.]", str(problem)), (value, str(problem))
-                else:
-                    assert isinstance(value, bool | np.bool_), value

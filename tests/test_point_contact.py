@@ -3,7 +3,6 @@
 import dataclasses
 import inspect
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -50,12 +49,6 @@ def test_the_groups_of_a_ball_are_quotients_of_its_scales():
     assert groups.relative_roughness == pytest.approx(0.4e-6 / (2.0 * u), rel=1e-13)
     assert groups.slope(0.05) == pytest.approx(c.slope, rel=1e-13)
     assert groups.hersey_number(0.05) == pytest.approx(c.hersey_number, rel=1e-12)
-
-
-@pytest.mark.quick
-def test_units_do_not_change_the_groups_of_a_ball():
-    bare = ball(radius=9.5e-3, modulus=1.6e6, load=1.3, viscosity=0.01, entrainment_speed=0.05, roughness=4e-7)
-    assert bare.groups == ball().groups
 
 
 @pytest.mark.quick
@@ -151,12 +144,6 @@ def test_replaced_values_are_checked_too():
     with pytest.raises(sb.InputError, match="groups.geometry = 'line'; a ball has 'point'"):
         kept = {"radius": 1, "modulus": 1, "viscosity": 1, "alpha": 1, "beta": 1, "boundary_friction": 1}
         sb.PointContact.from_groups(sb.Groups(1, 1, 1), **kept)
-
-
-@pytest.mark.quick
-def test_a_ball_travels_to_other_processes():
-    c = ball(law=sb.contact_laws.GreenwoodTripp(), alpha=1.0)
-    assert pickle.loads(pickle.dumps(c)) == c
 
 
 @pytest.mark.quick

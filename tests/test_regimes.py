@@ -4,7 +4,6 @@ import json
 import math
 import re
 
-import numpy as np
 import pytest
 from command_line import call, case_text
 
@@ -37,18 +36,6 @@ def test_a_regime_is_named_by_the_shares_of_load_and_friction(subtests):
     ]:
         with subtests.test(fluid=fluid, contact=contact, regime=regime):
             assert sb.regime_of(fluid, contact) == regime
-
-
-def test_the_exponents_are_those_of_the_groups(subtests):
-    for name in sb.LineContact.INPUTS.exponents:
-        with subtests.test(name=name):
-
-            def logs(factor):
-                groups = CONTACT.replace(**{name: factor * getattr(CONTACT, name)}).groups
-                return np.log([groups.speed, groups.load, groups.roughness])
-
-            slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
-            np.testing.assert_allclose(slope, sb.LineContact.INPUTS.exponents[name], atol=1e-12)
 
 
 def test_a_substrate_that_is_overtaken_has_regimes_too():

@@ -8,7 +8,7 @@ import pytest
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.hermite import chebyshev_basis, hermite_form, hermite_weights, missed_by
 from stribeck.numerics.jets import Tape, polynomial
-from stribeck.numerics.series import along, beyond, circle, implicit_series, interval, radius
+from stribeck.numerics.series import beyond, circle, implicit_series, interval, radius
 
 pytestmark = pytest.mark.quick
 
@@ -46,17 +46,6 @@ def test_jets_have_the_coefficients_of_the_closed_form():
         np.testing.assert_allclose(jet.coefficients[:, 0], coefficients(12), rtol=1e-12, atol=1e-15)
 
 
-def test_a_jet_that_is_made_late_has_all_orders():
-    tape = Tape(6)
-    t = tape.given(np.eye(7)[:, 1:2])
-    early = np.exp(t)
-    for k in range(1, 7):
-        tape.fill(k)
-    tape.settle()
-    late = early * early + 0.0
-    np.testing.assert_allclose(late.coefficients[:, 0], along(2.0, 6), rtol=1e-14)
-
-
 def test_a_polynomial_of_a_jet_has_its_series():
     tape, rng = Tape(5), np.random.default_rng(5)
     inner, outer = rng.standard_normal((6, 2)), rng.standard_normal((4, 2))
@@ -81,13 +70,6 @@ def test_coefficients_come_from_real_values_with_fewer_digits():
     found = samples.taylor(function(samples.places), 6)
     np.testing.assert_allclose(found * SINGULAR ** np.arange(7), coefficients(6) * SINGULAR ** np.arange(7), atol=1e-4)
     np.testing.assert_allclose(found[:3], coefficients(2), rtol=1e-8)
-
-
-def test_a_polynomial_is_its_own_series():
-    exact = np.array([3.0, -1.0, 0.5, 2.0])
-    samples = interval(0.3)
-    values = np.polynomial.polynomial.polyval(samples.places, exact)
-    np.testing.assert_allclose(samples.taylor(values, 3), exact, rtol=1e-9)
 
 
 def test_the_series_of_a_solution_is_that_of_its_closed_form():
@@ -167,12 +149,6 @@ def test_an_error_is_not_taken_for_small_where_the_highest_order_changes_nothing
     error = np.abs(np.hstack(hermite_weights(order, tau)) @ ends[:, 0] - true).max()
     stated = [missed_by(order, ends, rate)[0] / 4**order for rate in (0.0, 1 / np.abs(poles * (poles - 1)).min())]
     assert stated[0] < 1e-3 * error < error < stated[1]
-
-
-def test_twelve_orders_interpolate_to_rounding():
-    a, b = (np.array([math.exp(t) / math.factorial(k) for k in range(13)]) for t in (0.0, 2.0))
-    tau = np.linspace(0, 1, 101)
-    np.testing.assert_allclose(interpolated(a, b, 2.0, tau), np.exp(2 * tau), rtol=1e-14)
 
 
 def test_cells_are_the_function_and_its_slope_inside_and_constant_beyond():

@@ -20,7 +20,6 @@ from stribeck.surfaces import (
     fit_self_affine,
     power_spectrum,
     synthetic_topography,
-    write_surface_table,
 )
 
 STEP = 1e-6
@@ -58,15 +57,6 @@ def test_one_wave_has_all_its_power_in_its_ring():
     cell = (2 * math.pi / 256e-6) ** 2
     assert spectrum.density[ring] * 2 * spectrum.modes[ring] * cell == pytest.approx(0.5e-14, rel=1e-9, abs=0)
     assert spectrum.mean_square == pytest.approx(0.5e-14, rel=1e-12, abs=0)
-
-
-def test_the_power_of_all_rings_is_the_mean_square_of_smooth_heights():
-    smooth = SelfAffine(1e-6, 8e4, 1.5e6, 0.8, 2e5)
-    surface = synthetic_topography(smooth, (256, 256), 1e-6, 92, oversize=1)
-    spectrum = power_spectrum(surface, "none")
-    cell = (2 * math.pi / 256e-6) ** 2
-    total = float(np.sum(spectrum.density * 2 * spectrum.modes) * cell)
-    assert total == pytest.approx(float(np.mean(surface.heights**2)), rel=1e-3, abs=0)
 
 
 def test_reliable_wavelengths_end_at_the_scan_and_at_the_instrument():
@@ -192,14 +182,6 @@ def test_without_a_roll_off_beta_is_bounded_from_above_only():
         truth = exponential_limit(surface.spectrum.between(surface.q0, fit.roughness.q1))
         assert alpha.low < truth[0] < alpha.high < 1.5 * alpha.low
         assert beta.low == 0 and truth[1] < beta.high and beta.interval.startswith("at most ")
-
-
-def test_a_cut_off_that_was_seen_leaves_no_doubt_about_longer_waves():
-    surface = SelfAffine(1e-6, 4 * FUNDAMENTAL, 20 * FUNDAMENTAL, 0.8)
-    fit = fitted(surface, (256, 256), 1)
-    alpha, beta = fit.exponential_limit()
-    assert "q0" in fit.found and beta.low > 0
-    assert math.log(beta.high / beta.value) == pytest.approx(math.log(beta.value / beta.low), rel=1e-9)
 
 
 def test_what_is_not_self_affine_is_said_to_be_so():
@@ -399,14 +381,6 @@ def test_the_command_refuses_nonsense_in_one_line(subtests, capsys, scan):
             answer = call(capsys, "surface", *(scan if token == "SCAN" else token for token in tokens))
             assert answer.code == 2
             assert words in answer.err and len(answer.err.splitlines()) == 1
-
-
-def test_the_table_is_whole_or_not_there(tmp_path):
-    surface = analyse(synthetic_topography(ROLLED, (64, 64), STEP, 103))
-    write_surface_table(surface, tmp_path / "a.toml")
-    with pytest.raises(sb.InputError, match="kept"):
-        write_surface_table(surface, tmp_path / "a.toml")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.toml"]
 
 
 def test_the_picture_shows_heights_spectrum_and_law(subtests):

@@ -71,36 +71,6 @@ def test_a_map_holds_the_signed_error_of_every_state(maps):
         assert math.isclose(data["error"].values[i, j, k], right, rel_tol=1e-4, abs_tol=1e-6)
 
 
-def test_a_map_of_a_field_holds_its_largest_error(maps):
-    for index, groups in (((0, 1, 2), sb.Groups(1e-2, 1e-3, 3e-6)), ((1, 0, 0), sb.Groups(1e-8, 0.3, 3e-5))):
-        right = relative_error(hertz.pressure, groups)
-        assert right > 0.01
-        assert math.isclose(maps["hertz.pressure"]["error"].values[index], right, rel_tol=1e-3)
-
-
-def test_the_map_of_a_formula_for_smooth_contacts_is_a_line_over_the_speed(maps):
-    data = maps["hydrodynamic.friction"]
-    assert data["error"].dims == ("speed",)
-    right = [relative_error(hydrodynamic.friction, sb.Groups(speed, 7.0, 0.2)) for speed in GRID["speed"]]
-    np.testing.assert_allclose(data["error"].values, right, rtol=1e-4, atol=1e-6)
-
-
-def test_the_map_of_a_formula_for_contacts_at_rest_does_not_know_the_speed(maps):
-    data = maps["rest.gap"]
-    assert data["error"].dims == ("load", "relative_roughness")
-    right = relative_error(rest.gap, sb.Groups(5.0, 0.3, 3e-3 * 0.3))
-    assert math.isclose(data["error"].values[1, 1], right, rel_tol=1e-9)
-
-
-def test_a_map_says_what_it_is(maps):
-    data = maps["uniform.friction"]
-    for variable in data.variables.values():
-        assert variable.attrs["units"] == "1" and variable.attrs["long_name"]
-    assert data.attrs["formula"] == "uniform.friction"
-    assert data.attrs["range"] == uniform.friction.range and data.attrs["worst_stated"] == uniform.friction.worst
-    assert 0 < data.attrs["error_estimate"] < 1e-6 == 10 * data.attrs["rtol"]
-
-
 def test_the_ends_of_a_range_are_in_it_though_the_relative_roughness_is_rounded():
     low = np.nextafter(1e-5, 0.0)  # as powers of ten come out on some processors
     formula = replace(rest.central_gap, limits=(Limit("relative_roughness", 1e-5, 1e-3),))
@@ -149,29 +119,9 @@ def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
     assert abs(float(error_map(law, load=0.01, relative_roughness=1e-3, share=0.05)["error"].values[0, 0])) > 0.5
 
 
-def test_speed_zero_and_single_states_have_a_place_on_a_map():
-    data = error_map(uniform.friction, load=0.1, relative_roughness=1e-3, speed=[0.0, 1e-3])
-    assert abs(float(data["error"].values[0, 0, 0])) < 1e-9
-    both = error_map(uniform.friction, load=0.1, relative_roughness=1e-3, speed=[1e-3, 1e-2])
-    assert math.isclose(data["error"].values[0, 0, 1], both["error"].values[0, 0, 0], rel_tol=1e-4, abs_tol=1e-7)
-
-
 def test_where_a_formula_has_no_value_the_map_has_none():
     data = error_map(transitions.speed_boundary_to_mixed, load=[0.5, 2.0], relative_roughness=1e-2)
     assert np.isnan(data["error"].values).ravel().tolist() == [False, True]
-
-
-def test_a_grid_that_is_none_is_refused(subtests):
-    for axis, value in [
-        ("load", 0.0),
-        ("load", [0.2, 0.1]),
-        ("relative_roughness", math.inf),
-        ("speed", [-1.0, 1.0]),
-        ("speed", [[1.0]]),
-    ]:
-        with subtests.test(axis=axis, value=value):
-            with pytest.raises(sb.InputError, match=f"^{axis} = .*positive increasing numbers"):
-                error_map(uniform.friction, **(GRID | {axis: value}))
 
 
 def test_an_unknown_quantity_is_refused_with_the_known_ones():
@@ -194,14 +144,6 @@ def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps
     np.testing.assert_allclose(np.ravel(drawn), np.maximum(np.abs(maps["uniform.friction"]["error"].values[0]), 1e-7).ravel())
     smooth = next(line for line in figure.axes[2].lines if len(line.get_xdata()) == 3)
     np.testing.assert_allclose(smooth.get_ydata(), np.abs(maps["hydrodynamic.friction"]["error"].values))
-
-
-def test_what_has_no_two_points_is_not_drawn():
-    from evidence.plot import plot_error_maps
-
-    data = error_map(rest.gap, load=[1e-3, 0.1], relative_roughness=1e-3)
-    with pytest.raises(sb.InputError, match="nothing to draw"):
-        plot_error_maps([(rest.gap, data)])
 
 
 # --- the page ---
@@ -296,17 +238,6 @@ def test_new_text_replaces_what_stands_between_marks_and_a_new_module_gets_a_sec
     assert section.startswith("<!-- begin y -->\nmore\n<!-- end y -->\n")
     assert "![Errors of y](images/validity_y.png)" in section
     assert script.blocks_of(text) == {"x": r"new \1", "y": "more"}
-
-
-def test_numbers_are_short_and_true(script):
-    assert [script.short(value) for value in (1e-7, 4.6416e-5, 0.05, 1000.0, 1e5)] == [
-        "1e-7",
-        "4.642e-5",
-        "0.05",
-        "1000",
-        "1e5",
-    ]
-    assert [script.percent(value) for value in (2e-4, 0.02128, -0.976, 3.0946)] == ["0.02 %", "2.13 %", "-97.6 %", "309 %"]
 
 
 def test_every_quantity_that_a_formula_predicts_is_measured():
