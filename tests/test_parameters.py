@@ -276,3 +276,24 @@ def test_only_the_load_must_not_be_zero():
 def test_groups_whose_shapes_do_not_broadcast_are_refused():
     with pytest.raises(InputError, match=r"speed \(2,\), load \(3,\)"):
         Groups([1.0, 2.0], [1.0, 2.0, 3.0], 0.0)
+
+
+def test_groups_that_differ_in_geometry_or_model_are_not_equal():
+    """Nothing that is kept by groups may be taken for that of another contact."""
+    line, point = Groups(1.0, 0.1, 0.0), Groups(1.0, 0.1, 0.0, geometry="point")
+    plain, ends = (
+        LineContact.from_groups(line, radius=1, modulus=1, viscosity=1, alpha=1, beta=1, boundary_friction=1, cavitation=each)
+        for each in ("none", "exit")
+    )
+    assert plain.groups.model == line.model
+    with_exit = dataclasses.replace(line, model=ends.groups.model)
+    assert line != point and line != with_exit and hash(line) != hash(point)
+    assert "point" in repr(point) and repr(line) == "Groups(speed=1.0, load=0.1, roughness=0.0)"
+
+
+def test_a_geometry_that_there_is_not_is_refused(subtests):
+    """With those that there are."""
+    for geometry in ["ball", None, 3]:
+        with subtests.test(geometry=geometry):
+            with pytest.raises(InputError, match="'line' or 'point'"):
+                Groups(1.0, 0.1, 0.0, geometry=geometry)
