@@ -290,7 +290,5 @@ def test_the_minimum_gap_lies_between_the_nodes_and_on_whichever_panel_it_is(sub
     for lowest in [0.5001, 0.4499]:
         with subtests.test(lowest=lowest):
             gap = 1 + np.log1p((narrow.nodes - lowest) ** 2)
-            assert (
-                0.45 < narrow.nodes[np.argmin(gap)] < 0.5
-            )  # the neighbour has the minimum
+            assert 0.45 < narrow.nodes[np.argmin(gap)] < 0.5  # the neighbour has the minimum
             assert minimum_gap(narrow, gap) == (pytest.approx(lowest, abs=1e-7), pytest.approx(1.0, abs=1e-12))

@@ -17,7 +17,7 @@ diagrams = importlib.import_module("stribeck.regimes.phase_diagram")
 grid = importlib.import_module("stribeck.regimes.phase_grid")
 
 LOADS, ROUGHNESSES, SPEEDS = (0.02, 0.2), (3e-5, 3e-3), (1e-8, 10.0)
-POINTS = {"load": 2, "roughness": 3, "speed": 15}
+POINTS = {"load": 2, "roughness": 3, "speed": 9}
 MU0, BETA = 0.8, 0.7
 REGIMES = ("boundary", "mixed", "hydrodynamic")
 
@@ -69,7 +69,7 @@ def solved(speed, load, roughness):
 
 def test_points_are_those_of_cold_solves(diagram):
     rng = np.random.default_rng(90211)
-    for i, j, k in zip(*(rng.integers(0, n, 8) for n in diagram.regime.shape), strict=True):
+    for i, j, k in zip(*(rng.integers(0, n, 4) for n in diagram.regime.shape), strict=True):
         point = diagram.isel(load=i, roughness=j, speed=k)
         state, friction = solved(point["speed"], point["load"], point["roughness"])
         assert float(point["friction"]) == pytest.approx(friction.total, rel=1e-4)
@@ -129,14 +129,13 @@ def test_from_load_one_on_there_is_no_boundary_lubrication():
 
 def test_transitions_lie_where_their_shares_are_passed(diagram):
     """A mark is solved to 1e-6."""
-    for i, load in enumerate(LOADS):
-        for j in (0, 2):
-            row = diagram.isel(load=i, roughness=j)
-            for name, share in (("speed_at_5_percent_fluid", 0.05), ("speed_at_half_fluid", 0.5)):
-                state, _ = solved(row[name], load, row["roughness"])
-                assert state.fluid_load_share == pytest.approx(share, abs=1e-6)
-            _, friction = solved(row["speed_at_10_percent_contact_friction"], load, row["roughness"])
-            assert friction.asperities / friction.total == pytest.approx(0.1, abs=1e-6)
+    for i, j in ((0, 2), (1, 0)):
+        row, load = diagram.isel(load=i, roughness=j), LOADS[i]
+        for name, share in (("speed_at_5_percent_fluid", 0.05), ("speed_at_half_fluid", 0.5)):
+            state, _ = solved(row[name], load, row["roughness"])
+            assert state.fluid_load_share == pytest.approx(share, abs=1e-6)
+        _, friction = solved(row["speed_at_10_percent_contact_friction"], load, row["roughness"])
+        assert friction.asperities / friction.total == pytest.approx(0.1, abs=1e-6)
 
 
 def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
@@ -166,23 +165,6 @@ def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagr
         narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=speed)
         for name in (*grid.MARKS, "speed_at_minimum", "friction_at_minimum"):
             assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=error)
-
-
-def test_a_minimum_above_the_plateau_is_found():
-    # The minimum friction of these curves is that of the plateau; the minimum is local.
-    found = sb.phase_diagram(load=0.1, roughness=0.016, speed=(1e-4, 10.0), points=9)
-    assert found.velocity_weakening == 1
-    assert found.friction_at_minimum > 1.0
-    speed = float(found.speed_at_minimum.squeeze())
-    frictions = [sb.solve(sb.Groups(speed * math.exp(s), 0.1, 0.016)).friction().total for s in (-0.1, 0, 0.1)]
-    assert frictions[1] < min(frictions[0], frictions[2])
-
-
-def test_beyond_the_merging_there_is_no_minimum():
-    found = sb.phase_diagram(load=0.1, roughness=0.03, speed=(1e-4, 10.0), points=9)
-    assert found.velocity_weakening == 0
-    assert np.isnan(found.speed_at_minimum)
-    assert (np.diff(found.friction.values.squeeze()) > 0).all()
 
 
 def test_formulas_stand_beside_the_solved_transitions(diagram):
@@ -273,7 +255,7 @@ def interrupted():
 
     def stop(done, points):
         calls.append(done)
-        if done >= 20:
+        if done >= 12:
             raise KeyboardInterrupt
 
     return made(on_point=stop), calls
@@ -282,10 +264,10 @@ def interrupted():
 def test_after_an_interruption_what_is_finished_stays(interrupted):
     found, calls = interrupted
     assert found.complete == 0
-    assert found.outcome[0, 0].values.tolist() == ["CONVERGED"] * 15
+    assert found.outcome[0, 0].values.tolist() == ["CONVERGED"] * 9
     assert np.isfinite(found.speed_at_minimum[0, 0])
     missing = found.outcome == Outcome.INTERRUPTED.name
-    assert int(missing.sum()) > 60
+    assert int(missing.sum()) > 30
     assert (found.regime.where(missing, -1) == -1).all()
     assert np.isnan(found.friction.where(missing)).all()
     assert np.isfinite(found.friction.values[~missing.values]).all()

@@ -9,6 +9,10 @@ import pytest
 
 import stribeck as sb
 from stribeck import Outcome
+from stribeck.contacts.groups import contact_law
+from stribeck.equations.damping import longest_step
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import ROW, changes, observables
 
 SEED = 27_644_437
 TYPICAL = {
@@ -68,6 +72,43 @@ def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
     assert s.fluid_load_share < 1e-6
     # Drag counts relative to the larger of both walls.
     assert s.error_estimate == max(error for name, error in s.errors.items() if name != "viscous_upper")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", ["mixed", "hydrodynamic", "boundary"])
+def test_what_a_small_change_of_a_state_does_to_its_observables_is_their_difference(solved, name):
+    """Errors at the nodes become those of the observables in this way."""
+    speed, load, roughness = TYPICAL[name]
+    s = solved(speed, load, roughness, rtol=1e-9)
+    equations = Equations(Operators(s.mesh), speed, contact_law(sb.Groups(speed, load, roughness)), s.flux_gap**2)
+    y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
+    size, x, rng = min(s.nodal_gap.min(), roughness / load), s.mesh.nodes, np.random.default_rng(45_389)
+    for _ in range(4):
+        centre, width = rng.uniform(-1, 1), rng.uniform(0.5, 1.5)
+        gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)
+        change = np.concatenate([gap, [rng.normal(), s.flux_gap * rng.normal()]])
+        up, down = (observables(equations, y + step * change, load) for step in (1e-5, -1e-5))
+        found = changes(equations, y, load, change)
+        for each in s.errors:
+            difference = (getattr(up, each) - getattr(down, each)) / 2e-5
+            scale = np.abs(changes(equations, y, load, np.diag(change))[:, ROW[each]]).sum()
+            # The minimum gap answers at the node next to it.
+            allowed = 2e-2 if each == "minimum_gap" else 1e-5
+            assert abs(found[ROW[each]] - difference) <= allowed * scale + 1e-13, each
+
+
+@pytest.mark.quick
+def test_a_part_of_any_step_keeps_the_gap_positive_and_the_contact_pressure_sane():
+    law, rng, parts = contact_law(sb.Groups(1e-4, 0.1, 2e-4)), np.random.default_rng(SEED), []
+    gap = 2e-3 * np.geomspace(1, 1e4, 60)
+    before = law.log_pressure(gap)
+    for size in 10.0 ** rng.uniform(-6, 4, 200):
+        change = size * gap * rng.normal(size=gap.size)
+        parts.append(longest_step(law, gap, change))
+        after = law.log_pressure(moved := gap + parts[-1] * change)
+        assert 0 < parts[-1] <= 1 and (moved >= 0.3 * gap * (1 - 1e-9)).all()
+        assert (after <= np.maximum(before + 3, 2) + 1e-9).all() and (after >= before - 3 - 1e-9)[before > -7].all()
+    assert min(parts) < 1e-2 and max(parts) == 1 == longest_step(law, gap, -1e-3 * gap)
 
 
 def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_errors):
