@@ -60,7 +60,7 @@ def written(folder, contact, tables):
     case.write_text(case_text(contact, **tables))
     contact = sb.load_case(case).contact
     speeds = np.geomspace(1e-3, 0.3, 4)
-    friction = sb.stribeck_curve(contact, speed=speeds, rtol=1e-7).friction
+    friction = sb.stribeck_curve(contact, speed=speeds, rtol=1e-5).friction
     data = folder / "data.csv"
     data.write_text("speed (m/s),friction\n" + "\n".join(f"{u},{mu}" for u, mu in zip(speeds, friction, strict=True)))
     return case, data, speeds, friction
@@ -73,7 +73,7 @@ def check_round_trip(capsys, folder, contact, tables, free):
     answer = call(capsys, "fit", data, case, "--free", *free, "--out", out, "--json")
     assert answer.code == 0, answer.err
     back = sb.load_case(out).contact
-    again = sb.stribeck_curve(back, speed=speeds, rtol=1e-7).friction
+    again = sb.stribeck_curve(back, speed=speeds, rtol=1e-5).friction
     np.testing.assert_allclose(again, friction, rtol=1e-4)
     for each in json.loads(answer.out)["inputs"]:
         assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
@@ -95,10 +95,10 @@ def test_a_fitted_case_of_every_law_has_the_fitted_curve(capsys, tmp_path, name,
 
 
 @pytest.mark.parametrize(
-    ("name", "free"), [("data sheet", "load"), ("data sheet", "viscosity"), ("Young", "modulus"), ("two bodies", "modulus")]
+    ("name", "free"), [("data sheet", ["load", "viscosity"]), ("Young", ["modulus"]), ("two bodies", ["modulus"])]
 )
 def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(capsys, tmp_path, name, free):
-    check_round_trip(capsys, tmp_path, INPUTS[name], {}, [free])
+    check_round_trip(capsys, tmp_path, INPUTS[name], {}, free)
 
 
 def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_path):

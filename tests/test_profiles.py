@@ -117,7 +117,7 @@ def test_the_stated_error_covers_a_finer_solution(subtests):
 
 
 def test_published_friction_projects_the_pressure_on_the_slope_of_the_body():
-    found = sb.solve(groups(1e-3), profile=LIP, cavitation="none", rtol=1e-8)
+    found = sb.solve(groups(1e-3), profile=LIP, cavitation="none", rtol=1e-5)
     x = np.linspace(-6, 6, 60001)
     moment = np.trapezoid(LIP.slope(x) * found.profile(x).fluid_pressure, x)
     assert found.viscous_published == pytest.approx(found.viscous_upper - 4 * LOAD**0.5 / np.pi * moment, rel=1e-2)
@@ -184,10 +184,11 @@ def test_a_reversed_shape_is_its_mirror_image():
             return -self.of.slope(-x)
 
     mirrored, turned = (
-        sb.solve(groups(1e-3), profile=shape, cavitation="exit") for shape in (Mirrored(LIP), Reversed("lip", LIP.numbers))
+        sb.solve(groups(1e-3), profile=shape, cavitation="exit", rtol=1e-4)
+        for shape in (Mirrored(LIP), Reversed("lip", LIP.numbers))
     )
     assert turned.minimum_gap == pytest.approx(mirrored.minimum_gap, rel=1e-12)
-    assert turned.contact_load_share < 0.5 * sb.solve(groups(1e-3), profile=LIP, cavitation="exit").contact_load_share
+    assert turned.contact_load_share < 0.5 * sb.solve(groups(1e-3), profile=LIP, cavitation="exit", rtol=1e-4).contact_load_share
 
 
 def test_what_is_made_for_the_parabola_refuses_a_shape():
