@@ -14,6 +14,9 @@ FINITE := -o faulthandler_timeout=240 -o faulthandler_exit_on_timeout=true
 QUICK  := -m pytest -q -n auto $(FINITE) -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
 UV     := $(or $(shell command -v uv),$(BIN)/uv)
 
+# Where bytecode is not kept, each worker and each command compiles all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
