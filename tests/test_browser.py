@@ -318,6 +318,42 @@ def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
     page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'lab.csv')")
 
 
+def test_columns_are_mapped_and_a_fit_shows_intervals_and_residuals(open_page, tmp_path):
+    page = open_page()
+    speeds = np.geomspace(1e-4, 1e-1, 9)
+    friction = [sb.atlas.friction(server.example().contact.replace(speed=float(s)).groups, 0.5, 0.06) for s in speeds]
+    path = tmp_path / "odd.csv"
+    rows = "\n".join(
+        f"{1e3 * s:.6g};{f * (1 + 0.02 * (-1) ** i):.6g}" for i, (s, f) in enumerate(zip(speeds, friction, strict=True))
+    )
+    path.write_text(f"A;B\n{rows}\n")
+    page.set_input_files("input[type=file]", path)
+    page.wait_for_selector(".mapping")
+    assert "none of which is known as speed or friction" in page.locator(".mapping").inner_text()
+    page.get_by_label("speed", exact=True).select_option("A")
+    page.get_by_label("its unit, where the header has none").fill("mm/s")
+    page.get_by_label("friction", exact=True).select_option("B")
+    page.get_by_role("button", name="Read").click()
+    page.wait_for_selector(".chips .q-chip")
+    assert page.locator(".mapping").count() == 0
+    page.get_by_role("button", name="Fit", exact=True).click()
+    page.get_by_label("roughness", exact=True).uncheck()
+    now = at_rest(page, lambda: page.get_by_role("button", name="Fit these").click())
+    assert now.contact.boundary_friction == pytest.approx(0.5, rel=0.05) and now.contact.roughness == 1e-6
+    cells = page.locator(".fitting tr td").all_inner_texts()
+    assert re.fullmatch(r"0\.\d+ to 0\.\d+", cells[-1])
+    [points] = [each["data"] for each in page.evaluate(CHART, "residuals")["series"] if each["type"] == "points"]
+    assert len(points) == 9
+    page.wait_for_function("document.querySelector('.chart-residuals canvas').getBoundingClientRect().height > 60")
+
+
+def test_a_program_is_shown_to_be_copied(open_page):
+    page = open_page()
+    page.get_by_role("button", name="Copy").click()
+    page.get_by_text("As Python ...").click()
+    assert page.locator(".code").inner_text().startswith("import stribeck as sb")
+
+
 @pytest.mark.parametrize(
     ("label", "ending", "begins"),
     [

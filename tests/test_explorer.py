@@ -8,6 +8,7 @@ import json
 import math
 import re
 import socket
+import subprocess
 import sys
 import time
 import tomllib
@@ -728,6 +729,53 @@ def test_a_measured_curve_is_fitted_and_the_inputs_follow():
     assert fitted.inputs.contact.roughness == pytest.approx(1.4e-6, rel=1e-3)
     assert fitted.inputs.contact.boundary_friction == pytest.approx(0.5, rel=1e-3)
     assert "roughness 1.4 µm" in fitted.report and fitted.report.startswith("Fitted to m.csv: ")
+
+
+def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residuals():
+    truth = START.contact.replace(boundary_friction=0.4)
+    speeds = np.geomspace(1e-4, 1e-1, 12)
+    friction = [sb.solve(truth.replace(speed=float(speed))).friction().total for speed in speeds]
+    noisy = np.array(friction) * np.exp(0.02 * np.random.default_rng(3).standard_normal(len(speeds)))
+    rows = "\n".join(f"{speed!r},{mu!r}" for speed, mu in zip(speeds.tolist(), noisy.tolist(), strict=True))
+    [measured] = read_measured("m.csv", f"speed [m/s],friction\n{rows}\n".encode(), START.contact)
+    fitted = fit_measured(START, measured, lambda *_: None, ["boundary_friction"])
+    [only] = fitted.found.inputs
+    assert only.name == "boundary_friction" and only.interval_95[0] < 0.4 < only.interval_95[1]
+    assert fitted.inputs == START.edited({"boundary_friction": only.value})
+    chart = charts.residual_chart(fitted.found)
+    [points] = [each["data"] for each in chart["series"] if each["type"] == "points"]
+    assert [y for _, y in points] == pytest.approx(fitted.found.residuals, rel=1e-4)
+    assert chart["x"]["low"] < speeds[0] < speeds[-1] < chart["x"]["high"] and chart["x"]["unit"] == "m/s"
+
+
+def test_columns_that_no_header_names_are_read_as_the_page_maps_them():
+    content = b"A;B;C\n1;0.5;x\n10;0.2;x\n1;0.6;y\n"
+    with pytest.raises(sb.InputError, match="none of which is known as speed or friction"):
+        read_measured("odd.csv", content, START.contact)
+    assert read_file("headers", "odd.csv", content, START.contact) == ["A", "B", "C"]
+    asked = {"columns": {"speed": "A", "friction": "B", "curve": "C"}, "units": {"speed": "mm/s"}}
+    one, two = read_file("measured", "odd.csv", content, START.contact, asked)
+    assert one.speed.tolist() == [1e-3, 1e-2] and two.friction.tolist() == [0.6] and one.name == "odd.csv: x"
+    with pytest.raises(sb.InputError, match="'D'"):
+        read_file("measured", "odd.csv", content, START.contact, {"columns": {"speed": "D"}})
+
+
+def test_the_program_and_the_commands_that_are_copied_solve_what_is_shown(subtests, tmp_path, monkeypatch):
+    ball = choices.choose(START, "geometry", "point").replace(definition="published")
+    seal = inputs.from_case(sb.load_case(EXAMPLES / "nitrile_seal.toml"))
+    monkeypatch.chdir(tmp_path)
+    for now, is_short in ((START, True), (ball, True), (seal, False)):
+        model = Answerer()
+        shown = model(now)
+        program = files.CODES["python"](shown)
+        with subtests.test(now.case.title):
+            assert ("case.toml" not in program) == is_short
+            found = {}
+            exec(program.partition("sb.stribeck_curve")[0], found)  # noqa: S102 - what a user would run
+            assert found["contact"].groups == now.contact.groups and found["state"].rtol == now.case.rtol
+            script = files.CODES["command"](shown)
+            subprocess.run(["sh", "-c", script.partition("stribeck solve")[0]], check=True)
+            assert sb.load_case("case.toml").contact.groups == now.contact.groups
 
 
 def test_the_axis_of_speeds_holds_all_that_was_measured(answer):

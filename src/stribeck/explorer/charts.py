@@ -13,6 +13,8 @@ from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.friction_rules import RULES, speed_words
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale, round_down, round_up
+from stribeck.fits.measurements import UNITS
+from stribeck.fits.result import Fit
 from stribeck.plot.style import readable_unit
 from stribeck.solver.fields import Field
 
@@ -163,6 +165,20 @@ def diagram_chart(answer: Answer) -> Options:
     series += [path | {"quiet": True}, _point(min(max(contact.speed, low), high), height)]
     across, drag = axis(f"{speed_words(contact)} U", "m/s", low, high), {"name": "speed", "scale": 1.0}
     return {"x": across, "y": axis("roughness", "µm", *ends), "series": series, "drag": drag}
+
+
+def residual_chart(found: Fit) -> Options:
+    """Return the residuals of a fit over what was measured."""
+    data, residuals = found.data, np.asarray(found.residuals)
+    x, reach = np.asarray(data.values), round_up(max(3.0, 1.1 * float(np.abs(residuals).max())))
+    ends = round_down(0.99 * float(x.min())), round_up(1.01 * float(x.max()))
+    series = [line("rms", "zero", np.array(ends), np.zeros(2), "plain") | {"quiet": True}]
+    for k, name in enumerate(data.curves):
+        mine = data.curve == k
+        series.append(_series(f"measured{k % 3}", name, "points", _pairs(x[mine], residuals[mine])))
+    unit = {"m s-1": "m/s", "m-1": "1/m", "1": ""}.get(UNITS[data.abscissa], UNITS[data.abscissa])
+    across = axis(data.abscissa.replace("_", " "), unit, *ends)
+    return {"x": across, "y": axis("residual", "standard errors", -reach, reach, log=False), "series": series}
 
 
 def axis(name: str, unit: str, low: float, high: float, log: bool = True) -> Options:

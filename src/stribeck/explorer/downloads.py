@@ -123,6 +123,43 @@ def case_text(shown: Answer) -> str:
     return toml_text(tables)
 
 
+def python_text(shown: Answer) -> str:
+    """Return a program that solves the present state and its curve, with the case where the contact has more than inputs."""
+    inputs, contact = shown.inputs, shown.inputs.tables["contact"]
+    definition, rtol = inputs.case.definition, inputs.case.rtol
+    if (
+        inputs.tables.keys() <= {"title", "notes", "contact", "solver", "fit"}
+        and "law" not in contact
+        and not inputs.case.errors
+    ):
+        lines = [f"    {name}={value!r}," for name, value in contact.items() if name != "geometry"]
+        made = "\n".join(["import stribeck as sb", "", f"contact = sb.{inputs.table.contact}(", *lines, ")"])
+    else:
+        text = f'r"""{case_text(shown)}"""' if '"""' not in case_text(shown) else repr(case_text(shown))
+        write = f'Path("case.toml").write_text({text}, encoding="utf-8")'
+        made = "\n".join(
+            ["from pathlib import Path", "", "import stribeck as sb", "", write, 'contact = sb.load_case("case.toml").contact']
+        )
+    return f"""{made}
+state = sb.solve(contact, rtol={rtol!r})
+print(state)
+print(state.friction(definition={definition!r}))
+sb.stribeck_curve(contact, definition={definition!r}).plot().savefig("curve.png")
+"""
+
+
+def command_text(shown: Answer) -> str:
+    """Return commands that write the case of the present state and solve it and its curve."""
+    return f"""cat > case.toml <<'END_OF_CASE'
+{case_text(shown)}END_OF_CASE
+stribeck solve case.toml
+stribeck curve case.toml --plot curve.png
+"""
+
+
+CODES = {"python": python_text, "command": command_text}
+
+
 def _present_curve(shown: Answer) -> Any:
     """Return the curve through the present state."""
     if shown.curve is None or "curve" in shown.stale:

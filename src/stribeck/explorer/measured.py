@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from stribeck._types import Array
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import DEFAULT_FREE, FREE_INPUTS, FitSettings, check_fit_table
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs
+from stribeck.files.text_table import read_table
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.reading import read_measurements
+from stribeck.fits.result import Fit
+from stribeck.fits.table.columns import ABSCISSAS, known_name
 from stribeck.quantities.units import InputError
 
 
@@ -44,35 +49,61 @@ class Fitted:
     """What a fit gave."""
 
     inputs: Inputs  # Those with the fitted values
-    report: str  # The values with their errors, in a sentence
+    report: str  # The values, in a sentence
+    found: Fit  # The values with their intervals, the residuals and what is to be known of them
 
 
-def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
-    """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones."""
-    settings = now.tables.get("fit", {})
-    found = fit(measured.source, now.contact, free=settings.get("free"), intervals=False, on_step=on_step)
+# What a column of a file may be.
+MEANINGS = (*ABSCISSAS, "entrainment_speed", "friction", "friction_force", "normal_force", "error", "curve")
+
+
+def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
+    """Return the inputs that a fit may free, with their labels, and whether ``[fit]`` or the default frees them."""
+    chosen = now.tables.get("fit", {}).get("free", DEFAULT_FREE)
+    return [(name, now.fields[name].label, name in chosen) for name in FREE_INPUTS if name in now.fields]
+
+
+def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:
+    """Fit inputs to the measured curves of a file: those named, or of the case under ``[fit]``, or the usual ones."""
+    free = free or now.tables.get("fit", {}).get("free") or DEFAULT_FREE
+    found = fit(measured.source, now.contact, free=free, on_step=on_step)
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
     after = now.edited(values)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"
     target = measured.name if curves == 1 else f"{number} curves of {measured.file}"
-    return Fitted(after, f"Fitted to {target}: {fitted}. Undo brings back the values before; intervals: stribeck fit.")
+    return Fitted(after, f"Fitted to {target}: {fitted}. Undo brings back the values before.", found)
 
 
-def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:
-    r"""Return the measured curves of a file, over the speed.
+@contextmanager
+def _file_of(name: str, content: bytes) -> Iterator[Path]:
+    """Lend a file with a content, never under the name that came with it but in sentences."""
+    with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
+        path = Path(folder) / "curve.csv"
+        path.write_bytes(content)
+        try:
+            yield path
+        except InputError as problem:
+            raise InputError(str(problem).replace(str(path), name)) from None
+
+
+def headers_of(name: str, content: bytes) -> list[str]:
+    """Return the names of the columns of a file."""
+    with _file_of(name, content) as path:
+        return list(read_table(path, knows=known_name).written)
+
+
+def read_measured(name: str, content: bytes, contact: Contact, asked: Mapping[str, Any] | None = None) -> list[Measured]:
+    r"""Return the measured curves of a file, over the speed; a table ``[fit]`` may say what its columns are.
 
     .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta},
               \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta R} \text{ of a ball}
     """
-    with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
-        path = Path(folder) / "curve.csv"  # never under the name that came with it
-        path.write_bytes(content)
-        try:
-            data = read_measurements(path, FitSettings.of(contact))
-        except InputError as problem:
-            raise InputError(str(problem).replace(str(path), name)) from None
+    settings = FitSettings.of(contact)
+    settings = replace(check_fit_table(dict(asked or {}), settings.geometry), slide_to_roll=settings.slide_to_roll)
+    with _file_of(name, content) as path:
+        data = read_measurements(path, settings)
     found, rule = [], RULES[contact.groups.geometry]
     for k, (curve, inputs) in enumerate(zip(data.curves, data.inputs, strict=True)):
         given = {each: value for each, value in inputs.items() if each in rule.hersey_exponents}

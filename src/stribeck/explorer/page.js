@@ -116,6 +116,7 @@ const List = {
 
 const CHARTS = {
   friction: "Friction over speed",
+  residuals: "Residuals of the fit",
   gap: "Gap along the contact",
   pressure: "Contact and fluid pressure along the contact",
   plane: "Film of the ball on the plane of the contact",
@@ -143,7 +144,11 @@ export default {
         <q-btn flat dense no-caps icon="undo" aria-label="Undo" title="Undo (Ctrl-Z)" :disable="!undo" @click="act('undo')"/>
         <q-btn flat dense no-caps icon="redo" aria-label="Redo" title="Redo (Ctrl-Shift-Z)" :disable="!redo" @click="act('redo')"/>
         <q-btn flat dense no-caps icon="push_pin" label="Pin" title="Keep this curve to compare (p)" @click="act('pin')"/>
-        <q-btn flat dense no-caps icon="link" label="Link" title="Copy the address of this state (l)" @click="copy"/>
+        <q-btn flat dense no-caps icon="content_copy" label="Copy" title="Copy the address of this state (l), or a program that makes it"><q-menu><q-list>
+          <q-item clickable v-close-popup @click="copy"><q-item-section>Link to this state</q-item-section></q-item>
+          <q-item clickable v-close-popup @click="act('code', 'python')"><q-item-section>As Python ...</q-item-section></q-item>
+          <q-item clickable v-close-popup @click="act('code', 'command')"><q-item-section>As a command ...</q-item-section></q-item>
+        </q-list></q-menu></q-btn>
         <q-btn flat dense no-caps icon="contrast" aria-label="Toggle dark mode" title="Toggle dark mode (t)" @click="toggleDark"/>
       </header>
       <section class="card answer" aria-label="Answer">
@@ -189,7 +194,26 @@ export default {
           <div class="below">
             <div class="chips"><q-chip v-for="(each, i) in chips" :key="each.name" removable :icon="each.icon" :style="'--curve: var(--' + each.colour + ')'"
               @remove="act('remove', i)">{{ each.name }}</q-chip></div>
-            <q-btn v-if="fit" flat dense no-caps icon="insights" label="Fit" title="Fit inputs to the measured curve" @click="act('fit')"/>
+            <q-btn v-if="fit" flat dense no-caps icon="insights" label="Fit" title="Fit inputs to the measured curve" @click="act('show_fit')"/>
+          </div>
+          <form class="mapping" v-if="mapping" aria-label="Columns of the file" @submit.prevent="act('read_columns', columns, units)">
+            <p>{{ mapping.said ? mapping.said + '. Say below which is which.' : 'Say what the columns of ' + mapping.file + ' are.' }}</p>
+            <div class="choice-row" v-for="each in mapping.meanings" :key="each"><label class="name" :for="'column-' + each">{{ each.replaceAll('_', ' ') }}</label>
+              <select class="list" :id="'column-' + each" v-model="columns[each]"><option value="">as the header says</option>
+                <option v-for="name in mapping.headers" :key="name">{{ name }}</option></select>
+              <template v-if="columns[each] && each !== 'curve'"><label class="detail" :for="'unit-' + each">its unit, where the header has none</label>
+                <input class="field" type="text" :id="'unit-' + each" v-model="units[each]" autocomplete="off"></template></div>
+            <q-btn flat dense no-caps type="submit" icon="check" label="Read"/><q-btn flat dense no-caps icon="close" label="Cancel" @click="mapping = null"/>
+          </form>
+          <div class="fitting" v-show="fitting" role="region" aria-label="Fit">
+            <template v-if="fitting"><h2>Fit to {{ fitting.file }}</h2><p class="caption">{{ fitting.taken }} <button type="button" @click="act('ask_columns')">Change the columns</button></p>
+              <label v-for="[name, label] in fitting.inputs" :key="name"><input type="checkbox" :value="name" v-model="freed"> {{ label }}</label>
+              <div><q-btn flat dense no-caps icon="insights" label="Fit these" :disable="!freed.length" @click="act('fit', ...freed)"/>
+                <q-btn flat dense no-caps icon="close" label="Close" @click="fitting = null"/></div></template>
+            <template v-if="fitted"><table><tr><td></td><th scope="col">value</th><th scope="col">error</th><th scope="col">95 %</th></tr>
+              <tr v-for="[label, ...cells] in fitted.rows" :key="label"><th scope="row">{{ label }}</th><td v-for="each in cells">{{ each }}</td></tr></table>
+              <p>{{ fitted.said }}</p><p class="note" v-for="each in fitted.notes">{{ each }}</p></template>
+            <div class="chart-residuals" v-show="fitted" ref="residuals"></div>
           </div>
           <div class="chart-friction" ref="friction"></div>
           <div class="curve-notes" tabindex="0" role="region" aria-label="Notes on the curve"><p class="note" v-for="each in notes">{{ each }}</p></div>
@@ -230,14 +254,23 @@ export default {
       <q-dialog :model-value="complaint.length > 0" @update:model-value="complaint = []"><q-card class="complaint">
         <div v-for="each in complaint">{{ each }}</div><q-btn flat no-caps label="Close" autofocus v-close-popup/>
       </q-card></q-dialog>
+      <q-dialog :model-value="Boolean(code)" @update:model-value="code = ''"><q-card class="complaint">
+        <pre class="code" tabindex="0">{{ code }}</pre><q-btn flat no-caps icon="content_copy" label="Copy" @click="write(code, 'Copied')"/><q-btn flat no-caps label="Close" autofocus v-close-popup/>
+      </q-card></q-dialog>
     </div>`,
   data() {
-    const texts = ["title", "source", "message", "waits", "map", "address"], flags = ["working", "undo", "redo", "fit", "failed"];
+    const texts = ["title", "source", "message", "waits", "map", "address", "code"], flags = ["working", "undo", "redo", "fit", "failed"];
     const lists = ["lists", "rows", "groups", "chips", "complaint", "notes", "numbers", "remarks", "comparison", "margins", "marginNotes"];
     const empty = [...texts.map((each) => [each, ""]), ...lists.map((each) => [each, []]), ...flags.map((each) => [each, false])];
-    return { ...Object.fromEntries(empty), geometry: "line", chosen: {}, answer: null };
+    return { ...Object.fromEntries(empty), geometry: "line", chosen: {}, answer: null, mapping: null, columns: {}, units: {}, fitting: null, fitted: null, freed: [] };
   },
   watch: {
+    mapping() {
+      [this.columns, this.units] = [Object.fromEntries((this.mapping?.meanings ?? []).map((each) => [each, ""])), {}];
+    },
+    fitting(now) {
+      if (now) [this.fitted, this.freed] = [null, now.inputs.filter(([, , chosen]) => chosen).map(([name]) => name)];
+    },
     address(query) {
       history.replaceState(null, "", query);
     },
@@ -302,9 +335,12 @@ export default {
     toggleDark() {
       Quasar.Dark.toggle();
     },
+    write(text, done, otherwise = "Could not copy; select the text") {
+      const write = navigator.clipboard ? navigator.clipboard.writeText(text) : Promise.reject();
+      write.then(() => say(done, 1600), () => say(otherwise, 1600));
+    },
     copy() {
-      const write = navigator.clipboard ? navigator.clipboard.writeText(location.href) : Promise.reject();
-      write.then(() => say("Address copied", 1600), () => say("Could not copy; the link is in the address bar", 1600));
+      this.write(location.href, "Address copied", "Could not copy; the link is in the address bar");
     },
     async upload({ target }) {
       const files = [...target.files];

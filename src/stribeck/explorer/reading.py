@@ -11,27 +11,35 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from stribeck.contacts.contact import Contact
 from stribeck.explorer.downloads import read_case
 from stribeck.explorer.inputs.inputs import from_case
 from stribeck.explorer.inputs.url import check_length
-from stribeck.explorer.measured import read_measured
+from stribeck.explorer.measured import headers_of, read_measured
 from stribeck.explorer.scans import read_scan
 from stribeck.quantities.units import InputError
 
-Kind = Literal["case", "measured", "scan"]
+Kind = Literal["case", "measured", "scan", "headers"]
 
 MAX_READ_SECONDS = 20.0  # Time after which a file is given up [s].
 
 MAX_READ_BYTES = 4_000_000_000  # Bytes that the reader of a file may address, where the system can limit it.
 
 
-def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: float = MAX_READ_SECONDS) -> Any:
-    """Return what a file holds."""
+def read_file(
+    kind: Kind,
+    name: str,
+    content: bytes,
+    contact: Contact,
+    asked: Mapping[str, Any] | None = None,
+    seconds: float = MAX_READ_SECONDS,
+) -> Any:
+    """Return what a file holds; of measured curves a table ``[fit]`` may say what the columns are."""
     # Of the contact only what measured curves need: not every law can be sent.
-    task = pickle.dumps((kind, name, content, contact.replace(law=None), seconds))
+    task = pickle.dumps((kind, name, content, contact.replace(law=None), asked, seconds))
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     command = [sys.executable, "-m", "stribeck.explorer.reading"]
     try:
@@ -49,7 +57,7 @@ def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: 
 
 def main() -> None:
     """Read a task from the standard input and write what was found, or the sentence about it, to the standard output."""
-    kind, name, content, contact, seconds = pickle.load(sys.stdin.buffer)  # noqa: S301 - from our own program
+    kind, name, content, contact, asked, seconds = pickle.load(sys.stdin.buffer)  # noqa: S301 - from our own program
     signal.signal(signal.SIGTERM, _stop)
     _limit_memory()
     # A signal, so that temporary folders are removed on the way out.
@@ -64,7 +72,7 @@ def main() -> None:
         elif kind == "scan":
             found = read_scan(name, content)
         else:
-            found = _of_text(name, content, contact)
+            found = headers_of(name, content) if kind == "headers" else _of_text(name, content, contact, asked)
         answer = True, found
     except InputError as problem:
         answer = False, str(problem)
@@ -73,11 +81,13 @@ def main() -> None:
     sys.stdout.buffer.write(pickle.dumps(answer))
 
 
-def _of_text(name: str, content: bytes, contact: Contact) -> Any:
+def _of_text(name: str, content: bytes, contact: Contact, asked: Mapping[str, Any] | None) -> Any:
     """Return the measured curves of a text file, or else the surface whose heights it holds."""
     try:
-        return read_measured(name, content, contact)
+        return read_measured(name, content, contact, asked)
     except InputError as problem:
+        if asked:
+            raise
         try:
             return read_scan(name, content)
         except InputError as other:

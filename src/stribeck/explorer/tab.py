@@ -20,16 +20,18 @@ from nicegui import background_tasks, events
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answer, Answerer
+from stribeck.explorer.charts import residual_chart
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.history import History
 from stribeck.explorer.inputs.inputs import Inputs
-from stribeck.explorer.measured import Measured, fit_measured
+from stribeck.explorer.measured import MEANINGS, Measured, fit_measured, free_inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of, without_rtol
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
 from stribeck.explorer.serving.pools import FILES, Threads, run
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.files.writing import MissingExtraError
+from stribeck.fits.measurements import CHANGE_READ
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
@@ -62,12 +64,18 @@ def reason(problem: Exception) -> str:
     return f"Internal error ({' '.join(repr(problem).split())[:300]})."
 
 
+def _filled(texts: dict[str, str]) -> dict[str, str]:
+    """Return those texts that are not empty."""
+    return {str(name): str(text).strip() for name, text in texts.items() if str(text).strip()}
+
+
 class Tab:
     """One open page."""
 
     def __init__(self, opened: url.Opened, start: Inputs) -> None:
         self.start, self.inputs, self.pins = start, opened.inputs, list(opened.pins)
         self.measured: list[Measured] = []
+        self.file = "", b""  # The last file of measured curves, as long as the page is open
         self.problems: Problems = {key: {"typed": text, "sentence": said} for key, (text, said) in opened.problems.items()}
         self.model, self.threads, self.history = Answerer(), Threads(), History(self.inputs)
         self.answer: Answer | None = None
@@ -90,6 +98,7 @@ class Tab:
             "redo": lambda: self.step(1),
             "retry": self.request,
             **{name: getattr(self, name) for name in ("restore", "back", "pin", "remove", "example", "fit")},
+            **{name: getattr(self, name) for name in ("show_fit", "ask_columns", "read_columns", "code")},
         }
         TABS[self.page.client.id] = self
 
@@ -171,27 +180,58 @@ class Tab:
         self.problems.clear()
         self.change(replace(found, abscissa=self.inputs.abscissa))
 
-    async def take_file(self, name: str, content: bytes) -> None:
+    async def take_file(self, name: str, content: bytes, asked: dict[str, Any] | None = None) -> None:
         """Take a case, a measured curve or a surface that the browser sent; undo brings back the inputs before."""
         kinds: dict[str, Any] = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         self.page.show(message=f"Reading {name} ...", failed=False)
         try:
-            found = await run(FILES, read_file, kind, name, content, self.inputs.contact)
+            found = await run(FILES, read_file, kind, name, content, self.inputs.contact, asked)
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):
                 self.change(with_scan(self.inputs, found))
                 self.message = found.report
             else:
-                self.measured = [*self.measured, *found][-MAX_MEASURED:]
+                self.file = name, content
+                self.measured = [*(each for each in self.measured if each.file != name), *found][-MAX_MEASURED:]
+                self.page.show(mapping=None)
                 self.request()
         except InputError as problem:
-            self.complain(str(problem))
+            self.file = name, content
+            if kind != "measured" or not await self.ask_columns(str(problem)):
+                self.complain(str(problem))
         self.page.show(message="")
 
-    async def fit(self) -> None:
-        """Fit the inputs to the measured curves of the last file; undo brings back those before."""
+    async def ask_columns(self, said: str = "") -> bool:
+        """Ask what the columns of the last file are; False where it has none."""
+        name, content = self.file
+        try:
+            headers = await run(FILES, read_file, "headers", name, content, self.inputs.contact)
+        except InputError:
+            return False
+        wrong = said.partition("; say which")[0]
+        self.page.show(mapping={"file": name, "said": wrong, "headers": headers, "meanings": MEANINGS})
+        return len(headers) > 1
+
+    async def read_columns(self, columns: dict[str, str], units: dict[str, str]) -> None:
+        """Read the last file with columns that the user named."""
+        given = {"columns": columns, "units": units}
+        await self.take_file(*self.file, {name: kept for name, each in given.items() if (kept := _filled(each))})
+
+    def show_fit(self) -> None:
+        """Show what may be fitted to the measured curves of the last file."""
+        last = self.measured[-1]
+        self.page.show(
+            fitting={
+                "file": last.file,
+                "inputs": free_inputs(self.inputs),
+                "taken": last.source.taken.replace(CHANGE_READ, "."),
+            }
+        )
+
+    async def fit(self, *free: str) -> None:
+        """Fit inputs to the measured curves of the last file; undo brings back those before."""
         now, last = self.inputs, self.measured[-1]
         self.page.show(message=f"Fitting to {last.file} ...", failed=False)
 
@@ -200,7 +240,7 @@ class Tab:
                 raise Superseded
 
         try:
-            fitted = await run(self.threads.slow, fit_measured, now, last, step, watch=step)
+            fitted = await run(self.threads.slow, fit_measured, now, last, step, free, watch=step)
         except Superseded:
             self.page.show(message="The fit was given up, as the inputs changed.")
         except Exception as problem:
@@ -208,6 +248,12 @@ class Tab:
         else:
             self.change(fitted.inputs)
             self.message = fitted.report
+            found = fitted.found
+            rows = [
+                [self.inputs.table.rows[each.name].label, each.texts[0], each.texts[1], each.texts[3]] for each in found.inputs
+            ]
+            result = {"rows": rows, "said": found.outcome.value, "notes": [*found.quality.messages, *found.notes]}
+            self.page.show(fitted=result, charts={"residuals": residual_chart(found)})
 
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
@@ -220,6 +266,11 @@ class Tab:
             self.complain(reason(problem))
             return None
         return found
+
+    def code(self, kind: str) -> None:
+        """Show the present state as a program or as commands, to be copied."""
+        if self.answer is not None:
+            self.page.show(code=files.CODES[kind](self.answer))
 
     def complain(self, text: str) -> None:
         """Show sentences about a file until they are read."""
