@@ -177,17 +177,6 @@ def test_a_figure_is_a_png_an_svg_and_its_data(fakes, tmp_path):
     assert data.words.values.tolist() == ["a", "bc", "d"]
 
 
-def test_the_same_numbers_give_the_same_bytes_also_from_the_file(tmp_path):
-    figure = Fakes().figure("5")
-    write_netcdf(figure.data(), tmp_path / "data.nc")
-    for i, source in enumerate((figure.data(), opened(tmp_path / "data.nc"))):
-        for ending in (".png", ".svg"):
-            style.save(figure.draw(source), tmp_path / f"{i}{ending}")
-    for ending in (".png", ".svg"):
-        assert len({(tmp_path / f"{i}{ending}").read_bytes() for i in range(2)}) == 1
-    assert b"<dc:date>" not in (tmp_path / "0.svg").read_bytes()
-
-
 def test_data_in_the_folder_are_used_again_and_lost_pictures_drawn_from_them(fakes, tmp_path):
     (first,) = make_figures(["3"], tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
@@ -387,22 +376,6 @@ def test_the_command_makes_all_figures_into_the_folder_figures(fakes, tmp_path, 
     assert len(os.listdir(tmp_path / "figures")) == 3 * len(FIGURES)
 
 
-@pytest.mark.parametrize(
-    ("tokens", "sentence"),
-    [
-        (("12",), "figure '12' is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1; 1 and 2 of the paper hold no results."),
-        (("3", "--out", "no/such"), "no/such cannot be created because the folder no does not exist; create it first."),
-        (("3", "--out", "file"), "file is a file; give the name of a folder."),
-    ],
-)
-def test_the_command_refuses_in_one_sentence(fakes, tmp_path, capsys, monkeypatch, tokens, sentence):
-    monkeypatch.chdir(tmp_path)
-    Path("file").touch()
-    answer = call(capsys, "figures", *tokens)
-    assert (answer.code, answer.out, answer.err) == (2, "", f"stribeck: {sentence}\n")
-    assert os.listdir(tmp_path) == ["file"]
-
-
 def test_the_exit_code_of_the_command_says_what_went_wrong(fakes, tmp_path, capsys, monkeypatch):
     fakes.problems["4"] = sb.SolveError(sb.Outcome.STEP_LIMIT, None, "speed 1: too far.")
     answer = call(capsys, "figures", "3", "4", "--out", tmp_path)
@@ -457,14 +430,6 @@ def test_a_phase_diagram_with_gaps_ends_the_figure_with_its_reasons(monkeypatch)
     monkeypatch.setattr("stribeck.figures.article.figure_11.phase_diagram", incomplete)
     with pytest.raises(sb.SolveError, match="Speed 1: too far"):
         load_figure("11").data()
-
-
-def test_ctrl_c_ends_the_phase_diagram_of_the_figure():
-    def report(done, steps):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        load_figure("11").data(report)
 
 
 def test_a_minimum_that_is_not_found_ends_the_figure_with_a_sentence(monkeypatch):

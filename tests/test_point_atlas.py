@@ -210,18 +210,6 @@ def test_at_rest_heavy_balls_have_their_friction_and_no_films():
 # --- what reads it ---
 
 
-@pytest.mark.quick
-def test_a_phase_diagram_has_its_lines_where_curves_have_them():
-    pytest.importorskip("xarray")
-    contact = ball()
-    unit = float(contact.groups.speed) / contact.speed
-    grid = {"speed": (1e-6 / unit, 10 / unit), "roughness": [contact.roughness], "points": {"speed": 9}}
-    diagram = sb.phase_diagram(contact, **grid, method="atlas")
-    curve = sb.stribeck_curve(contact, speed=grid["speed"], points=101, method="atlas")
-    assert diagram.speed_at_minimum.item() == pytest.approx(curve.minimum.value, rel=1e-3)
-    assert np.isfinite(diagram.friction).all()
-
-
 @pytest.mark.parametrize("cavitation", ["none", pytest.param("exit", marks=pytest.mark.slow)])
 def test_fits_begin_on_it_where_it_holds(cavitation):
     contact = ball(wetted_radius=3e-3, cavitation=cavitation)
