@@ -2,7 +2,6 @@
 
 import dataclasses
 import inspect
-import math
 
 import numpy as np
 import pytest
@@ -26,59 +25,6 @@ BALL = {
 def ball(contact=sb.PointContact, **changes):
     inputs = BALL | changes
     return contact(**{name: value for name, value in inputs.items() if value is not None})
-
-
-@pytest.mark.quick
-def test_the_scales_of_a_ball_are_those_of_hertz():
-    c = ball()
-    scales = c.hertz
-    assert scales.half_width**3 == pytest.approx(3 * 1.3 * 9.5e-3 / (4 * 1.6e6), rel=1e-13)
-    assert scales.indentation == pytest.approx(scales.half_width**2 / 9.5e-3, rel=1e-13)
-    assert scales.pressure == pytest.approx(2 * scales.half_width * 1.6e6 / (math.pi * 9.5e-3), rel=1e-13)
-    assert 2 * math.pi / 3 * scales.pressure * scales.half_width**2 == pytest.approx(1.3, rel=1e-13)
-
-
-@pytest.mark.quick
-def test_the_groups_of_a_ball_are_quotients_of_its_scales():
-    c = ball()
-    a, u, p = c.hertz.half_width, c.hertz.indentation, c.hertz.pressure
-    groups = c.groups
-    assert groups.geometry == "point"
-    assert groups.speed == pytest.approx(6 * 0.01 * 0.1 * a / (u * u * p), rel=1e-13)
-    assert groups.load == pytest.approx((p / (0.05 * 1.6e6)) ** 3, rel=1e-13)
-    assert groups.relative_roughness == pytest.approx(0.4e-6 / (2.0 * u), rel=1e-13)
-    assert groups.slope(0.05) == pytest.approx(c.slope, rel=1e-13)
-    assert groups.hersey_number(0.05) == pytest.approx(c.hersey_number, rel=1e-12)
-
-
-@pytest.mark.quick
-def test_each_input_enters_the_groups_with_its_exponents(subtests):
-    for name in [name for name in sb.PointContact.INPUTS.exponents if name != "wetted_radius"]:
-        with subtests.test(name=name):
-            c, factor = ball(), 1.2
-            moved = c.replace(**{name: getattr(c, name) * factor}).groups
-            found = [
-                math.log(getattr(moved, each) / getattr(c.groups, each)) / math.log(factor)
-                for each in ("speed", "load", "roughness")
-            ]
-            np.testing.assert_allclose(found, sb.PointContact.INPUTS.exponents[name], atol=1e-12)
-
-
-@pytest.mark.quick
-def test_a_ball_comes_back_from_its_groups():
-    c = ball(wetted_radius="4 mm")
-    back = sb.PointContact.from_groups(
-        c.groups,
-        radius=c.radius,
-        modulus=c.modulus,
-        viscosity=c.viscosity,
-        alpha=c.alpha,
-        beta=c.beta,
-        boundary_friction=c.boundary_friction,
-        slide_to_roll=0.5,
-        wetted_radius="4 mm",
-    )
-    assert [value for _, value in back.inputs()] == pytest.approx([value for _, value in c.inputs()], rel=1e-13)
 
 
 @pytest.mark.quick
