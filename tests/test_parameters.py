@@ -213,10 +213,10 @@ def test_the_exponents_of_an_input_are_those_of_the_groups():
         for name, exponents in base.INPUTS.exponents.items():
             if name == "wetted_radius":
                 continue
-            doubled = base.replace(**{name: 2 * getattr(base, name)})
+            halved = base.replace(**{name: 0.5 * getattr(base, name)})
             for group, exponent in zip(("speed", "load", "roughness"), exponents, strict=True):
-                ratio = getattr(doubled.groups, group) / getattr(base.groups, group)
-                assert ratio == pytest.approx(2.0**exponent, rel=1e-12), (base, name)
+                ratio = getattr(halved.groups, group) / getattr(base.groups, group)
+                assert ratio == pytest.approx(0.5**exponent, rel=1e-12), (base, name)
 
 
 # --- the objects ---
