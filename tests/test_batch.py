@@ -94,21 +94,6 @@ def test_one_state_is_an_array_of_none():
     assert found.ok
 
 
-def test_smooth_and_rough_states_may_be_mixed():
-    rough = crowd(6)
-    both = joined(rough, sb.Groups(rough.speed, rough.load, np.zeros(6)))
-    found = sb.solve_batch(both)
-    assert found.ok.all()
-    assert (found.contact_load_share[6:] == 0).all()
-    assert (found.contact_load_share[:6] > 0.01).all()
-    assert_states_its_errors(found, sb.solve(one(both, 8)), 8)
-
-
-def test_states_that_are_the_same_come_out_the_same():
-    found = sb.solve_batch(sb.Groups(np.full(3, 1e-5), 0.1, 1e-4))
-    assert len(set(found.central_gap)) == 1
-
-
 def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
     found = sb.solve_batch(sb.Groups(np.array([1e-9, 1e6]), 0.1, 0.0), rtol=1e-11)
     assert found.outcome.tolist() == [Outcome.ROUNDING, Outcome.CONVERGED]
@@ -143,16 +128,6 @@ def test_an_interrupted_run_keeps_what_is_done():
     assert found.ok.sum() == 5
     assert set(found.outcome[~found.ok]) == {Outcome.INTERRUPTED}
     assert np.isnan(found.central_gap[~found.ok]).all()
-
-
-def test_a_tolerance_out_of_range_is_refused():
-    with pytest.raises(sb.InputError, match="rtol = 1.0; it must be a number from 1e-11"):
-        sb.solve_batch(crowd(), rtol=1.0)
-
-
-def test_groups_are_asked_for():
-    with pytest.raises(sb.InputError, match="it must be a contact or Groups"):
-        sb.solve_batch([1.0, 2.0, 3.0])
 
 
 def test_no_states_are_no_work():

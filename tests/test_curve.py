@@ -6,8 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import run_python
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import stribeck as sb
 
@@ -106,16 +104,6 @@ def test_a_quasistatic_curve_over_the_load_is_the_dry_friction():
     np.testing.assert_allclose(curve.friction, 0.7, rtol=1e-6)
     assert set(curve.regimes) == {"boundary"}
     assert curve.transitions == ()
-
-
-@given(exponents=st.lists(st.integers(-40, 0), min_size=3, max_size=6, unique=True))
-@settings(max_examples=4, deadline=None)
-def test_any_ascending_points_are_met_in_their_order(exponents):
-    wanted = np.sort(10.0 ** (0.1 * np.array(exponents)))
-    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=wanted)
-    assert curve.values.tolist() == wanted.tolist()
-    np.testing.assert_allclose(curve.groups.speed, wanted, rtol=1e-13)
-    assert (np.diff(curve.observable("central_gap")) > 0).all()
 
 
 def test_progress_counts_every_point_once():

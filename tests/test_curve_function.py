@@ -176,16 +176,6 @@ def test_a_solution_is_that_of_one_value(curve):
         curve.solve_at([0.005, 0.006])
 
 
-def test_other_films_are_functions_too(subtests):
-    for parts in [{"cavitation": "exit"}, {"slide_to_roll": 0.5}]:
-        with subtests.test(parts=parts):
-            curve = sb.stribeck_curve(CONTACT, speed=("5 mm/s", "30 mm/s"), points=2, **parts)
-            alone = sb.solve(CONTACT.replace(speed=0.012), rtol=1e-8, **parts)
-            here = curve.at("12 mm/s")
-            for name in ("central_gap", "minimum_gap", "flux_gap", "viscous_balanced"):
-                assert here.values[name] == pytest.approx(getattr(alone, name), rel=2e-6)
-
-
 GROUPS, THINS, ROUGH = sb.Groups(1e-3, 0.1, 1e-4), sb.fluids.Carreau(0.02, 0.5), sb.fluids.PatirCheng(2.0)
 FEW_STATES = {
     "a kept mesh resolves the gap on the way too": (GROUPS, {"speed": (1e-9, 10.0)}, 12),

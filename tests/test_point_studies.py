@@ -17,15 +17,6 @@ def ball(**changes):
     return sb.PointContact.from_groups(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), **(kept | changes))
 
 
-def test_a_chain_of_balls_gives_the_states_that_are_solved_one_by_one():
-    states = np.array([[1e-3, 1e-2, 2e-4], [1.3e-3, 1e-2, 2e-4], [0.0, 1e-2, 2e-4]])
-    found = sb.solve_batch(sb.Groups(*states.T, geometry="point"), rtol=1e-4)
-    assert found.ok.all()
-    alone = sb.solve(sb.Groups(*states[1], geometry="point"), rtol=1e-4)
-    assert found.contact_load_share[1] == pytest.approx(alone.contact_load_share, abs=2e-4)
-    assert found.contact_load_share[2] == pytest.approx(1, abs=1e-12)
-
-
 def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
     pytest.importorskip("xarray")
     path = tmp_path / "sweep.toml"
