@@ -1,7 +1,7 @@
 """Following a path of expanded states: of functions that are known, so that nothing depends on a contact."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -180,6 +180,32 @@ def test_no_interval_is_halved_for_what_the_errors_of_its_states_explain():
     s = np.linspace(-1.0, 1.0, 101)
     found, errors = path.at(s)
     assert (np.abs(found - (s * s)[:, None]) <= errors + 1e-12).all()
+
+
+class Kinked(Noisy):
+    """A parabola that goes on as a straight line beyond zero, where states are of another kind."""
+
+    def solve(self, s, near=()):
+        found = super().solve(s, near)
+        is_beyond = s > 0.013
+        return replace(found, values=found.values - is_beyond * (s - 0.013), slopes=found.slopes - is_beyond, kind=is_beyond)
+
+
+def test_where_the_kind_of_states_changes_the_error_is_that_of_a_kink():
+    path, s = follow(Kinked(0.0), 1.0, -1.0, 1e-3), np.linspace(-1.0, 1.0, 801)
+    found, errors = path.at(s)
+    missed = np.abs(found[:, 0] - s * s + np.maximum(s - 0.013, 0.0))
+    assert path.outcome.ok and missed.max() > 1e-5
+    assert (missed <= errors[:, 0] + 1e-12).all()
+    left, right = path.around(0.013)
+    assert left.kind != right.kind and right.coordinate - left.coordinate < 0.05
+    is_smooth = (s < left.coordinate) | (s > right.coordinate)
+    assert errors[is_smooth].max() <= 1e-3 and missed[is_smooth].max() < 1e-9
+
+
+def test_states_with_slopes_bring_the_derivatives_between_them():
+    path, s = follow(Noisy(0.0), 1.0, -1.0, 1e-3), np.linspace(-0.9, 0.9, 41)
+    np.testing.assert_allclose(path.smooth(Dual(s, np.ones_like(s))).slope, np.tile(2 * s[:, None], 3), atol=1e-12)
 
 
 def test_an_interrupted_path_keeps_what_was_reported():

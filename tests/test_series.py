@@ -1,4 +1,4 @@
-"""Taylor series from values alone, and the interpolation between two of them."""
+"""Taylor series, and the interpolation between two of them."""
 
 import math
 
@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from stribeck.numerics.cells import Cells
-from stribeck.numerics.hermite import chebyshev_basis, hermite_form, hermite_weights, missed_by
+from stribeck.numerics.dual import Dual
+from stribeck.numerics.hermite import (
+    chebyshev_basis,
+    hermite_form,
+    hermite_weights,
+    missed_by,
+    slope_noise,
+    weights_through,
+)
 from stribeck.numerics.jets import Tape, polynomial
-from stribeck.numerics.series import beyond, circle, implicit_series, interval, radius
+from stribeck.numerics.series import beyond, circle, implicit_series, radius
 
 pytestmark = pytest.mark.quick
 
@@ -65,41 +73,25 @@ def test_values_on_a_circle_give_coefficients_to_rounding():
     np.testing.assert_allclose(scaled, coefficients(16) * reach ** np.arange(17.0), atol=1e-14)
 
 
-def test_coefficients_come_from_real_values_with_fewer_digits():
-    samples = interval(0.2 * SINGULAR)
-    found = samples.taylor(function(samples.places), 6)
-    np.testing.assert_allclose(found * SINGULAR ** np.arange(7), coefficients(6) * SINGULAR ** np.arange(7), atol=1e-4)
-    np.testing.assert_allclose(found[:3], coefficients(2), rtol=1e-8)
-
-
 def test_the_series_of_a_solution_is_that_of_its_closed_form():
-    """``x**2 = 1 + t`` and ``exp(y) = x``: a power with a binomial series and half of a logarithm, by samples and by jets."""
-    order, samples = 8, interval(0.35)
+    """``x**2 = 1 + t`` and ``exp(y) = x``: a power with a binomial series and half of a logarithm."""
+    order = 8
     binomial = np.cumprod([1.0, *((0.5 - k) / (k + 1) for k in range(order))])
     logarithm = np.array([0.0, *(-0.5 * (-1) ** k / k for k in range(1, order + 1))])
     exact = np.stack([binomial, logarithm], axis=1)
-    jacobian = np.array([[2.0, 0.0], [-1.0, 1.0]])
-    powers = samples.powers(order)
-    found, by_jets = np.zeros((2, order + 1, 2))
-    found[0, 0] = by_jets[0, 0] = 1.0
-
-    def sampled(k):
-        x, y = (powers[:, :k] @ found[:k]).T
-        return samples.weights[k] @ np.stack([x**2 - 1 - samples.places, np.exp(y) - x], axis=1)
-
-    implicit_series(found, sampled, lambda r: -np.linalg.solve(jacobian, r))
-    np.testing.assert_allclose(found, exact, atol=1e-4)
+    found = np.zeros((order + 1, 2))
+    found[0, 0] = 1.0
     tape = Tape(order)
-    x, y = (tape.given(by_jets[:, k : k + 1]) for k in range(2))
+    x, y = (tape.given(found[:, k : k + 1]) for k in range(2))
     rows = x**2 - 1 - tape.given(np.eye(order + 1)[:, 1:2]), np.exp(y) - x
 
     def coefficient(k):
         tape.fill(k)
         return np.concatenate([row.coefficients[k] for row in rows])
 
-    nearly = jacobian + 1e-5  # of another state
-    implicit_series(by_jets, coefficient, lambda r: -np.linalg.solve(nearly, r), refines=True)
-    np.testing.assert_allclose(by_jets, exact, atol=1e-8)
+    nearly = np.array([[2.0, 0.0], [-1.0, 1.0]]) + 1e-5  # of another state
+    implicit_series(found, coefficient, lambda r: -np.linalg.solve(nearly, r), refines=True)
+    np.testing.assert_allclose(found, exact, atol=1e-8)
 
 
 def test_the_radius_is_that_of_convergence_and_rounding_is_no_singularity():
@@ -170,3 +162,24 @@ def test_a_prediction_beyond_the_radius_knows_about_its_error():
     for t in (0.5, 1.2, 2.0):
         found, doubt = beyond(series, t)
         assert np.abs(found - exact(t)).max() <= doubt + 1e-12 and doubt < 0.1 * t
+
+
+def test_weights_of_values_and_slopes_bring_their_derivatives():
+    nodes, exact = np.array([-1.0, -0.2, 0.5, 1.1]), np.polynomial.Polynomial([0.3, -1.0, 0.5, 2.0, -0.7, 0.1, 0.4, 0.2])
+    x = np.append(np.linspace(-1.0, 1.1, 9), nodes)
+    at, slope = weights_through(nodes, Dual(x, np.ones_like(x)))
+    found = at @ exact(nodes)[:, None] + slope @ exact.deriv()(nodes)[:, None]
+    np.testing.assert_allclose(found.value[:, 0], exact(x), rtol=1e-12)
+    np.testing.assert_allclose(found.slope[:, 0], exact.deriv()(x), rtol=1e-11, atol=1e-11)
+
+
+def test_a_wrong_slope_shows_in_the_highest_order():
+    nodes, errors = np.linspace(0.0, 1.0, 6), np.full((6, 1), 1e-9)
+    x = np.linspace(0.02, 0.98, 33)
+    values, slopes = np.sin(nodes)[:, None], np.cos(nodes)[:, None]
+    assert slope_noise(nodes, values, slopes, errors, x).max() == 0.0
+    for wrong in range(6):
+        slopes = np.cos(nodes)[:, None] + 1e-4 * (np.arange(6) == wrong)[:, None]
+        at, along = weights_through(nodes, x)
+        missed = np.abs(at @ values + along @ slopes - np.sin(x)[:, None])
+        assert (missed <= 1.02 * slope_noise(nodes, values, slopes, errors, x) + 1e-8).all()

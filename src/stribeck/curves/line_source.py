@@ -24,14 +24,14 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.path.hermite_path import HermitePath
-from stribeck.solver.path.line_path import POSITION, LineProblem
+from stribeck.solver.path.line_states import POSITION
 from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate, solution_of, state_notes
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource", "solved_at"]
+__all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource"]
 
 COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
@@ -79,29 +79,13 @@ class PathSource(Source):
         return replace(self, path=path)  # type: ignore[type-var]
 
 
-def _beside(path: SolvedPath, s: float) -> tuple[LineProblem, Any, Any]:
-    interval = path.intervals[int(path.interval_of(np.array([s]))[0])]
-    assert isinstance(interval.problem, LineProblem)
-    return interval.problem, interval.left, interval.right
-
-
-@one_blas_thread
-def solved_at(path: SolvedPath, s: float, rtol: float | None = None, near: RefinedState | None = None) -> RefinedState:
-    """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path.
-
-    The mesh of ``near``, a state solved close by, is tried first.
-    """
-    problem, left, right = _beside(path, s)
-    return problem.point_at(left, right, s, rtol, near)
-
-
 class CurvePoint(Solution):
     """A point of a curve: its numbers come from the curve, its fields and notes from a state that is solved on first use."""
 
-    _place: tuple[SolvedPath, float]
+    _place: tuple[Any, float]
     _coordinate: Coordinate
 
-    def __init__(self, coordinate: Coordinate, path: SolvedPath, s: float, row: Array, errors: Array, rtol: float) -> None:
+    def __init__(self, coordinate: Coordinate, path: Any, s: float, row: Array, errors: Array, rtol: float) -> None:
         groups = coordinate.groups_at(s)
         values = dict(zip(COLUMNS, row.tolist(), strict=True))
         known: dict[str, Any] = {
@@ -123,7 +107,7 @@ class CurvePoint(Solution):
     @cached_property
     def _solved(self) -> Solution:
         path, s = self._place
-        found = solution_of(solved_at(path, s, self.rtol), self.contact, self.rtol)
+        found = solution_of(_solved_at(path, s, self.rtol), self.contact, self.rtol)
         assert found is not None
         return found
 
@@ -131,10 +115,9 @@ class CurvePoint(Solution):
     def notes(self) -> tuple[str, ...]:
         """What to know before using the numbers, one sentence each."""
         path, s = self._place
-        problem, left, right = _beside(path, s)
-        floor = max(left.point.refined.estimate.floor, right.point.refined.estimate.floor)
+        floor = max(each.state.estimate.floor for each in path.around(s))
         return state_notes(
-            self.groups, self.contact, self.observables, lambda: problem.guess_at(left, right, s), floor, self.rtol
+            self.groups, self.contact, self.observables, lambda: path.problem.guess_at(path, s), floor, self.rtol
         )
 
     @property
@@ -149,6 +132,13 @@ class CurvePoint(Solution):
     nodal_pressures = property(lambda self: self._solved.nodal_pressures)
     newton_steps = property(lambda self: self._solved.newton_steps)
     origin = property(lambda self: self._solved.origin)
+
+
+@one_blas_thread
+def _solved_at(path: Any, s: float, rtol: float | None = None, near: RefinedState | None = None) -> RefinedState:
+    """Return the verified state at a coordinate of a path; the mesh of ``near``, a state solved close by, is tried first."""
+    found: RefinedState = path.problem.point_at(path, s, rtol, near)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +208,7 @@ class LineSource(PathSource):
 
     coordinate: Coordinate
     rtol: float
-    path: SolvedPath = field(compare=False)
+    path: Any = field(compare=False)  # Of Taylor series, or of solved states with their slopes
 
     has_state_slopes = True
 
@@ -245,7 +235,7 @@ class LineSource(PathSource):
         """Return rows at places; with a tolerance, a state is solved where no error is known within it."""
         found, errors = self.path.at(s)
         for i in [] if rtol is None else np.nonzero(~self._within(found, errors, rtol))[0].tolist():
-            point = solved_at(self.path, float(s[i]), rtol)
+            point = _solved_at(self.path, float(s[i]), rtol)
             if point.values is not None and point.estimate is not None and point.outcome.ok:
                 found[i] = *point.values.array(), point.values.minimum_position
                 errors[i, : len(point.estimate.relative)] = point.estimate.relative
@@ -280,10 +270,8 @@ class LineSource(PathSource):
 
     def _between_states(self, s: float) -> Solution:
         """Return the state that the path predicts at a place: its fields hold, its errors are not estimated."""
-        problem, left, right = _beside(self.path, s)
-        groups, near = self.coordinate.groups_at(s), min((left, right), key=lambda each: abs(each.coordinate - s))
-        guess = problem.guess_at(left, right, s)
-        refined = replace(near.point.refined, groups=groups, state=guess)
+        guess = self.path.problem.guess_at(self.path, s)
+        refined = replace(self.path.nearest(s).state, groups=self.coordinate.groups_at(s), state=guess)
         found = solution_of(refined, None, self.rtol)
         assert found is not None
         return found
@@ -299,7 +287,8 @@ class LineSource(PathSource):
 
     def holds(self, s: float, accepted: float) -> bool:
         """Return whether no error at a place exceeds what is accepted."""
-        return bool(self._within(*self.path.at(np.array([s])), accepted)[0])
+        found, errors = self.path.at(np.array([s]))
+        return bool(self._within(found, errors, accepted)[0])
 
     def solution_at(self, s: float) -> Solution:
         """Return the solution at a place, or raise the error of its outcome."""
@@ -307,16 +296,16 @@ class LineSource(PathSource):
 
     def state_at(self, s: float) -> RefinedState:
         """Return the state at a place, as the solver has it."""
-        known = next((each.point.refined for each in self.path.expansions if each.coordinate == s), None)
+        known = next((each.state for each in self.path.expansions if each.coordinate == s), None)
         if known is None and (s, self.rtol) not in self._states:
-            self._states[s, self.rtol] = solved_at(self.path, s)
+            self._states[s, self.rtol] = _solved_at(self.path, s)
         return self._states[s, self.rtol] if known is None else known
 
     def solved(self, s: float, rtol: float) -> Solution:
         """Return the solution at a place; the mesh of the nearest one solved before is tried first."""
         near = min(self._states, key=lambda each: abs(each[0] - s), default=(np.inf, rtol))
         close = self._states[near] if abs(near[0] - s) <= MESH_LOG_DISTANCE else None
-        point = self._states[s, rtol] = solved_at(self.path, s, rtol, close)
+        point = self._states[s, rtol] = _solved_at(self.path, s, rtol, close)
         if point.state is None or point.values is None:
             raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
         found = solution_of(point, self.coordinate.contact_at(s), rtol)

@@ -22,6 +22,8 @@ from stribeck.numerics.events import first_zero
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids import hertz
 from stribeck.solver.neighbours import Neighbours
+from stribeck.solver.path.hermite_path import HermitePath, Knot
+from stribeck.solver.path.line_knots import LineKnots
 from stribeck.solver.path.line_path import LineProblem
 from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.point.solution import solution_of
@@ -87,12 +89,12 @@ def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
 
 
 def grown(
-    problem: LineProblem,
+    problem: LineProblem | LineKnots,
     start: float,
     bottom: float,
     contact_part: Callable[[Array], float],
     on_interval: Callable[[float, float], object] | None = None,
-) -> tuple[SolvedPath, float]:
+) -> tuple[SolvedPath | HermitePath, float]:
     """Return a path from the hydrodynamic branch down to the boundary plateau, and its lower end, found on the way."""
     share = ROW["fluid_load_share"]
 
@@ -100,8 +102,8 @@ def grown(
         """Return how far a state is above the plateau, negative on it."""
         return max(abs(slope) * math.log(10) - PLATEAU, 1 - 10 * BRANCH - contact_part(row))
 
-    def of_state(here: Expansion) -> float:
-        return height(float(here.series[1, share]) if here.order else math.inf, here.series[0])
+    def of_state(here: Expansion | Knot) -> float:
+        return height(float(here.slopes[share]), here.values)
 
     def at(s: float) -> float:
         found = path.smooth(Dual(np.array([s]), np.ones(1)))
@@ -117,7 +119,7 @@ def grown(
     if low < path.coordinates[0]:
         path = follow(problem, path, low, problem.tolerance, on_interval)
     for _ in range(LONGEST_EXTENSION):
-        if not path.outcome.ok or contact_part(path.expansions[-1].series[0]) < 0.1 * BRANCH:
+        if not path.outcome.ok or contact_part(path.expansions[-1].values) < 0.1 * BRANCH:
             break
         end = float(path.coordinates[-1]) + margin
         path = follow(problem, path, end, problem.tolerance, on_interval)

@@ -31,9 +31,8 @@ from stribeck.numerics.continuation import follow
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.cavities.reforming_line import line_problem
-from stribeck.solver.path.line_path import LineProblem
-from stribeck.solver.path.path import Expansion, SolvedPath
+from stribeck.solver.path.line_knots import LineKnots
+from stribeck.solver.path.line_path import LineProblem, line_problem
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, finish, with_law
 from stribeck.solver.solve_error import SolveError, describe
@@ -171,13 +170,13 @@ def stribeck_curve(
     return StribeckCurve(values[len(values) - done :], points if grows else len(values), along)
 
 
-def _line(coordinate: Coordinate, values: Array, rtol: float) -> LineProblem:
+def _line(coordinate: Coordinate, values: Array, rtol: float) -> LineProblem | LineKnots:
     """Return the states of a line along a coordinate, between values of it."""
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
     return line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
 
 
-def _refuse(line: LineProblem, path: SolvedPath, groups: Groups, contact: Contact | None) -> NoReturn:
+def _refuse(line: LineProblem | LineKnots, path: Any, groups: Groups, contact: Contact | None) -> NoReturn:
     """Raise the error of a path that has no state where it begins."""
     if line.failure is not None:
         finish(line.failure, groups, contact, line.tolerance)
@@ -200,7 +199,7 @@ def begun(
         return FrictionPath(ball_source(coordinate, np.array([value]), rtol, contact.beta, ends=np.array(ends))[0], *given)
     line, here = _line(coordinate, np.array(ends), rtol), math.log(value)
     known = None if state is None or contact.groups.model.cavitation is not Cavitation.NONE else line.begin(here, state)
-    path = follow(line, known if isinstance(known, Expansion) else here, here, rtol)
+    path = follow(line, here if known is None or isinstance(known, Outcome) else known, here, rtol)
     if not path.expansions:
         _refuse(line, path, coordinate.groups_at(here), contact)
     return FrictionPath(LineSource(coordinate, rtol, path), *given)

@@ -19,7 +19,7 @@ from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.numerics.trace import Trace, act, value_of
 from stribeck.quantities.outputs import ALL_NAMES
 
-__all__ = ["ROW", "Observables", "changes", "measured", "observables", "observables_of_stacked"]
+__all__ = ["ROW", "Observables", "changes", "measured", "minimum_positions", "observables", "observables_of_stacked"]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 
@@ -79,16 +79,28 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 
 def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
-    op, mesh, at, u = equations.operators, equations.operators.mesh, equations.layout, equations.fields(y)
+    u = equations.fields(y)
     found = dict.fromkeys(ALL_NAMES, np.full(len(y), math.nan))
     found |= {name: value[:, 0] for name, value in measured(equations, u, load).items()}
-    positions, found["minimum_gap"] = minimum_gaps(mesh, np.log(y[:, at.gap][:, : -mesh.order]))[:2]
-    if op.has_exit:
-        positions = u.exit[:, 0] + (1.0 if u.cavity_stretch is None else u.cavity_stretch[:, 0]) * positions
-    found["central_gap"], found["minimum_position"] = central_gaps(equations, u), positions
+    found["minimum_position"], found["minimum_gap"] = _minima(equations, y)
+    found["central_gap"] = central_gaps(equations, u)
     rows = zip(*(found[each.name].tolist() for each in fields(Observables)), strict=True)
     # One nan for all that a film has not, so that equal observables compare as such.
     return [Observables(*(math.nan if math.isnan(value) else value for value in row)) for row in rows]
+
+
+def minimum_positions(equations: Equations, y: Array) -> Array:
+    """Return the position of the minimum gap of each row of unknowns."""
+    return _minima(equations, y)[0]
+
+
+def _minima(equations: Equations, y: Array) -> tuple[Array, Array]:
+    """Return position and value of the minimum gap of each row of unknowns."""
+    mesh, u = equations.operators.mesh, equations.fields(y)
+    positions, gaps = minimum_gaps(mesh, np.log(y[:, equations.layout.gap][:, : -mesh.order]))[:2]
+    if u.exit is not None:
+        positions = u.exit[:, 0] + (1.0 if u.cavity_stretch is None else u.cavity_stretch[:, 0]) * positions
+    return positions, gaps
 
 
 def central_gaps(equations: Equations, u: Fields) -> Array:
@@ -132,22 +144,28 @@ def changes(equations: Equations, y: Array, load: Numbers, dy: Array) -> Array:
             found[..., ROW[name]] = value.columns[ALONG][..., 0]
     rows = np.atleast_2d(y)
     each = dy.reshape(*dy.shape[: dy.ndim - y.ndim], *rows.shape)
-    central = [_of_central_gap(equations, own, equations.fields(each[..., k, :])) for k, own in enumerate(rows)]
-    lowest = [each[..., k, np.argmin(own[at.gap])] for k, own in enumerate(rows)]  # at a fixed position, right to first order
-    for name, values in (("central_gap", central), ("minimum_gap", lowest)):
-        found[..., ROW[name]] = np.stack(values, axis=-1).reshape(found.shape[:-1])
+    mesh = equations.operators.mesh
+    lowest = minimum_gaps(mesh, np.log(rows[:, at.gap][:, : -mesh.order]))[0]
+    for k, own in enumerate(rows):
+        of_row = equations.fields(each[..., k, :])
+        place, moving = _centre(equations, equations.fields(own), of_row)
+        here = found.reshape(*found.shape[: dy.ndim - y.ndim], len(rows), -1)[..., k, :]
+        here[..., ROW["central_gap"]] = _of_gap(equations, own[at.gap], of_row.gap, place, moving)
+        # The minimum moves along a gap without a slope.
+        here[..., ROW["minimum_gap"]] = _of_gap(equations, own[at.gap], of_row.gap, float(lowest[k]), 0.0)
     return found
 
 
-def _of_central_gap(equations: Equations, y: Array, du: Fields) -> Array:
-    """Return the changes of the central gap, which is the gap's polynomial at a place that moves with the exit."""
-    u, mesh = equations.fields(y), equations.operators.mesh
+def _centre(equations: Equations, u: Fields, du: Fields) -> tuple[float, Any]:
+    """Return the place of the centre of the contact on the mesh, and its changes."""
+    if u.exit is None or du.exit is None:
+        return 0.0, 0.0
     stretch = 1.0 if u.cavity_stretch is None else float(u.cavity_stretch[0])
-    place = 0.0 if u.exit is None else -float(u.exit[0]) / stretch
-    middle, slope, nodes, weights = gap_beside(mesh, u.gap, place)
-    found = du.gap[..., nodes] @ (middle * weights / u.gap[nodes])
-    if du.exit is not None:
-        found = found - slope / stretch * du.exit[..., 0]
-    if du.cavity_stretch is not None:
-        found = found - slope * place / stretch * du.cavity_stretch[..., 0]
-    return np.asarray(found)
+    place, moving = -float(u.exit[0]) / stretch, -du.exit[..., 0] / stretch
+    return place, moving if du.cavity_stretch is None else moving - place / stretch * du.cavity_stretch[..., 0]
+
+
+def _of_gap(equations: Equations, gap: Array, change: Array, place: float, moving: Any) -> Array:
+    """Return the changes of the gap's polynomial at a place that moves."""
+    middle, slope, nodes, weights = gap_beside(equations.operators.mesh, gap, place)
+    return np.asarray(change[..., nodes] @ (middle * weights / gap[nodes]) + slope * moving)

@@ -12,7 +12,6 @@ For a solid with lengths of its own, such as a layer, D itself changes with d.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -29,7 +28,7 @@ from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.numerics.trace import Matrix, Trace, act, pointwise, value_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
-from stribeck.solids.solid import Solid, deflecting
+from stribeck.solids.solid import Solid
 
 LOAD = 0.5 * np.pi  # Load in Hertz units: the integral of the pressure
 
@@ -182,22 +181,6 @@ class Operators:
     def kernel(self, d: float) -> Array:
         """Return D at a cavity stretch: the deflection in x over d, without its logarithm."""
         return self.deflection if isinstance(self.model.solid, HalfPlane) else _kernel(self.mesh, self.model.solid, d)
-
-
-@dataclass(frozen=True, eq=False)
-class OperatorsOfRows(Operators):
-    """Operators of rows of states, each with a solid of its own, in a frame without cavity stretch."""
-
-    solids: tuple[Solid, ...] = ()  # Of each row
-
-    @cached_property
-    def _deflecting(self) -> Callable[[Array], Array]:
-        return deflecting(self.solids, self.mesh)
-
-    def deflected(self, pressure: Any, d: Any) -> Any:
-        """Return the deflection of each row under its nodal pressure."""
-        assert d is None
-        return self._deflecting(pressure)
 
 
 @lru_cache(maxsize=2)  # of a Jacobian and what it is the slope of; they fill more memory than the rest of a mesh

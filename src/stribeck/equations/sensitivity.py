@@ -30,16 +30,37 @@ Change = tuple[Model, Model, float]
 
 def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(group), and along changes of the model."""
+    found, forces = _partials(state, np.eye(len(GROUPS)), beside)
+    found += changes(state.equations, state.y, float(state.groups.load), _moves(state, forces))
+    return dict(zip(ALL_NAMES, found.T, strict=True))
+
+
+def derivatives_along(state: State, direction: Array, change: Change) -> tuple[Array, Array]:
+    """Return the derivatives of all observables, and of the unknowns, along a path: of ln(groups), and by its model."""
+    found, forces = _partials(state, direction[None], [] if change[0] == change[1] else [change])
+    move = _moves(state, forces.sum(axis=0))
+    return found.sum(axis=0) + changes(state.equations, state.y, float(state.groups.load), move), move
+
+
+def _moves(state: State, forces: Array) -> Array:
+    """Return the changes of the unknowns under changes of the residual."""
+    inverse, units = state.equations.inverse(state.y), state.equations.units(state.y)
+    return np.stack([units * inverse(each) for each in np.atleast_2d(forces)]).reshape(forces.shape)
+
+
+def _partials(state: State, directions: Array, beside: Sequence[Change]) -> tuple[Array, Array]:
+    """Return the derivatives of the observables and of the residual at fixed unknowns, along directions of ln(groups)."""
     equations, y, load = state.equations, state.y, float(state.groups.load)
-    inverse, units = equations.inverse(y), equations.units(y)
-    count = len(GROUPS) + len(beside)
-    found, moves = np.zeros((count, len(ALL_NAMES))), np.zeros((count, y.size))
-    for k, name in enumerate(GROUPS):
-        if float(getattr(state.groups, name)) > 0:
+    count = len(directions) + len(beside)
+    found, forces = np.zeros((count, len(ALL_NAMES))), np.zeros((count, y.size))
+    for rates, name in zip(directions.T, GROUPS, strict=True):
+        if float(getattr(state.groups, name)) > 0 and rates.any():
+            by_group = np.zeros(len(ALL_NAMES))
             for each, value in measured(equations, equations.fields(y), load, name).items():
-                found[k, ROW[each]] = _by(value, name)
-            moves[k] = units * inverse(equations.parameter_derivative(y, name))
-    for k, (below, above, width) in enumerate(beside, len(GROUPS)):
+                by_group[ROW[each]] = _by(value, name)
+            found[: len(directions)] += rates[:, None] * by_group
+            forces[: len(directions)] += rates[:, None] * equations.parameter_derivative(y, name)
+    for k, (below, above, width) in enumerate(beside, len(directions)):
         # Of a film that may re-form, with a cavity or without.
         first, second = (
             replace(equations, operators=Operators(state.mesh, with_ending_of(state, model))) for model in (below, above)
@@ -47,9 +68,8 @@ def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Ar
         before, after = (measured(each, each.fields(y), load) for each in (first, second))
         for each, value in after.items():
             found[k, ROW[each]] = float(value[0] - before[each][0]) / width
-        moves[k] = units * inverse((second.residual(y) - first.residual(y)) / width)
-    found += changes(equations, y, load, moves)
-    return dict(zip(ALL_NAMES, found.T, strict=True))
+        forces[k] = (second.residual(y) - first.residual(y)) / width
+    return found, forces
 
 
 def with_ending_of(state: State, model: Model) -> Model:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.settings import INNER_PLACES
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     "hermite_weights",
     "inner_places",
     "missed_by",
+    "slope_noise",
     "weights_through",
 ]
 
@@ -124,12 +125,40 @@ def chebyshev_basis(tau: Any, count: int) -> Any:
     return np.cos(np.arccos(np.clip(2.0 * tau - 1.0, -1.0, 1.0))[:, None] * np.arange(count))
 
 
-def weights_through(nodes: Array, x: Array) -> tuple[Array, Array]:
+def weights_through(nodes: Array, x: Any) -> tuple[Any, Any]:
     """Return the weights of values and slopes at several nodes in the polynomial through them, shape (len(x), len(nodes))."""
     apart = nodes[:, None] - nodes
     np.fill_diagonal(apart, 1.0)
-    steps = x[:, None] - nodes
+    steps = value_of(x)[:, None] - nodes
     others = [np.delete(np.arange(len(nodes)), j) for j in range(len(nodes))]
     basis = np.stack([np.prod(steps[:, k] / apart[j, k], axis=1) for j, k in enumerate(others)], axis=1)
     bend = np.array([np.sum(1.0 / apart[j, k]) for j, k in enumerate(others)])  # slope of each basis at its own node
-    return np.asarray((1.0 - 2.0 * bend * steps) * basis**2), np.asarray(steps * basis**2)
+    factor = 1.0 - 2.0 * bend * steps
+    values, slopes = factor * basis**2, steps * basis**2
+    if not isinstance(x, Dual):
+        return values, slopes
+    growth = np.zeros_like(basis)  # of each basis with x
+    for j, k in enumerate(others):
+        for i in k.tolist():
+            rest = k[k != i]
+            growth[:, j] += np.prod(steps[:, rest] / apart[j, rest], axis=1) / apart[j, i]
+    twice, along = 2.0 * basis * growth, np.reshape(x.slope, (-1, 1))
+    return Dual(values, along * (factor * twice - 2.0 * bend * basis**2)), Dual(slopes, along * (basis**2 + steps * twice))
+
+
+def slope_noise(nodes: Array, values: Array, slopes: Array, errors: Array, x: Array) -> Array:
+    r"""Return how far errors of slopes set the polynomial through values and slopes off at x, shape (len(x), ...).
+
+    .. math:: |a| \, \frac{\prod_j (x - x_j)^2}{\min_j |x - x_j|}
+
+    with what the ``errors`` of the values leave of the coefficient a of the highest order.  That vanishes if any one of the
+    slopes is changed by :math:`a \prod_{j \ne k} (x_k - x_j)^2`; of exact slopes it is far less than the polynomial misses.
+    """
+    apart = nodes[:, None] - nodes
+    np.fill_diagonal(apart, 1.0)
+    of_slopes = np.prod(apart, axis=1) ** -2.0
+    of_values = -2.0 * ((1.0 / apart).sum(axis=1) - 1.0) * of_slopes
+    highest = np.abs(of_slopes @ slopes + of_values @ values) - np.abs(of_values) @ errors
+    away = np.abs(x[:, None] - nodes)
+    shape = np.prod(away, axis=1) * np.prod(np.sort(away, axis=1)[:, 1:], axis=1)
+    return np.asarray(np.maximum(highest, 0.0) * shape[:, None])

@@ -6,9 +6,7 @@ the solution,
 .. math:: J w_k = -R_k|_{w_k = 0},
 
 with the Jacobian at the solution: one factorisation serves all orders.  The residual is made of jets,
-:mod:`stribeck.numerics.jets`, or known by its values alone: then the coefficients are those of a polynomial near its values on
-[-r, r], which has them also where the function is not quite smooth, with fewer digits.  A function of complex numbers has them
-to rounding by its values on a circle.
+:mod:`stribeck.numerics.jets`.  A function of complex numbers has its coefficients to rounding by its values on a circle.
 
 Coefficients are in the first axis, order by order.  The module knows no physics.
 Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
@@ -18,13 +16,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
-from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP, ROUNDING, SAMPLES
+from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP, ROUNDING
 
 __all__ = [
     "Samples",
@@ -32,7 +28,6 @@ __all__ = [
     "beyond",
     "circle",
     "implicit_series",
-    "interval",
     "radius",
 ]
 
@@ -65,13 +60,6 @@ class Samples:
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
 
 
-def interval(reach: float) -> Samples:
-    """Return samples of a real function up to a distance ``reach``, for the polynomial that goes through its values."""
-    matrix = _to_taylor()
-    orders = np.arange(len(matrix))
-    return Samples(reach * chebyshev.chebpts1(SAMPLES), matrix * reach ** -orders[:, None].astype(float))
-
-
 def circle(reach: float, order: int) -> Samples:
     """Return samples in the upper half plane of a function that is real on the real line, for its orders up to one."""
     count = 2 * (order // 2 + 2)
@@ -79,18 +67,6 @@ def circle(reach: float, order: int) -> Samples:
     twice = np.where(np.arange(len(angles)) % (count // 2) == 0, 1.0, 2.0)
     weights = twice / count * np.exp(-1j * orders[:, None] * angles) * reach ** -orders[:, None].astype(float)
     return Samples(reach * np.exp(1j * angles), weights)
-
-
-@lru_cache(maxsize=1)
-def _to_taylor() -> Array:
-    """Matrix from values at Chebyshev points to the Taylor coefficients about zero of the polynomial through them."""
-    degrees = np.arange(SAMPLES)
-    values = chebyshev.chebvander(chebyshev.chebpts1(SAMPLES), SAMPLES - 1).T
-    to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / SAMPLES
-    to_powers = np.zeros((SAMPLES, SAMPLES))
-    for n in degrees:
-        to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(SAMPLES)[n, : n + 1])
-    return np.asarray(to_powers @ to_chebyshev)
 
 
 def implicit_series(

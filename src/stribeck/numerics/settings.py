@@ -20,10 +20,8 @@ MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that sho
 STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step that failed to the next; with more, more steps fail
 MAX_STATES = 400  # States of a path, and neighbours that are kept: a limit on work and memory
 WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes; with fewer a curve needs more states
-# Degree of polynomials: series by formulas, values between states, panels of a ball; with more they hold rounding.
+# Degree of polynomials: series, values between states, panels of a ball; with more they hold rounding.
 MAX_DEGREE = 18
-SAMPLED_ORDER = MAX_DEGREE // 2  # Orders of series of sampled functions, which have half of the digits of formulas
-CAVITY_ORDER = 2  # Orders of series of films that re-form; higher ones do not converge where nodes pass through the inlet
 # Rounding of coefficients, magnified by the equations that they solve: a radius of convergence is read off larger ones.
 COEFFICIENT_NOISE = EPSILON**0.75
 SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence; nearer, rounding grows, farther, truncation
@@ -58,10 +56,8 @@ COARSE_STEP = NEGLIGIBLE**2 * COARSE_RTOL  # Last step of Newton's iteration tow
 COARSE_ORDER = 10  # Nodes per panel of such a state; with eight, a golden state of the line leaves its stated error
 MAX_STEPS_ON_PATH = 15  # Newton steps towards such a state; with more, a golden film that ends, of Barus' fluid, is not found
 MAX_PANELS = 128  # Panels of a mesh of the line
-# Nodes that panels gain for the error estimate, and places of a sampled function over its order: what lies beyond the
-# polynomial would count as part of it.  With two the estimate sees a fifth of errors on wide panels; even.
+# Nodes that panels gain for the error estimate: with two it sees a fifth of errors on wide panels; even.
 EXTRA_NODES = 4
-SAMPLES = SAMPLED_ORDER + EXTRA_NODES  # Places of a sampled function
 DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
 SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two, with fewer not

@@ -1,23 +1,15 @@
 """What the equations ask of an elastic body: its deflection under a pressure on the line.
 
-A new solid is a new file with one frozen class that has the members of :class:`Solid`, and ``lengths`` if it has any; one that
-changes with the speed may have ``together(solids, mesh)``, which is :func:`deflecting` for such bodies.
+A new solid is a new file with one frozen class that has the members of :class:`Solid`, and ``lengths`` if it has any.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import lru_cache
-from typing import Any, NamedTuple, Protocol
-
-import numpy as np
+from typing import NamedTuple, Protocol
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
-
-# Deflection matrices kept: the meshes at both ends of an interval and the finer one of an error estimate.
-CACHED_DEFLECTIONS = 3
 
 
 class Lengths(NamedTuple):
@@ -59,21 +51,3 @@ class Solid(Protocol):
 
     def far_gap(self, x: Array) -> Array:
         """Return the gap far away but for the offset and a smooth function of ``1/x`` [u_Hz]."""
-
-
-def deflecting(solids: Sequence[Solid], mesh: Mesh) -> Callable[[Array], Array]:
-    """Return the function from rows of nodal pressure to the deflection of each on its own body."""
-    together: Any = getattr(type(solids[0]), "together", None)
-    if together is not None:
-        found: Callable[[Array], Array] = together(solids, mesh)
-        return found
-    if all(each == solids[0] for each in solids):
-        matrix = _deflection(solids[0], mesh)
-        return lambda pressure: np.asarray(pressure @ matrix.T)
-    stacked = np.stack([each.deflection(mesh) for each in solids])
-    return lambda pressure: np.asarray(np.matmul(stacked, pressure[..., None])[..., 0])
-
-
-@lru_cache(maxsize=CACHED_DEFLECTIONS)
-def _deflection(solid: Solid, mesh: Mesh) -> Array:
-    return solid.deflection(mesh)

@@ -7,7 +7,6 @@ Source: [Johnson 1985] section 4.1, for shapes that differ by little from planes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import as_solid
-from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
+from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["TwoBodies"]
 
@@ -82,13 +81,6 @@ class TwoBodies:
         """Return the matrix from nodal pressures to the sum of both deflections at the nodes [u_Hz per p_Hz]."""
         v = self.first_share
         return np.asfortranarray(v * self.first.deflection(mesh) + (1 - v) * self.second.deflection(mesh))
-
-    @staticmethod
-    def together(solids: Sequence[TwoBodies], mesh: Mesh) -> Callable[[Array], Array]:
-        """Return :func:`stribeck.solids.solid.deflecting`: the sum of both."""
-        first, second = (deflecting([getattr(each, which) for each in solids], mesh) for which in ("first", "second"))
-        v = np.array([[each.first_share] for each in solids])
-        return lambda pressure: v * first(pressure) + (1 - v) * second(pressure)
 
     def far_gap(self, x: Array) -> Array:
         """Return the mean of both, by their shares."""

@@ -20,10 +20,9 @@ Source: [Hunter 1961] for rolling on the standard linear solid; tested against P
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -33,7 +32,7 @@ from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.schema import Input, Series
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
-from stribeck.solids.solid import Lengths, Solid, deflecting, lengths_of
+from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["Memory", "Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction"]
 
@@ -66,16 +65,10 @@ class _Viscoelastic(Solid):
 
         Panels must reach to 30 of the largest Deborah number on both sides, and resolve the pressure.
         """
-        return self.together([self], mesh)(np.eye(mesh.size)).T
-
-    @staticmethod
-    def together(solids: Sequence[Any], mesh: Mesh) -> Callable[[Array], Array]:
-        """Return :func:`stribeck.solids.solid.deflecting`: the base of each under what it remembers of the pressure."""
-        base = deflecting([each.base for each in solids], mesh)
-        instants, terms = zip(*(each._creep() for each in solids), strict=True)
-        instant, creep = np.array(instants)[:, None], np.array(terms)
-        memories = [(part[:, None], Memory(mesh, times)) for part, times in creep.transpose(1, 2, 0)]
-        return lambda pressure: base(instant * pressure + sum(part * each(pressure) for part, each in memories))
+        instant, terms = self._creep()
+        pressure = np.eye(mesh.size)
+        remembered = instant * pressure + sum(part * Memory(mesh, np.array([time]))(pressure) for part, time in terms)
+        return np.asfortranarray(self.base.deflection(mesh) @ remembered.T)
 
     def far_gap(self, x: Array) -> Array:
         """Return that of the relaxed body."""

@@ -1,4 +1,7 @@
-"""Contacts at rest: they are solved where all gaps are positive, and shifted afterwards."""
+"""The groups that are solved: at rest where all gaps are positive, which are shifted afterwards.
+
+A film with a cavity at ambient pressure is solved as one with an exit.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.series import along
 from stribeck.numerics.settings import NEGLIGIBLE
 
@@ -38,11 +42,16 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
         \Delta h = -e \kappa \ln \frac{\bar F_N}{\bar F_N'}, \qquad
         \Delta h = -\kappa \max(0, s_0 - \Phi^{-1}(\bar F_N^e))
 
-    A sliding contact is solved as it is.  At rest the load only shifts gap and offset: a heavy contact of the exponential law
-    is solved at the load of one, and one of another law at separations so much larger, that at the pressure of the smooth
+    A sliding contact is solved as it is, with an exit where its cavity is at ambient pressure.  At rest the load only shifts
+    gap and offset: a heavy contact of the exponential law is solved at the load of one, and one of another law at separations
+    so much larger, that at the pressure of the smooth
     contact they are s_0, :data:`SAFE_SEPARATION`.  Laws that diverge at zero need no shift.
     """
     if groups.speed > 0:
+        model = groups.model
+        if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
+            # A cavity at ambient pressure reaches to infinity.
+            groups = replace(groups, model=replace(model, cavitation=Cavitation.EXIT))
         return groups, 0.0
     if groups.model != BASE_MODEL:  # at rest neither the fluid nor the end of its film matters
         groups = replace(groups, model=Model(solid=groups.model.solid, profile=groups.model.profile))

@@ -65,7 +65,7 @@ class Neighbours:
         """Return the state of groups; a failure is in its outcome."""
         steps, here = self._steps[groups.geometry], _Known(groups)
         near, away = self._near(here)
-        if near and near[0].groups == groups:
+        if near and near[0].groups == groups and near[0].is_own:
             return self._last[1] if self._last is not None and self._last[0] is near[0] else near[0].state
         state = steps.follow(self._line(near, away, steps.order), groups) if near else steps.start(groups)
         if state.outcome.ok:
@@ -73,6 +73,12 @@ class Neighbours:
             self._known.appendleft(here)
             self._last = here, state
         return state
+
+    def learn(self, state: Any) -> None:
+        """Take a state that was solved elsewhere, to another tolerance, as a neighbour."""
+        here = _Known(state.groups)
+        here.state, here.is_own = state, False
+        self._known.appendleft(here)
 
     def solved(self, groups: Groups) -> Any:
         """Return the state of groups, or raise SolveError."""
@@ -137,6 +143,7 @@ class _Known:
     """A state, its place among others and its kind: all that neighbours share."""
 
     state: Any = None
+    is_own: bool = True  # Whether it holds the tolerance of these neighbours
 
     def __init__(self, groups: Groups) -> None:
         self.groups = groups
@@ -205,7 +212,10 @@ class _CylinderSteps:
         """Return a state from those along a line, from cold where that fails."""
         with suppress(SolveError, FloatingPointError, np.linalg.LinAlgError):
             self.corrector.move_to(line[-1][1])
-            found = self.corrector.solve(extrapolate([(s, each.state) for s, each in line], 0.0), groups)
+            # Of films that may re-form, with a cavity or without.
+            ending = line[-1][1].state.groups.model.cavitation
+            alike = [(s, each.state) for s, each in line if each.state.groups.model.cavitation is ending]
+            found = self.corrector.solve(extrapolate(alike, 0.0), groups)
             if found.outcome.ok:
                 return found
         return self.start(groups)

@@ -134,7 +134,7 @@ class Corrector:
 
 def _cavity_may_vanish(groups: Groups) -> bool:
     """Return whether a film may have a cavity or none, so that neighbours may have other unknowns."""
-    return groups.model.cavitation is Cavitation.REFORM and bool(groups.speed > 0)
+    return with_positive_gap(groups)[0].model.cavitation is Cavitation.REFORM
 
 
 def keeps_cavity(point: RefinedState, groups: Groups) -> bool:

@@ -1,16 +1,14 @@
 r"""Taylor series of a state of the line, and of its observables, in the logarithm of the quantity that varies.
 
-The unknowns are those of the equations, with the logarithm of the gap.  Where film and law are known by formulas, the residual
-is evaluated on jets, :mod:`stribeck.numerics.jets`; a contact law is a polynomial around each separation.  Any other residual
-is sampled along the path.  One factorisation serves all orders, see :func:`stribeck.numerics.series.implicit_series`.  The
-observables are sampled on the series of the state.
+The unknowns are those of the equations, with the logarithm of the gap.  The residual is evaluated on jets,
+:mod:`stribeck.numerics.jets`; a contact law is a polynomial around each separation.  One factorisation serves all orders, see
+:func:`stribeck.numerics.series.implicit_series`.  The observables are sampled on the series of the state.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,13 +18,11 @@ from stribeck.contact_laws.continued import ContinuedLaw
 from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import Model
 from stribeck.equations.line import LOAD, Equations, Fields
-from stribeck.equations.observables import ROW, central_gaps, measured, observables, observables_of_stacked
-from stribeck.equations.operators import Operators, OperatorsOfRows
+from stribeck.equations.observables import ROW, central_gaps, measured
 from stribeck.numerics.jets import Tape
 from stribeck.numerics.newton import Inverse
-from stribeck.numerics.series import Samples, circle, implicit_series, radius
+from stribeck.numerics.series import circle, implicit_series, radius
 from stribeck.numerics.settings import SAMPLE_RADIUS_RATIO
 from stribeck.numerics.trace import act
 from stribeck.quantities.outputs import ALL_NAMES
@@ -34,11 +30,8 @@ from stribeck.quantities.outputs import ALL_NAMES
 __all__ = [
     "Direction",
     "Expanded",
-    "around_state",
     "expand",
     "from_logs",
-    "observables_of_rows",
-    "residuals",
 ]
 
 SHIFTED_COLUMNS = [ROW["central_gap"], ROW["offset"]]
@@ -72,47 +65,30 @@ class _Known(NamedTuple):
 
 
 def expand(
-    equations: Equations,
-    y: Array,
-    inverse: Inverse,
-    groups: Groups,
-    direction: Direction,
-    shifts: Array,
-    order: int,
-    samples: Samples | None = None,
-    models: Sequence[Model] = (),
+    equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
 ) -> Expanded:
-    """Return the series of a state: by jets, or by samples of films and laws that are known by their values alone."""
+    """Return the series of a state by jets, and of its observables by samples of these series on a circle."""
     at, law = equations.layout, contact_law(groups)
     w, units = np.zeros((order + 1, at.size)), equations.units(y)
     w[0], units[at.gap] = y, 1.0
     w[0, at.gap] = np.log(y[at.gap])
     logs = np.full((order + 1, len(ALL_NAMES)), np.nan)
-    if samples is None:
-        if isinstance(law, ScaledLaw):
-            near: Any = ContinuedLaw.of(law.shape, y[at.gap] / law.decay_length)
-            law = replace(law, shape=near)
-        tape = Tape(order)
-        here, _ = along(equations, law, groups, direction, tape.growth)
-        gap, contact, logs[:, ROW["contact_load_share"]] = _by_jets(here, tape, w, lambda r: units * inverse(r))
-        samples = circle(SAMPLE_RADIUS_RATIO * radius(w[:, at.gap]), order)
-        powers = samples.powers(order)
-        around, load = around_state(equations, _Known(powers @ contact), groups, direction, samples.places, models)
-        y = powers @ w
-        y[:, at.gap] = powers @ gap
-    else:
-        around, load = around_state(equations, law, groups, direction, samples.places, models)
-        powers, weights = samples.powers(order), samples.weights
-
-        def sampled(k: int) -> Array:
-            return np.asarray(weights[k] @ residuals(around, from_logs(equations, powers[:, :k] @ w[:k])))
-
-        implicit_series(w, sampled, lambda r: units * inverse(r))
-        y = from_logs(equations, powers @ w)
-    values = observables_of_rows(around, y, load)
+    if isinstance(law, ScaledLaw):
+        near: Any = ContinuedLaw.of(law.shape, y[at.gap] / law.decay_length)
+        law = replace(law, shape=near)
+    tape = Tape(order)
+    here, _ = along(equations, law, groups, direction, tape.growth)
+    gap, contact, logs[:, ROW["contact_load_share"]] = _by_jets(here, tape, w, lambda r: units * inverse(r))
+    samples = circle(SAMPLE_RADIUS_RATIO * radius(w[:, at.gap]), order)
+    powers = samples.powers(order)
+    places = samples.places[:, None]
+    around, load = along(equations, _Known(powers @ contact), groups, direction, lambda rate: np.exp(rate * places))
+    rows = powers @ w
+    rows[:, at.gap] = powers @ gap
+    values = _observables_of_rows(around, rows, load * np.ones((len(rows), 1)))
     if not equations.is_sliding:
         lacks = samples.powers(len(shifts) - 1) @ shifts
-        gap, of_load = y[:, at.gap] + lacks[:, None], equations.operators.mesh.weights
+        gap, of_load = rows[:, at.gap] + lacks[:, None], equations.operators.mesh.weights
         values[:, SHIFTED_COLUMNS] += lacks[:, None]
         values[:, ROW["flux_gap"]] = (gap**-2 @ of_load) / (gap**-3 @ of_load) if np.all(gap > 0) else np.nan
         values[:, ROW["minimum_gap"]] = values[:, ROW["central_gap"]]
@@ -161,54 +137,10 @@ def along(
     return replace(equations, speed=moved(groups.speed, by_speed), law=law), load
 
 
-def observables_of_rows(around: Sequence[Equations], y: Array, load: Array) -> Array:
-    """Return the observables of rows of unknowns, shape (rows, n), by one system for all rows or one for each."""
-    if np.iscomplexobj(y):
-        (one,), found = around, np.full((len(y), len(ALL_NAMES)), np.nan, complex)
-        for name, value in measured(one, one.fields(y), load).items():
-            found[:, ROW[name]] = value[:, 0]
-        found[:, ROW["central_gap"]] = central_gaps(one, one.fields(y))
-        return found
-    if len(around) == 1:
-        each = observables_of_stacked(around[0], y, load)
-    else:
-        each = [observables(one, row, own) for one, row, own in zip(around, y, load[:, 0].tolist(), strict=True)]
-    return np.array([one.array() for one in each])
-
-
-def residuals(around: Sequence[Equations], y: Array) -> Array:
-    """Return the residuals of rows of unknowns, by one system for all rows or one for each."""
-    if len(around) == 1:
-        return around[0].residual(y)
-    return np.stack([one.residual(row) for one, row in zip(around, y, strict=True)])
-
-
-def around_state(
-    equations: Equations, law: Any, groups: Groups, direction: Direction, places: Array, models: Sequence[Model]
-) -> tuple[list[Equations], Array]:
-    """Return the systems at places along a path, stacked in one where possible, and their loads."""
-    stacked, load = along(equations, law, groups, direction, partial(_grown, places[:, None]))
-    one = equations.operators if not models else _of_rows(equations.operators, models)
-    if one is not None:
-        return [replace(stacked, operators=one)], load * np.ones((len(places), 1))
-    each = []
-    for place, model in zip(places.tolist(), models, strict=True):
-        operators = Operators(equations.operators.mesh, model)
-        if model.solid == equations.operators.model.solid:
-            vars(operators).update(deflection=equations.operators.deflection)
-        here, _ = along(equations, law, groups, direction, partial(_grown, place))
-        each.append(replace(here, operators=operators))
-    return each, load * np.ones((len(places), 1))
-
-
-def _grown(t: Any, rate: float) -> Any:
-    return np.exp(rate * t)
-
-
-def _of_rows(operators: Operators, models: Sequence[Model]) -> Operators | None:
-    """Return operators for models that differ in their solids alone; None if more differs."""
-    model = operators.model
-    alike = all(replace(each, solid=model.solid) == model for each in models)
-    if not alike or operators.has_reformation:
-        return None
-    return OperatorsOfRows(operators.mesh, model, tuple(each.solid for each in models))
+def _observables_of_rows(equations: Equations, y: Array, load: Array) -> Array:
+    """Return the observables of rows of complex unknowns, shape (rows, n)."""
+    found, fields = np.full((len(y), len(ALL_NAMES)), np.nan, complex), equations.fields(y)
+    for name, value in measured(equations, fields, load).items():
+        found[:, ROW[name]] = value[:, 0]
+    found[:, ROW["central_gap"]] = central_gaps(equations, fields)
+    return found

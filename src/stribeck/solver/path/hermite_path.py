@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.continuation import Path, PathProblem
-from stribeck.numerics.hermite import inner_places, weights_through
+from stribeck.numerics.dual import Dual, value_of
+from stribeck.numerics.hermite import inner_places, slope_noise, weights_through
 from stribeck.numerics.settings import (
     MAX_LOG_STEP,
     SAFETY,
@@ -39,6 +41,7 @@ class Knot:
     slopes: Array  # of these
     errors: Array
     state: Any
+    kind: Any = field(default=None, kw_only=True)  # Where it changes from a state to the next, observables have a kink
 
 
 class KnotProblem(PathProblem, Protocol):
@@ -84,37 +87,81 @@ class HermitePath(Path):
         at, _ = weights_through(self.coordinates[first : last + 1], s)
         return np.asarray(np.abs(at) @ np.stack([knot.errors for knot in self.knots[first : last + 1]]))
 
-    def _through(self, first: int, last: int, s: Array) -> Array:
+    def _through(self, first: int, last: int, s: Any) -> Any:
         """Return the observables at places by the polynomials through states ``first`` to ``last``, shape (len(s), n)."""
-        knots = self.knots[first : last + 1]
+        (values, slopes), (logs, growth), keeps = self._interpolated(first, last)
         at, slope = weights_through(self.coordinates[first : last + 1], s)
-        values, slopes = (np.stack([getattr(knot, name) for knot in knots]) for name in ("values", "slopes"))
-        found = at @ values + slope @ slopes
-        same_sign = (values > 0).all(axis=0) | (values < 0).all(axis=0)
-        keeps: Flags = np.logical_and(self.problem.one_signed, same_sign)
         with np.errstate(all="ignore"):
-            logs = at @ np.log(np.abs(values[:, keeps])) + slope @ (slopes[:, keeps] / values[:, keeps])
-            one, other = self.problem.summands
-            found[:, other] += found[:, one]
-            found[:, keeps] = np.sign(values[0, keeps]) * np.exp(logs)
-            found[:, other] -= found[:, one]
+            straight = at @ values + slope @ slopes
+            growing = np.sign(values[0]) * np.exp(at @ logs + slope @ growth)
+            found = np.where(keeps, growing, straight)
+            column, (one, other) = np.arange(len(keeps)), self.problem.summands
+            found = found + (straight[:, [one]] - found[:, [one]]) * (column == other)
             one, other = self.problem.shares
             if keeps[one] and keeps[other]:
-                ratio = at @ np.log(values[:, one] / values[:, other])
-                ratio = ratio + slope @ (slopes[:, one] / values[:, one] - slopes[:, other] / values[:, other])
-                found[:, one], found[:, other] = 1 / (1 + np.exp(-ratio)), 1 / (1 + np.exp(ratio))
-        return np.asarray(found * self.problem.units(s))
+                ratio = at @ (logs[:, [one]] - logs[:, [other]]) + slope @ (growth[:, [one]] - growth[:, [other]])
+                found = np.where(column == one, 1 / (1 + np.exp(-ratio)), found)
+                found = np.where(column == other, 1 / (1 + np.exp(ratio)), found)
+        return found * self._units(s)
+
+    def _interpolated(self, first: int, last: int) -> tuple[tuple[Array, Array], tuple[Array, Array], Flags]:
+        """Return values and slopes of the observables of states, those of their logarithms, and which have these."""
+        knots = self.knots[first : last + 1]
+        values, slopes = (np.stack([getattr(knot, of) for knot in knots]) for of in ("values", "slopes"))
+        same_sign = (values > 0).all(axis=0) | (values < 0).all(axis=0)
+        keeps: Flags = np.logical_and(self.problem.one_signed, same_sign)
+        sizes = np.where(keeps, values, 1.0)
+        return (values, slopes), (np.log(np.abs(sizes)), np.where(keeps, slopes / sizes, 0.0)), keeps
+
+    def _slope_noise(self, first: int, last: int, s: Array, found: Array) -> Array:
+        """Return how far errors of slopes set the observables at places off, shape (len(s), n)."""
+        straight, logs, keeps = self._interpolated(first, last)
+        nodes, units = self.coordinates[first : last + 1], self._units(self.coordinates[first : last + 1])
+        scales = self.problem.scales(straight[0] * units, nodes) / units
+        errors = np.stack([knot.errors for knot in self.knots[first : last + 1]]) * scales
+        of_logs = np.divide(errors, np.abs(straight[0]), out=np.zeros_like(errors), where=keeps)
+        one, other = self.problem.summands
+        is_sum = np.logical_and(np.arange(len(keeps)) == other, one != other)
+        values, slopes, wrong = (each + is_sum * each[:, [one]] for each in (*straight, errors))
+        of_values = slope_noise(nodes, values, slopes, wrong, s) * self._units(s)
+        noise = np.where(keeps, np.abs(found) * slope_noise(nodes, *logs, of_logs, s), of_values)
+        noise[:, other] += noise[:, one] * (one != other)
+        one, other = self.problem.shares
+        if keeps[one] and keeps[other]:
+            ratio, growth = (each[:, [one]] - each[:, [other]] for each in logs)
+            of_ratio = slope_noise(nodes, ratio, growth, of_logs[:, [one]] + of_logs[:, [other]], s)
+            noise[:, [one, other]] = found[:, [one]] * found[:, [other]] * of_ratio
+        return np.asarray(noise)
+
+    def _units(self, s: Any) -> Any:
+        """Return the units of the observables at places, powers of what varies."""
+        at = value_of(s)
+        found = self.problem.units(at)
+        if not isinstance(s, Dual):
+            return found
+        growth = 0.5 * np.log(self.problem.units(at + 1.0) / self.problem.units(at - 1.0))
+        return Dual(found, np.reshape(s.slope, (-1, 1)) * growth * found)
 
     def _window(self, k: int, width: int) -> tuple[int, int]:
-        """Return the first and the last of the states around interval k, so many if there are."""
-        count = len(self.knots)
-        first = min(max(k + 1 - width // 2, 0), max(count - width, 0))
-        return first, min(first + width, count) - 1
+        """Return the first and the last of the states around interval k, so many if there are of its kind."""
+        low, high = self._runs[k]
+        first = min(max(k + 1 - width // 2, low), max(high + 1 - width, low))
+        return first, min(first + width - 1, high)
+
+    @cached_property
+    def _runs(self) -> list[tuple[int, int]]:
+        """First and last state of the kind of each interval; its ends alone where it joins two kinds."""
+        kinks = [k for k, (one, other) in enumerate(pairwise(self.knots)) if one.kind != other.kind]
+        found, ends = [], [-1, *kinks, len(self.knots) - 1]
+        for before, after in pairwise(ends):
+            found += [(before + 1, after)] * (after - before - 1)
+            found += [(after, after + 1)] * (after in kinks)
+        return found
 
     def interpolation_error(self, k: int) -> Array:
         """Return the error of the interpolation on interval k in units of the scales, over its shape.
 
-        That is the error of the polynomial through two states less, as the whole one shows it.
+        That is the error of the polynomial through two states less, as the whole one shows it, or that by errors of slopes.
         """
         # On long intervals the errors of both are alike, so that their difference shows about a half of either.
         apart, shape = self._apart(k)[:2]
@@ -125,15 +172,19 @@ class HermitePath(Path):
         left, right = self.coordinates[k : k + 2]
         parts = inner_places()
         s = left + parts * (right - left)
-        window, narrow = self._window(k, WINDOW), self._window(k, max(2, min(WINDOW, len(self.knots)) - 2))
+        window = self._window(k, WINDOW)
+        states = window[1] - window[0] + 1
+        narrow = self._window(k, max(2, states - 2))
         best = self._through(*window, s)
-        if len(self.knots) > 2:
+        if states > 2:
             less = self._through(*narrow, s)
         else:  # by the slopes alone
             ends = np.stack([self.knots[k].values, self.knots[k + 1].values])
             less = (ends[:1] + parts[:, None] * (ends[1:] - ends[:1])) * self.problem.units(s)
         with np.errstate(all="ignore"):
-            apart = np.nan_to_num(np.abs(best - less) / self.problem.scales(best, s), nan=math.inf)
+            wrong = np.maximum(np.abs(best - less), self._slope_noise(*window, s, best))
+            apart = np.nan_to_num(wrong / self.problem.scales(best, s), nan=math.inf)
+        apart[:, np.isnan(best).all(axis=0)] = 0.0  # what these states do not have
         return apart, _shape(parts)[:, None], self._propagated(*window, s) + self._propagated(*narrow, s)
 
     @cached_property
@@ -146,7 +197,7 @@ class HermitePath(Path):
         if len(self.knots) == 1:
             alone = self.knots[0].values * self.problem.units(s)
             return alone, np.zeros(len(s), dtype=int), np.zeros(len(s))
-        where = np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.knots) - 2)
+        where = self._interval_of(s)
         found: Array = np.empty((len(s), len(self.knots[0].values)))
         for k in np.unique(where).tolist():
             mine = where == k
@@ -154,9 +205,25 @@ class HermitePath(Path):
         left, right = self.coordinates[where], self.coordinates[where + 1]
         return found, where, (s - left) / (right - left)
 
-    def smooth(self, s: Array) -> Array:
-        """Return the observables at coordinates, shape (len(s), n)."""
-        return self._evaluated(s)[0]
+    def smooth(self, s: Any) -> Any:
+        """Return the observables at coordinates that may bring their derivatives, shape (len(s), n)."""
+        if not isinstance(s, Dual) or len(self.knots) == 1:
+            return self._evaluated(value_of(s))[0]
+        where, found = self._interval_of(s.value), np.empty((2, len(s.value), len(self.knots[0].values)))
+        for k in np.unique(where).tolist():
+            mine = where == k
+            here = self._through(*self._window(k, WINDOW), s[mine])
+            found[:, mine] = here.value, here.slope
+        return Dual(*found)
+
+    def _interval_of(self, s: Array) -> Indices:
+        """Return the number of the interval of each coordinate."""
+        return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.knots) - 2)
+
+    def around(self, s: float) -> tuple[Knot, Knot]:
+        """Return the solved states on both sides of a coordinate."""
+        k = int(self._interval_of(np.array([s]))[0]) if len(self.knots) > 1 else 0
+        return self.knots[k], self.knots[min(k + 1, len(self.knots) - 1)]
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, and their errors in units of the scales."""

@@ -29,13 +29,13 @@ class LinePoint(NamedTuple):
 def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
     """Return minimum gap and position between two expansions on the mesh of one, and the error of the gap."""
     # The search covers the surroundings of both ends' positions, then the whole mesh if the gap is not lowest there.
-    order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
+    order, mesh, ends = min(left.order, right.order), of.state.mesh, (left, right)
     weights = hermite_weights(order, parts)
     scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
-    places = [end.point.state.minimum_position / _stretch(end.point, of) for end in ends]
+    places = [end.point.state.minimum_position for end in ends]
     low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
     for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
-        a, b = (gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
+        a, b = (_gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
         with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
             place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
         if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
@@ -44,15 +44,8 @@ def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Arr
     error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
     for end, each, w in zip(ends, scaled, weights, strict=True):
         if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
-            error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
-    position = place
-    if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
-        own, others = (numbers_on(end.point, each, of) for end, each in zip(ends, scaled, strict=True))
-        numbers = weights[0] @ own + weights[1] @ others
-        if at.cavity_stretch.stop > at.cavity_stretch.start:
-            position = position * numbers[:, at.cavity_stretch.start - at.numbers.start]
-        position = position + numbers[:, at.exit.start - at.numbers.start]
-    return np.stack([lowest, position]), error
+            error = error + 2 * _unresolved(end.point, each, w, place)
+    return np.stack([lowest, place]), error
 
 
 def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
@@ -72,7 +65,7 @@ def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
 def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
     """Return the unknowns between two expansions on the mesh of one of them, with the logarithms of gaps."""
     order = min(left.order, right.order)
-    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
+    a, b = (_on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
     of_left, of_right = hermite_weights(order, parts)
     return np.asarray(of_left @ a + of_right @ b)
 
@@ -83,43 +76,29 @@ def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
     return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
 
 
-def _stretch(point: LinePoint, of: LinePoint) -> float:
-    """Return the ratio of the mesh coordinates of two points at the same place."""
-    own, other = point.state.mesh.reformation, of.state.mesh.reformation
-    return 1.0 if own == other else own / other
-
-
-def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+def _on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
     """Return coefficients of the unknowns of a point on the mesh of another."""
     mesh, other = point.state.mesh, of.state.mesh
     if mesh is other:
         return coefficients
     at, there = point.state.equations.layout, of.state.equations.layout
     found = np.empty((len(coefficients), there.size))
-    found[:, there.numbers] = numbers_on(point, coefficients, of)
-    found[:, there.gap] = gaps_on(point, coefficients, of, range(other.panels))
+    found[:, there.numbers] = coefficients[:, at.numbers]
+    found[:, there.gap] = _gaps_on(point, coefficients, of, range(other.panels))
     if there.pressure.stop > there.pressure.start:
-        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], _stretch(point, of) * other.nodes)
+        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], other.nodes)
     return found
 
 
-def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
+def _gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
     """Return the coefficients of the log gap on neighbouring panels of another point's mesh."""
     mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
     own = slice(panels.start * other.order, panels.stop * other.order)
     if mesh is other:
         return np.asarray(coefficients[:, at.gap][:, own])
-    nodes = _stretch(point, of) * other.nodes[own]
+    nodes = other.nodes[own]
     shapes = coefficients[:, at.gap].copy()
     shapes[0] -= np.log(mesh.far)
     found = mesh.interpolate(shapes, nodes)
     found[0] += np.log(mesh.scale**2 + nodes**2)
-    return found
-
-
-def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return the coefficients of the scalar unknowns, the cavity stretch scaled to another point's mesh."""
-    at = point.state.equations.layout
-    found = coefficients[:, at.numbers].copy()
-    found[:, at.cavity_stretch.start - at.numbers.start : at.cavity_stretch.stop - at.numbers.start] *= _stretch(point, of)
     return found

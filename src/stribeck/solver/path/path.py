@@ -47,6 +47,21 @@ class Expansion:
         """Order of the series."""
         return len(self.series) - 1
 
+    @property
+    def state(self) -> Any:
+        """The state as it was refined."""
+        return self.point.refined
+
+    @property
+    def values(self) -> Array:
+        """The observables."""
+        return np.asarray(self.series[0])
+
+    @property
+    def slopes(self) -> Array:
+        """Derivatives of the observables by the coordinate, unknown of a series without a first order."""
+        return np.asarray(self.series[1]) if self.order else np.full(self.series.shape[1], np.inf)
+
 
 def change_ratio(left: Expansion, right: Expansion) -> float:
     """Return the ratio of the changes by one order of a two-point series and by the order before."""
@@ -328,13 +343,18 @@ class SolvedPath(Path):
     def _pieces(self) -> _Pieces:
         return _Pieces(self.intervals)
 
-    def interval_of(self, s: Array) -> Array:
+    def around(self, s: float) -> tuple[Expansion, Expansion]:
+        """Return the solved states on both sides of a coordinate."""
+        interval = self.intervals[int(self._interval_of(np.array([s]))[0])]
+        return interval.left, interval.right
+
+    def _interval_of(self, s: Array) -> Array:
         """Return the number of the interval of each coordinate."""
         return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
 
     def _parts(self, s: Any) -> tuple[Array, Any]:
         """Return the interval of each coordinate, and its place in it."""
-        where = self.interval_of(value_of(s))
+        where = self._interval_of(value_of(s))
         return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], np.finfo(float).tiny)
 
     def smooth(self, s: Any) -> Any:

@@ -1,0 +1,106 @@
+"""States of the line along a path with the slopes of their observables: of any fluid, any end of the film and any law.
+
+Where a cavity opens or closes the observables have a kink: states on both sides are of two kinds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contacts.groups import Groups
+from stribeck.equations.observables import DRAG_ROWS, ROW, minimum_positions
+from stribeck.equations.sensitivity import derivatives_along
+from stribeck.equations.state import State
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS
+from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ALL_NAMES, GROUPS
+from stribeck.solver.neighbours import Neighbours
+from stribeck.solver.path.hermite_path import HermitePath, Knot
+from stribeck.solver.path.line_states import POSITION, LineStates, numbers_of
+from stribeck.solver.refinement import RefinedState
+
+__all__ = ["LineKnots"]
+
+
+class LineKnots(LineStates):
+    """The states of the line at the groups ``groups_at(s)``, each from its neighbours."""
+
+    path = HermitePath
+    names = (*ALL_NAMES, "minimum_position")
+    shares = (ROW["contact_load_share"], ROW["fluid_load_share"])
+    summands = (ROW["offset"], ROW["offset"])  # the sum of no two is smoother than both
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        super().__init__(groups_at, rtol)
+        self.neighbours = Neighbours(self.rtol)
+        self._sharper: dict[float, Neighbours] = {}
+
+    @cached_property
+    def one_signed(self) -> Flags:
+        """All that crosses zero nowhere: where the surfaces roll, their friction may."""
+        rolls = self.moves and abs(self.groups_at(0.0).model.film.slide) != 1.0
+        return ~self.sign_changing & ~np.isin(np.arange(POSITION + 1), DRAG_ROWS if rolls else [])
+
+    def units(self, s: Array) -> Array:
+        """Return ones: observables are interpolated as they are."""
+        return np.ones((len(s), POSITION + 1))
+
+    def solve(self, s: float, near: Sequence[Knot] = ()) -> Knot | Outcome:
+        """Return the state at ``s`` with its slopes, or the outcome of the failure."""
+        refined = self.accepted(self.neighbours.at(self.groups_at(s)))
+        if isinstance(refined, Outcome):
+            return refined
+        assert refined.state is not None
+        values, errors = numbers_of(refined)
+        slopes = self._slopes(s, refined.state) if self.moves else self._slopes_at_rest(s)
+        model = refined.state.groups.model
+        return Knot(s, values, slopes, errors, refined, kind=(model.film.uses_pressure, model.cavitation))
+
+    def begin(self, s: float, refined: RefinedState) -> Knot | Outcome:
+        """Return the state at ``s`` from one that is known, or the outcome of the failure."""
+        self.neighbours.learn(refined)
+        return self.solve(s)
+
+    def _slopes(self, s: float, state: State) -> Array:
+        """Return the slopes of the observables of a state by its equations."""
+        step = EPSILON ** (1 / 3)  # where truncation and rounding of a central difference are alike
+        below, above = self.groups_at(s - step), self.groups_at(s + step)
+        ends = np.array([[float(getattr(groups, name)) for name in GROUPS] for groups in (below, above)])
+        direction = np.zeros(len(GROUPS))
+        direction[(ends > 0).all(axis=0)] = np.diff(np.log(ends[:, (ends > 0).all(axis=0)]), axis=0)[0] / (2 * step)
+        slopes, move = derivatives_along(state, direction, (below.model, above.model, 2 * step))
+        before, after = minimum_positions(state.equations, state.y + step * np.array([[-1.0], [1.0]]) * move).tolist()
+        return np.append(slopes, (after - before) / (2 * step))
+
+    def _slopes_at_rest(self, s: float) -> Array:
+        """Return the slopes of the observables by two states beside, as a contact at rest is solved at another load."""
+        step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
+        rows = [numbers_of(self.neighbours.solved(self.groups_at(s + each)))[0] for each in (-step, step)]
+        return np.asarray((rows[1] - rows[0]) / (2 * step))
+
+    def guess_at(self, path: HermitePath, s: float) -> State:
+        """Return the state at a coordinate of a path, whose fields hold."""
+        state = self.point_at(path, s).state
+        assert state is not None
+        return state
+
+    def point_at(
+        self, path: HermitePath, s: float, rtol: float | None = None, near: RefinedState | None = None
+    ) -> RefinedState:
+        """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
+        groups, tolerance = self.groups_at(s), self.tolerance if rtol is None else rtol
+        if tolerance >= self.tolerance:
+            point: RefinedState = self.neighbours.at(groups)
+            if point.estimate is not None and point.estimate.total <= tolerance:
+                return replace(point, outcome=Outcome.CONVERGED)
+        if tolerance not in self._sharper:
+            self._sharper[tolerance] = Neighbours(tolerance)
+            for knot in path.around(s):
+                self._sharper[tolerance].learn(knot.state)
+        found: RefinedState = self._sharper[tolerance].at(groups)
+        return found
