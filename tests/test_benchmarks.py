@@ -18,6 +18,7 @@ ARGUMENTS = {
     "curve_bound": ["--number", "2", "--speeds", "3"],
     "curve_speed": [],
     "explorer_curves": ["--number", "1", "--contacts", "1"],
+    "mutants": ["--list", "--number", "3"],
     "fluid_box": ["motion", "--number", "2"],
     "peers": ["--quick"],
     "point_speed": ["--runs", "1", "--speeds", "2", "--memory-rtol", "1e-2", "--states", "2"],
