@@ -8,6 +8,7 @@ import pytest
 
 from stribeck import Outcome
 from stribeck.numerics.continuation import follow
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.series import radius
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.path.path import Expansion, Interval, SolvedPath
