@@ -31,7 +31,7 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow browser screenshots lint format types benchmark validity atlas atlas-point certificate docs site notebooks
+.PHONY: help demo test slow browser screenshots lint format types benchmark validity tables atlas atlas-point certificate docs site notebooks
 .PHONY: clean quick quick-kernels quick-lowest quick-newest
 
 help:
@@ -45,6 +45,7 @@ help:
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
+	@echo "make tables     docs/numerics_tables.md, hours; make tables WORDS=cost: the tables of a benchmark of that name"
 	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
 	@echo "make atlas-point  those of balls, 70 minutes of one core               make certificate TABLE=ball-exponential"
 	@echo "make clean      remove what make made"
@@ -139,6 +140,9 @@ notebooks: $(DOCS)
 
 validity: $(READY)
 	$(ONE_THREAD) $(BIN)/python docs/validity.py
+
+tables: $(READY)
+	$(ONE_THREAD) $(BIN)/python docs/numerics_tables.py $(WORDS)
 
 # The lines that are finished are kept in build/atlas, so that an interrupted build goes on. TABLE=line-persson makes another.
 TABLE = line-exponential

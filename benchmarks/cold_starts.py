@@ -7,7 +7,7 @@ Usage::
 Groups are drawn evenly in the logarithm from speed 1e-12 to 1e6, load 1e-8 to 10, relative roughness 1e-6 to
 1e3; one in twelve has speed zero, one in twelve roughness zero. The true error is that against a mesh with six
 more nodes on each panel and panels that reach 32 times as far. The last table starts with the flux condition
-written in other ways, see docs/numerics.md. Runs for about two minutes; prints the tables that docs/numerics.md
+written in other ways. Runs for about two minutes; prints the tables that docs/numerics_tables.md
 shows.
 """
 

@@ -257,7 +257,7 @@ def run(
 
 
 def table_row(family: str, rows: list[dict[str, Any]]) -> str:
-    """Return what docs/numerics.md shows of a family."""
+    """Return what docs/numerics_tables.md shows of a family."""
     solved = [row for row in rows if row["outcome"] == "CONVERGED"]
     rounding = sum(row["outcome"] == "ROUNDING" for row in rows)
     compared = [row for row in rows if "error" in row]

@@ -1,6 +1,6 @@
 """Instructions of three cases, counted by valgrind: they repeat where times do not.
 
-Prints the table that docs/numerics.md shows.
+Prints the table that docs/numerics_tables.md shows.
 
 Usage::
 

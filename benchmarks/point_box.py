@@ -10,7 +10,7 @@ smooth speeds 1e-5 to 1e4.  Each state is solved once more on a mesh with panels
 three degrees and 1.4 times the modes more; by how much it differs from that is taken for its error, where that mesh takes no
 more MB than ``--largest``, as it costs three times the state.  States that are done are kept in the file and not solved again,
 those that are not judged neither as long as their mesh is too large: an interrupted run goes on.  300 states take about an
-hour; prints the table that docs/numerics.md shows.
+hour; prints the table that docs/numerics_tables.md shows.
 """
 
 from __future__ import annotations

@@ -164,7 +164,7 @@ def worst(row: dict[str, Any], minima: bool = False) -> tuple[float, str]:
 
 
 def table(rows: list[dict[str, Any]]) -> str:
-    """Return what docs/numerics.md shows."""
+    """Return what docs/numerics_tables.md shows."""
     asked = [row for row in rows if row["outcome"] != "REFUSED"]
     compared = [row for row in asked if "ratios" in row]
     if not compared:

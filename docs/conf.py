@@ -55,7 +55,7 @@ CONTENTS = {
         "atlas",
     ],
     "theory": ["symbols", "validity", "figures", "errata"],
-    "numerics": ["convergence"],
+    "numerics": ["numerics_tables", "convergence"],
     "about": ["citing", "references", "generated/changelog", "generated/contributing"],
     "for_teachers": ["notebooks/paper_in_one_hour", "notebooks/topography_to_stribeck_curve", "notebooks/fitting"],
 }

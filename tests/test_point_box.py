@@ -1,4 +1,4 @@
-"""A small part of the benchmark of random cold states of the ball; the whole of it is in docs/numerics.md."""
+"""A small part of the benchmark of random cold states of the ball; the whole of it is in docs/numerics_tables.md."""
 
 import json
 
