@@ -1,6 +1,6 @@
 """Cost of a curve of 101 points, alone and with all its transitions, in units of an LU factorisation of a 300 x 300 matrix.
 
-Speed group 10 to 1e-9 at load 0.1 and roughness 1e-4, one thread; the table that docs/numerics_tables.md shows.  CPU time: of five
+Speed group 10 to 1e-9 at load 0.1 and roughness 1e-4, one thread; see docs/numerics_tables.md.  CPU time: of five
 rounds, each a few factorisations and then a curve, the best curve over the best factorisation.  Both are what the processor
 does undisturbed; medians differ by what else runs on it.
 """
