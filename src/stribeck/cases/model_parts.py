@@ -22,6 +22,7 @@ from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
 from stribeck.quantities.units import InputError, show
+from stribeck.solids.prony_fit import PronyFit, from_master_curve
 
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
@@ -139,6 +140,20 @@ def _flow_curve(path: Path, changed: int, law: str | None) -> FlowCurve:
     return read_flow_curve(path, law=law)
 
 
+@functools.lru_cache(maxsize=16)
+def _curve_of_file(path: Path, changed: int) -> PronyFit:
+    return from_master_curve(path)
+
+
+def _master_curve(file: Any, folder: Path | None) -> PronyFit:
+    if folder is None:
+        raise InputError(f"master_curve = {show(file)} stands in [solid] of a case; give relaxation_times and moduli here.")
+    if not isinstance(file, str):
+        raise InputError(f"master_curve = {show(file)} must be text in quotes, the name of a file.")
+    path = folder / file
+    return _curve_of_file(path, path.stat().st_mtime_ns if path.is_file() else 0)
+
+
 def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
     """Return the facts for checks that a preset holds, in SI units."""
     table = tables.get("fluid")
@@ -165,8 +180,35 @@ def viscosity_source_text(tables: dict[str, Any], viscosity: float, folder: Path
     return (f"{text}{given}: {preset.source} ({preset.range}).",)
 
 
+def gives_modulus(contact: Any) -> bool:
+    """Return whether a table of a contact has its modulus, in any form."""
+    stands_for = INPUT_TABLES["point"].stands_for
+    return isinstance(contact, dict) and any(stands_for.get(key, key) == "modulus" for key in contact)
+
+
+def body_source_text(tables: dict[str, Any], folder: Path) -> tuple[str, ...]:
+    """Return where the relaxation of a body is from, in a sentence; nothing where the case gives it."""
+    table = tables.get("solid")
+    if not isinstance(table, dict) or "master_curve" not in table:
+        return ()
+    found = _master_curve(table["master_curve"], folder)
+    relaxed = format_si(found.modulus, "pressure", 4)
+    what = "the relaxed modulus of the series is" if gives_modulus(tables.get("contact")) else "modulus ="
+    text = f"{what} {relaxed} with Poisson's ratio {found.poisson_ratio:g}, from master_curve = {show(table['master_curve'])}"
+    return (f"{text}: {' '.join([found.headline, *found.notes])}",)
+
+
 def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
     """Return the body of a table: a layer, a memory, or a layer that has one; its numbers say which."""
+    if "master_curve" in table:
+        doubled = next((key for key in ("relaxation_times", "moduli") if key in table), None)
+        if doubled:
+            raise InputError(f"master_curve and {doubled} are two descriptions of the same; give one of them.")
+        curve = _master_curve(table["master_curve"], folder)
+        if isinstance(contact, dict) and not gives_modulus(contact):
+            contact["modulus"] = curve.modulus
+        table = {key: value for key, value in table.items() if key != "master_curve"}
+        table |= {"relaxation_times": list(curve.solid.relaxation_times), "moduli": list(curve.solid.moduli)}
     kind = KINDS["solid"]
     laws = {name: law for name, law in kind.laws.items() if law is not None}
     named = one_of(*kind.laws)("model", table.get("model", next(iter(laws))))
@@ -218,7 +260,7 @@ PART_TABLES = {
         lambda table, contact, folder: {"flow_factors": _law(table, KINDS["flow_factors"])},
         f"add model = {' or '.join(map(json.dumps, KINDS['flow_factors'].laws))}",
     ),
-    "solid": PartTable(_keys(KINDS["solid"]), _solid),
+    "solid": PartTable((*_keys(KINDS["solid"]), "master_curve"), _solid),
     "profile": PartTable(
         _keys(KINDS["profile"]),
         _profile,

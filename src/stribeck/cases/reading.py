@@ -13,7 +13,7 @@ from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettin
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
-from stribeck.cases.model_parts import in_file, preset_facts, take_parts, viscosity_source_text
+from stribeck.cases.model_parts import body_source_text, in_file, preset_facts, take_parts, viscosity_source_text
 from stribeck.cases.stroke_settings import KEYS as KEYS_OF_STROKE
 from stribeck.cases.stroke_settings import StrokeSettings, stroke_settings
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
@@ -121,6 +121,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         conversions=(
             *found.sentences,
             *viscosity_source_text(tables, contact.viscosity, path.parent),
+            *body_source_text(tables, path.parent),
             *typical_error_text(contact, typical),
         ),
         tables=tables,

@@ -219,36 +219,18 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     InputError
         Where the file cannot be read or has no such columns, or its values allow no fit.
     """
-    from stribeck.files.cells import is_named  # slow to import, and most fluids have no file
-    from stribeck.files.text_table import read_table, values_of
-    from stribeck.files.writing import path_of
+    from stribeck.files.named_columns import read_named_columns  # slow to import, and most fluids have no file
 
-    file = path_of(path)
     advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]', with the units of the file"
     columns = {
         "rate": r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d",
         "viscosity": r"(shear |dynamic |apparent )?viscosity|eta|viskosität",
     }
-    table = read_table(file, expected=advice, knows=lambda name: any(is_named(name, each) for each in columns.values()))
-    found: list[Array] = []
-    for kind, pattern in columns.items():
-        names = [name for name in table.header if is_named(name, pattern)]
-        if len(names) != 1:
-            which = f"columns {', '.join(map(show, names))} all" if names else f"none of {', '.join(map(show, table.header))}"
-            raise InputError(f"{file}: {which} may be the {kind}; {advice}.")
-        unit = table.unit(names[0])
-        if not unit:
-            raise InputError(f"{file}: the column {show(names[0])} has no unit; {advice}.")
-        rows = [(cell,) for cell in table.column(names[0])]
-        values = values_of(file, rows, table.numbers, comma=table.decimal_comma(names))[:, 0]
-        found.append(
-            values * to_si(f"1 {unit.replace('·', '*').replace('s^-1', '1/s').replace('s⁻¹', '1/s')}", kind, names[0])
-        )
-    known = ~np.isnan(found[0]) & ~np.isnan(found[1])
+    rate, viscosity = read_named_columns(path, columns, advice, lambda kind, unit, name: to_si(f"1 {unit}", kind, name))
     try:
-        return flow_curve(found[0][known], found[1][known], law=law)
+        return flow_curve(rate, viscosity, law=law)
     except InputError as problem:
-        raise InputError(f"{file}: {problem}") from None
+        raise InputError(f"{path}: {problem}") from None
 
 
 def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:

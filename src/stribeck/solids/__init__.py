@@ -5,6 +5,7 @@ from stribeck.quantities.lazy import lazy_names as _lazy_names
 _HOMES = {
     "half_plane": ("HalfPlane",),
     "layer": ("Layer",),
+    "prony_fit": ("PronyFit", "fit_prony", "from_master_curve"),
     "two_bodies": ("TwoBodies",),
     "viscoelastic": ("Prony", "StandardLinearSolid", "hysteresis_friction"),
 }

@@ -19,7 +19,7 @@ from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import INPUTS_OF_SURFACES, SOURCES, self_contained
-from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, preset_facts
+from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, gives_modulus, preset_facts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
@@ -217,6 +217,10 @@ def from_case(case: Case) -> Inputs:
         tables["fluid"] = fluid_table(case.contact.fluid)
         tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
         own.append("viscosity")
+    if "master_curve" in tables.get("solid", {}):
+        series = {name: list(getattr(case.contact, name)) for name in ("relaxation_times", "moduli")}
+        tables["solid"] = {key: value for key, value in tables["solid"].items() if key != "master_curve"} | series
+        own += [] if gives_modulus(contact) else ["modulus"]
     for name in own:
         row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
         contact[name] = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value

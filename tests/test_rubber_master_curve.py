@@ -1,0 +1,123 @@
+"""A rubber's complex modulus over the frequency becomes a Prony series with its error, or is refused in words."""
+
+import numpy as np
+import pytest
+from command_line import call
+
+import stribeck as sb
+
+OMEGA = np.geomspace(1.0, 1e5, 31)
+TRUE = {1e-4: 2.0, 1e-2: 1.0}  # relaxation times and moduli over the relaxed one
+RELAXED = 1.5e6
+
+
+def moduli(omega=OMEGA, terms=TRUE):
+    x = {time: omega * time for time in terms}
+    storage = RELAXED * (1 + sum(g * x[time] ** 2 / (1 + x[time] ** 2) for time, g in terms.items()))
+    return storage, RELAXED * sum(g * x[time] / (1 + x[time] ** 2) for time, g in terms.items())
+
+
+def broad(omega, scatter=0.0, seed=1):
+    """Return the moduli of a rubber whose relaxation covers many decades."""
+    x = (1j * omega * 1e-4) ** 0.5
+    modulus = 2e6 + 1e8 * x / (1 + x)
+    noise = np.exp(scatter * np.random.default_rng(seed).standard_normal((2, omega.size)))
+    return modulus.real * noise[0], modulus.imag * noise[1]
+
+
+def write(path, header="frequency [Hz];E' [MPa];E'' [MPa]", omega=OMEGA, factor=2 * np.pi):
+    rows = zip(omega / factor, *(each / 1e6 for each in moduli(omega)), strict=True)
+    path.write_text("\n".join([header, *(";".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n")
+    return path
+
+
+def test_a_series_is_found_again_with_its_times_and_moduli():
+    found = sb.solids.fit_prony(OMEGA, *moduli())
+    assert found.solid.relaxation_times == pytest.approx((1e-4, 1e-2), rel=1e-9, abs=0)
+    assert found.solid.moduli == pytest.approx((2.0, 1.0), rel=1e-6, abs=0)
+    assert found.relaxed_modulus == pytest.approx(RELAXED, rel=1e-6, abs=0) and found.misfit < 1e-6
+    assert found.modulus == pytest.approx(RELAXED / 0.75, rel=1e-6, abs=0)
+
+
+def test_the_stated_misfit_is_that_of_the_values_and_of_what_lies_between(subtests):
+    for scatter in (0.0, 0.03):
+        with subtests.test(scatter=scatter):
+            omega = np.geomspace(1e-2, 1e6, 49)
+            measured = broad(omega, scatter)
+            found = sb.solids.fit_prony(omega, *measured)
+            deviation = np.array(found.at(omega)) / np.array(measured) - 1
+            assert found.misfit == pytest.approx(np.sqrt(np.mean(deviation**2)), rel=1e-9, abs=0)
+            assert found.largest_misfit == pytest.approx(np.abs(deviation).max(), rel=1e-9, abs=0)
+            between = np.sqrt(omega[1:] * omega[:-1])
+            assert np.sqrt(np.mean((np.array(found.at(between)) / np.array(broad(between)) - 1) ** 2)) < max(2 * scatter, 0.01)
+
+
+def test_a_solved_contact_takes_the_series():
+    contact = sb.load_case("examples/pdms_cylinder.toml").contact
+    found = sb.solids.fit_prony(OMEGA, *moduli())
+    body = sb.solids.Prony([1e-4, 1e-2], [2.0, 1.0])
+    contact = contact.replace(modulus=RELAXED / 0.75)
+    friction = [sb.solve(contact.replace(solid=solid)).hysteresis_friction for solid in (found.solid, body)]
+    assert friction[0] == pytest.approx(friction[1], rel=1e-5, abs=0) and friction[0] > 1e-3
+
+
+def test_files_have_hertz_or_radians_and_any_unit_of_modulus(subtests, tmp_path):
+    for header, factor in (
+        ("frequency [Hz];E' [MPa];E'' [MPa]", 2 * np.pi),
+        ("Angular frequency (rad/s);Storage modulus (MPa);Loss modulus (MPa)", 1.0),
+        ("omega [1/s];E' [MPa];E'' [MPa]", 1.0),
+    ):
+        with subtests.test(header=header):
+            found = sb.solids.from_master_curve(write(tmp_path / "a.csv", header, factor=factor))
+            assert found.solid.relaxation_times == pytest.approx((1e-4, 1e-2), rel=1e-6, abs=0)
+            assert found.relaxed_modulus == pytest.approx(RELAXED, rel=1e-4, abs=0)
+
+
+def test_a_case_names_the_file_and_says_how_well_it_was_followed(capsys, tmp_path):
+    write(tmp_path / "rubber.csv")
+    text = (
+        '[contact]\nradius = "10 mm"\nload = "30 N/m"\nviscosity = "50 mPa*s"\nspeed = "1 mm/s"\nroughness = "1 um"\n'
+        'alpha = 2.0\nbeta = 0.06\nboundary_friction = 0.5\n[solid]\nmaster_curve = "rubber.csv"\n'
+    )
+    (tmp_path / "case.toml").write_text(text)
+    case = sb.load_case(tmp_path / "case.toml")
+    assert case.contact.modulus == pytest.approx(RELAXED / 0.75, rel=1e-4, abs=0)
+    assert case.contact.solid.moduli == pytest.approx((2.0, 1.0), rel=1e-3, abs=0)
+    said = call(capsys, "check", tmp_path / "case.toml").out
+    assert "Prony series of 2 terms" in said and "modulus = 2 MPa" in said
+    (tmp_path / "own.toml").write_text(text.replace("[contact]", '[contact]\nmodulus = "3 MPa"'))
+    assert sb.load_case(tmp_path / "own.toml").contact.modulus == 3e6
+    (tmp_path / "layer.toml").write_text(text + 'layer_thickness = "2 mm"\n')
+    assert sb.load_case(tmp_path / "layer.toml").contact.layer_thickness == 2e-3
+    (tmp_path / "both.toml").write_text(text + "moduli = [1.0]\n")
+    with pytest.raises(sb.InputError, match="master_curve and moduli are two descriptions"):
+        sb.load_case(tmp_path / "both.toml")
+
+
+def test_a_curve_without_a_plateau_says_so():
+    found = sb.solids.fit_prony(np.geomspace(1e4, 1e6, 20), *broad(np.geomspace(1e4, 1e6, 20)))
+    assert any("has no plateau" in note for note in found.notes)
+    assert not any("has no plateau" in note for note in sb.solids.fit_prony(OMEGA, *moduli()).notes)
+
+
+def test_impossible_curves_are_refused(subtests, tmp_path):
+    storage, loss = moduli()
+    fluid = OMEGA * 1e-3
+    for arguments, words in (
+        ((np.log10(OMEGA), storage, loss), "a logarithm"),
+        ((OMEGA, storage, -loss), "loss modulus holds"),
+        ((OMEGA[:4], storage[:4], loss[:4]), "4 different frequencies"),
+        ((OMEGA, storage[1:], loss), "shape"),
+        (("a", "b", "c"), "arrays of numbers"),
+        ((OMEGA, fluid**2 / (1 + fluid**2), fluid / (1 + fluid**2)), "no relaxed modulus"),
+    ):
+        with subtests.test(words=words), pytest.raises(sb.InputError, match=words):
+            sb.solids.fit_prony(*arguments)
+    with pytest.raises(sb.InputError, match="no unit"):
+        sb.solids.from_master_curve(write(tmp_path / "a.csv", "frequency;E' [MPa];E'' [MPa]"))
+    with pytest.raises(sb.InputError, match="none of"):
+        sb.solids.from_master_curve(write(tmp_path / "b.csv", "frequency [Hz];x [MPa];y [MPa]"))
+    with pytest.raises(sb.InputError, match="Hz, kHz"):
+        sb.solids.from_master_curve(write(tmp_path / "c.csv", "frequency [rpm];E' [MPa];E'' [MPa]"))
+    with pytest.raises(sb.InputError, match="poisson_ratio"):
+        sb.solids.fit_prony(OMEGA, storage, loss, poisson_ratio=0.7)
