@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -16,6 +16,7 @@ from stribeck.contacts.geometries import LINE
 from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, show
+from stribeck.sweeps.temperature import TEMPERATURE
 
 Kind = Literal["grid", "list", "random", "latin-hypercube", "sobol"]
 
@@ -106,14 +107,15 @@ def read_axes(
                 raise InputError(f"{show(name)} cannot vary; {hint}.")
             # This stands for an axis that is refused, so that nothing else is said of it.
             axes[name] = Axis(values=(rows[name].typical_value,))
-            axes[name] = _axis_of(name, entry, design.get("kind", "grid"), rows[name].checked)
+            axes[name] = _axis_of(name, entry, design.get("kind", "grid"), rows[name])
     if axes and len(problems) == before:
         problems += _design_problems(design, axes)
     return design, axes
 
 
-def _axis_of(name: str, entry: Any, kind: Kind, check: Callable[[Any], float]) -> Axis:
+def _axis_of(name: str, entry: Any, kind: Kind, row: Input) -> Axis:
     """Return what one entry of ``[vary]`` says."""
+    check = row.checked
     if isinstance(entry, list):
         if not entry:
             raise InputError(f"{name} = [] is empty; list its values.")
@@ -124,11 +126,12 @@ def _axis_of(name: str, entry: Any, kind: Kind, check: Callable[[Any], float]) -
     extra = [key for key in entry if key not in ("range", "points", "spacing")]
     if extra:
         raise InputError(f"{name} has the unknown key {show(extra[0])}; known are range, points and spacing.")
-    spacing, points = entry.get("spacing", "log"), entry.get("points")
+    spacing, points = entry.get("spacing", "linear" if row is TEMPERATURE else "log"), entry.get("points")
     low, high = rising_pair(f"{name}: range", entry.get("range"), check)
     checked_word(f"{name}: spacing", spacing, ("log", "linear"))
-    if spacing == "log" and low == 0:
-        raise InputError(f"{name}: range = {show(entry['range'])} begins at zero; add spacing = 'linear', or list the values.")
+    if spacing == "log" and low <= 0:
+        where = f"{name}: range = {show(entry['range'])} begins {'below' if low else 'at'} zero"
+        raise InputError(f"{where}; add spacing = 'linear', or list the values.")
     if kind in RANDOM_KINDS:
         if points is not None:
             raise InputError(f"{name}: points = {show(points)} is for grids; with kind = '{kind}' it belongs in [design].")

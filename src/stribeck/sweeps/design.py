@@ -39,6 +39,7 @@ from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.axes import COEFFICIENTS, GROUP_ROWS, Axis, Kind, points_of, read_axes
+from stribeck.sweeps.temperature import NAME, TEMPERATURE, check_temperature_axis, viscosity_at
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -71,7 +72,7 @@ class SweepDesign(Tabled, Shown, States):
     def _range(self, name: str) -> str:
         """Return how many values an input takes, and between which."""
         values = np.unique(self.inputs[name] if name in self.inputs else self.groups[:, GROUPS.index(name)])
-        rows = INPUT_TABLES[self.physics["geometry"]].rows
+        rows = INPUT_TABLES[self.physics["geometry"]].rows | {NAME: TEMPERATURE}
         dimension = "number" if self.contacts is None else rows[name].dimension
         low, high = (format_si(float(end), dimension) for end in (values[0], values[-1]))
         return f"{len(values)} values, {low} to {high}"
@@ -89,7 +90,7 @@ class SweepDesign(Tabled, Shown, States):
     @property
     def input_columns(self) -> dict[str, tuple[Array, str, str]]:
         """Inputs and groups of all states: values, unit and meaning of each."""
-        rows = INPUT_TABLES[self.physics["geometry"]].rows
+        rows = INPUT_TABLES[self.physics["geometry"]].rows | {NAME: TEMPERATURE}
         inputs = {name: (values, rows[name].unit, rows[name].label) for name, values in self.inputs.items()}
         return inputs | {f"{name}_group": (self.groups[:, i], "1", f"{name} group") for i, name in enumerate(GROUPS)}
 
@@ -143,7 +144,11 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     with noted(problems, "contact" if "contact" in tables else "groups"):
         geometry, _ = geometry_of(tables)
     si = "groups" not in tables
-    design, axes = read_axes(own, INPUT_TABLES[geometry].rows if si else GROUP_ROWS, problems)
+    vary = own.get("vary")
+    if si and isinstance(vary, dict) and NAME in vary:
+        with noted(problems, "vary"):
+            check_temperature_axis(tables, vary)
+    design, axes = read_axes(own, INPUT_TABLES[geometry].rows | {NAME: TEMPERATURE} if si else GROUP_ROWS, problems)
     where = "contact" if si else "groups"
     base: Any = tables.get(where)
     for name in axes.keys() & (base if isinstance(base, dict) else {}):
@@ -179,6 +184,9 @@ def _read_contact(tables: dict[str, Any], axes: dict[str, Axis], path: Path, pro
     given = tables.get("contact", {})
     known = INPUT_TABLES["point"].quantities  # numbers of fluids and solids vary from those that their tables have
     first = {name: float(axis.at(np.zeros(1))[0]) for name, axis in axes.items() if name in known}
+    fluid = tables.get("fluid", {})
+    if NAME in axes and isinstance(fluid, dict):
+        tables = tables | {"fluid": fluid | {NAME: float(axes[NAME].at(np.zeros(1))[0])}}
     try:
         case = check_case(tables | {"contact": given | first} if isinstance(given, dict) else tables, path)
     except InputError as problem:
@@ -188,7 +196,7 @@ def _read_contact(tables: dict[str, Any], axes: dict[str, Axis], path: Path, pro
             problems.append(said.replace("[contact]", "[vary]", 1) if varies else said)
         return "", 0.0, "", lambda varying: {}
     forms = {name: value for name, value in given.items() if name in case.contact.INPUTS.stands_for}
-    return case.title, case.rtol, case.law, partial(_contacts, case.contact, forms)
+    return case.title, case.rtol, case.law, partial(_contacts, case.contact, forms, fluid)
 
 
 def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, problems: list[str]) -> Made:
@@ -219,11 +227,14 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
     return checked["title"], checked["solver"]["rtol"], law, partial(_groups, physics, fixed)
 
 
-def _contacts(base: Contact, forms: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
+def _contacts(base: Contact, forms: dict[str, Any], fluid: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:
     """Return contacts, each of which is checked, with their inputs and groups."""
     number = len(next(iter(varying.values())))
     fixed = {name: np.full(number, base.INPUTS.quantities[name].checked(value)) for name, value in forms.items()}
-    contacts, groups = contacts_at(base, {name: column.astype(object) for name, column in (fixed | varying).items()})
+    columns = fixed | {name: column for name, column in varying.items() if name != NAME}
+    if NAME in varying:
+        columns["viscosity"] = viscosity_at(fluid, varying[NAME])
+    contacts, groups = contacts_at(base, {name: column.astype(object) for name, column in columns.items()})
     kept = [contact.to_si() for contact in contacts]
     inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
     return {"inputs": inputs | fixed | varying, **States.flat(groups, contacts)}
