@@ -8,10 +8,11 @@ from scipy.integrate import quad
 from scipy.special import gamma, pbdv
 
 import stribeck as sb
-from stribeck.contact_laws import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.numerics.dual import with_slope
 
 pytestmark = pytest.mark.quick
+
+GreenwoodTripp, GreenwoodWilliamson = sb.contact_laws.GreenwoodTripp, sb.contact_laws.GreenwoodWilliamson
 
 LAWS = {1.5: GreenwoodWilliamson(), 2.5: GreenwoodTripp()}
 """The law whose pressure is the moment of each order."""

@@ -14,7 +14,6 @@ from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 
 import stribeck as sb
 from stribeck import FitSettings
-from stribeck.results import FitOutcome
 from stribeck.surfaces import SelfAffine, persson_law
 
 FREE = ("boundary_friction", "roughness", "modulus", "beta", "alpha", "viscosity", "load", "radius")
@@ -151,14 +150,14 @@ def test_an_input_at_its_bound_is_said(tmp_path):
     assert found.converged and each.at_bound and each.value == pytest.approx(9e-7, rel=1e-3)
     assert any("roughness ended at its bound 900 nm: the data would move it further" in note for note in found.notes)
     assert math.isnan(each.standard_error)
-    assert found.outcome is FitOutcome.AT_BOUND and found.to_dict()["outcome"] == "AT_BOUND"
+    assert found.outcome is sb.results.FitOutcome.AT_BOUND and found.to_dict()["outcome"] == "AT_BOUND"
 
 
 def test_a_boundary_friction_that_no_contact_has_is_named():
     speeds, friction = exact(contact=TRUE.replace(boundary_friction=3.4), rows=8)
     found = sb.fit(measured(speeds, friction), TRUE, free=["boundary_friction"], intervals=False)
     assert found["boundary_friction"].value == pytest.approx(3.4, rel=1e-3)
-    assert found.outcome is FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
+    assert found.outcome is sb.results.FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
     assert any("boundary_friction 3.4 is larger than that of any known contact" in note for note in found.notes)
     assert "The fit ended at an implausible boundary friction" in str(found)
     for value, verdict in ((2.9, "fine"), (3.4, "doubtful")):

@@ -11,8 +11,9 @@ from command_line import case_text
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.contact_laws import GreenwoodTripp, TableLaw
 from stribeck.numerics.dual import with_slope
+
+GreenwoodTripp, TableLaw = sb.contact_laws.GreenwoodTripp, sb.contact_laws.TableLaw
 
 EXPONENTIAL = sb.contact_laws.FunctionLaw(lambda s: -s, lowest=-math.inf)
 """The exponential law by the way of any other."""

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
-from scipy.optimize import minimize_scalar
 
-from stribeck.equations.gap import minimum_gap
 from stribeck.numerics.panels import Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
 from stribeck.numerics.panels import graded as halved_towards
 from stribeck.numerics.running_integral import RunningIntegral
@@ -271,24 +269,3 @@ def test_an_edge_that_rounding_keeps_apart_from_a_place_leaves_no_panel_between(
     mesh = halved_towards(Mesh(np.array([-8.0, -1.0, 0.0, beside, 1.0, 8.0]), 12), [0.0, 0.25], 5)
     assert 0.25 in mesh.edges and beside not in mesh.edges
     assert (np.diff(mesh.nodes[: -mesh.order]) > 0).all()
-
-
-def dipped(x, lowest):
-    """A positive gap with one narrow dip."""
-    return (1 + x * x / 20) * (1 - 0.3 / (1 + ((x - lowest) / 0.05) ** 2))
-
-
-def test_the_minimum_gap_lies_between_the_nodes_and_on_whichever_panel_it_is(subtests):
-    fine = Mesh(np.concatenate([-np.array([8.0, 4, 2]), np.linspace(-1.25, 1.25, 51), [2.0, 4, 8]]), 20)
-    for lowest in [0.0, 0.013, 0.4999, 0.5, -0.77, 1.0]:
-        with subtests.test(lowest=lowest):
-            position, gap = minimum_gap(fine, dipped(fine.nodes, lowest))
-            bounds = (lowest - 0.02, lowest + 0.02)
-            exact = minimize_scalar(dipped, bounds=bounds, args=(lowest,), method="bounded", options={"xatol": 1e-10})
-            assert (position, gap) == (pytest.approx(exact.x, abs=1e-6), pytest.approx(exact.fun, rel=1e-9))
-    narrow = Mesh(np.array([-8.0, -4.0, -2.0, -1.0, 0.0, 0.25, 0.45, 0.5, 0.75, 1.0, 2.0, 4.0, 8.0]), 20)
-    for lowest in [0.5001, 0.4499]:
-        with subtests.test(lowest=lowest):
-            gap = 1 + np.log1p((narrow.nodes - lowest) ** 2)
-            assert 0.45 < narrow.nodes[np.argmin(gap)] < 0.5  # the neighbour has the minimum
-            assert minimum_gap(narrow, gap) == (pytest.approx(lowest, abs=1e-7), pytest.approx(1.0, abs=1e-12))

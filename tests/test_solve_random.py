@@ -6,13 +6,16 @@ it owes nothing to the choices of the solver.
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 import stribeck as sb
 from stribeck import Outcome
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.damping import longest_step
+from stribeck.equations.gap import minimum_gap
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, changes, observables
+from stribeck.numerics.panels import Mesh
 
 SEED = 27_644_437
 TYPICAL = {
@@ -95,6 +98,28 @@ def test_what_a_small_change_of_a_state_does_to_its_observables_is_their_differe
             # The minimum gap answers at the node next to it.
             allowed = 2e-2 if each == "minimum_gap" else 1e-5
             assert abs(found[ROW[each]] - difference) <= allowed * scale + 1e-13, each
+
+
+def dipped(x, lowest):
+    """A positive gap with one narrow dip."""
+    return (1 + x * x / 20) * (1 - 0.3 / (1 + ((x - lowest) / 0.05) ** 2))
+
+
+@pytest.mark.quick
+def test_the_minimum_gap_lies_between_the_nodes_and_on_whichever_panel_it_is(subtests):
+    fine = Mesh(np.concatenate([-np.array([8.0, 4, 2]), np.linspace(-1.25, 1.25, 51), [2.0, 4, 8]]), 20)
+    for lowest in [0.0, 0.013, 0.4999, 0.5, -0.77, 1.0]:
+        with subtests.test(lowest=lowest):
+            position, gap = minimum_gap(fine, dipped(fine.nodes, lowest))
+            bounds = (lowest - 0.02, lowest + 0.02)
+            exact = minimize_scalar(dipped, bounds=bounds, args=(lowest,), method="bounded", options={"xatol": 1e-10})
+            assert (position, gap) == (pytest.approx(exact.x, abs=1e-6), pytest.approx(exact.fun, rel=1e-9))
+    narrow = Mesh(np.array([-8.0, -4.0, -2.0, -1.0, 0.0, 0.25, 0.45, 0.5, 0.75, 1.0, 2.0, 4.0, 8.0]), 20)
+    for lowest in [0.5001, 0.4499]:
+        with subtests.test(lowest=lowest):
+            gap = 1 + np.log1p((narrow.nodes - lowest) ** 2)
+            assert 0.45 < narrow.nodes[np.argmin(gap)] < 0.5  # the neighbour has the minimum
+            assert minimum_gap(narrow, gap) == (pytest.approx(lowest, abs=1e-7), pytest.approx(1.0, abs=1e-12))
 
 
 @pytest.mark.quick
