@@ -301,24 +301,6 @@ def test_an_inverse_by_iteration_serves_as_well_as_factors():
     assert error(root, problem.root) < 1e-10
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
-        ("start", {"start": []}),
-        ("tolerance", {"tolerance": 0.0}),
-        ("tolerance", {"tolerance": math.nan}),
-        ("max_steps", {"max_steps": 0}),
-        ("chord", {"chord": 1.0}),
-        ("residual", {"residual": lambda x: np.zeros(3)}),
-        ("jacobian", {"jacobian": lambda x: np.eye(3)}),
-    ],
-)
-def test_impossible_arguments_are_refused_by_name(name, arguments):
-    allowed = {"residual": lambda x: x - 1.0, "jacobian": lambda x: np.eye(2), "start": [0.0, 0.0]}
-    with pytest.raises(ValueError, match=name):
-        find(**(allowed | arguments))
-
-
 @pytest.mark.quick
 def test_a_root_lies_between_two_signs():
     calls = []

@@ -50,10 +50,6 @@ def test_where_its_grid_is_too_coarse_it_says_so(textbook):
     assert textbook.solve(textbook.grid(101), 1e-6)[-1] > 1e-6
 
 
-def test_it_fits_on_a_page():
-    assert len((BENCHMARKS / "textbook.py").read_text().splitlines()) <= 60
-
-
 @pytest.mark.parametrize(("name", "module"), [("tamaas", "tamaas"), ("ContactMechanics", "ContactMechanics")])
 def test_a_peer_that_is_missing_is_named_with_the_way_to_install_it(load_benchmark, monkeypatch, name, module):
     peers = load_benchmark("peers")
