@@ -1,5 +1,6 @@
 """Raw files of rigs become Stribeck curves: what is kept, what is left out, and intervals that hold the truth."""
 
+import datetime
 import json
 from pathlib import Path
 
@@ -318,3 +319,43 @@ def test_a_ramp_of_a_rheometer_with_a_torque_and_a_rotation(written):
     assert len(found) == 25 and found.inputs == ({"load": 5.0},)
     assert_holds(found)
     assert len(sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02), per_decade=4)) == 10
+
+
+def test_arm_and_track_radius_of_a_call_are_those_of_a_case(written, subtests, tmp_path, capsys):
+    rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], amplitude=0.005) * [1, 60 / (2 * np.pi * 20), 1, 20]
+    path = written(text_of(rows, "Time [s];Speed [rpm];Fz [N];Torque [mN m]"))
+    expected = sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02))
+    found = sb.bench.read(path, arm="20 mm", track_radius=0.02)
+    assert np.array_equal(found.speed, expected.speed) and np.array_equal(found.friction, expected.friction)
+    answer = call(capsys, "bench", path, "--arm", "20 mm", "--track-radius", "20 mm", "-o", tmp_path / "curve.csv")
+    assert answer.code == 0, answer.err
+    for options, words in (({"arm": "20 N"}, "arm"), ({"arm": 0.0, "track_radius": 1.0}, "arm = 0.0 must be a length above")):
+        with subtests.test(words=words):
+            assert words in refusal(path, **options)
+
+
+def test_the_time_of_day_is_a_time_over_midnight_too(written, subtests):
+    rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], amplitude=0.005)
+    rows = np.delete(rows, slice(295, 310), axis=0)  # nothing was written at midnight
+    expected = sb.bench.read(written(text_of(rows)))
+
+    def text(stamp, header):
+        lines = [f"{stamp(row[0])};{row[1]:.6g};{row[2]:.6g};{row[3]:.6g}" for row in rows]
+        return "\n".join([f"{header};Speed [mm/s];Fz [N];Fx [N]", *lines]) + "\n"
+
+    start = datetime.datetime(2026, 11, 28, 23, 59, 30)
+
+    def at(seconds):
+        return start + datetime.timedelta(seconds=round(float(seconds), 1))
+
+    for header, stamp in (
+        ("Time", lambda s: at(s).strftime("%H:%M:%S.%f")),
+        ("Date Time", lambda s: at(s).isoformat()),
+        ("Clock", lambda s: at(s).strftime("%I:%M:%S.%f %p")),
+        ("Timestamp", lambda s: at(s).strftime("%Y-%m-%d %H:%M:%S.%f").replace(".", ",")),
+    ):
+        with subtests.test(header=header):
+            found = sb.bench.read(written(text(stamp, header)))
+            assert found.time == pytest.approx(expected.time, rel=0, abs=1e-6)
+            assert found.friction == pytest.approx(expected.friction, rel=1e-9)
+            assert any("time of day" in note for note in found.notes)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,7 +27,15 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["Raw", "read_raw"]
 
-TIME = r"(?:(?:elapsed|test|total|run|running|measuring|cycle|relative) )?(?:time|zeit)|time ?stamp|t"  # Headers of a time
+# Headers of a time
+TIME = (
+    r"(?:(?:elapsed|test|total|run|running|measuring|cycle|relative) )?(?:time|zeit)|time ?stamp|t"
+    r"|date(?: ?time)?|clock|uhrzeit|datum"
+)
+
+_CLOCK = re.compile(r"(?:.*[T ])?(\d{1,3}):(\d\d):(\d\d(?:[.,]\d+)?)(?: ?(AM|PM))?(?:Z|[+-]\d\d:?\d\d)?", re.IGNORECASE)
+
+DAY = 86400.0  # Seconds
 
 UNLOADED = 0.05  # Part of the usual load below which the surfaces are apart
 
@@ -218,11 +228,14 @@ def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
     rows = np.arange(len(table.rows), dtype=float)
     for name in filter(None, dict.fromkeys(table.header)):
         unit = table.unit(name)
-        bare = not unit and re.search("time|zeit", name, re.IGNORECASE)
+        bare = not unit and re.search("time|zeit|date|clock|datum", name, re.IGNORECASE)
         if not is_named(name, TIME) or not (bare or has_dimension(unit or "-", "time")):
             continue
         decimal = "," if table.decimal_comma([name]) else "."
         read = [number_of(cell, decimal) for cell in table.column(name)]
+        stamps = None if any(read) else _stamps(table.column(name))
+        if stamps is not None:
+            return _going_on(table, name, stamps, step), True, [f"{show(name)} was read as the time of day."]
         if not any(read):
             continue
         time = np.array([np.nan if each is None else each[0] for each in read]) * (
@@ -233,6 +246,36 @@ def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
         said = [] if unit else [f"{show(name)} was read in seconds, as its header has no unit."]
         return _going_on(table, name, time, step), True, said
     return rows, False, ["The file has no time; rows count as evenly spaced."] if len(rows) > FEWEST else []
+
+
+def _stamps(cells: Sequence[str]) -> Array | None:
+    """Return the seconds since the first of times of day, with or without an ISO date; None where cells are none."""
+    found, first, days, before = [], 0.0, 0.0, -1.0
+    for cell in cells:
+        clock = _CLOCK.fullmatch(cell.strip())
+        if clock is None:
+            found.append(math.nan)
+            continue
+        hours = int(clock[1]) % 12 + 12 * (clock[4].upper() == "PM") if clock[4] else int(clock[1])
+        seconds = 3600.0 * hours + 60 * int(clock[2]) + float(clock[3].replace(",", "."))
+        date = re.match(r"(\d{4})-(\d\d)-(\d\d)[T ]", cell.strip())
+        if date is not None:
+            try:
+                day = DAY * datetime.date(*map(int, date.groups())).toordinal()
+            except ValueError:  # no day of any calendar
+                found.append(math.nan)
+                continue
+            first = first or day
+            days = day - first
+        elif seconds < before - DAY / 2:  # midnight has passed
+            days += DAY
+        before = seconds
+        found.append(days + seconds)
+    time = np.array(found)
+    known = np.isfinite(time)
+    if not known.any() or np.ptp(time[known]) == 0:
+        return None
+    return np.asarray(time - time[known][0])
 
 
 def _going_on(table: TextTable, name: str, time: Array, step: int | None) -> Array:

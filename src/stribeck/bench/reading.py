@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -55,6 +56,8 @@ def read(
     fluid: str | Mapping[str, Any] | None = None,
     temperature: str | float | None = None,
     per_decade: float = PER_DECADE,
+    arm: str | float | None = None,
+    track_radius: str | float | None = None,
     on_file: OnFile | None = None,
 ) -> BenchCurve:
     r"""Read raw files of a rig into a Stribeck curve: what is steady, both directions averaged, with the error of each point.
@@ -76,6 +79,10 @@ def read(
         Temperature where the files have none, as ``"25 degC"``.
     per_decade : float
         Bins for a decade of a speed that never rests, in a ramp or a sine.
+    arm : str or float, optional
+        Arm over which a torque is the friction force, as ``"20 mm"`` [m]; by default that of the case.
+    track_radius : str or float, optional
+        Radius of the track on which a rotation is a speed [m]; by default that of the case.
     on_file : callable, optional
         Called after each file with the number of those read and of all.
 
@@ -121,6 +128,12 @@ def read(
         settings = replace(settings, liquid=_checked_liquid(fluid))
     if temperature is not None:
         settings = replace(settings, liquid=settings.liquid | {"temperature": temperature})
+    for key, value in (("arm", arm), ("track_radius", track_radius)):
+        if value is not None:
+            length = to_si(value, "length", key, "20 mm")
+            if not 0 < length < math.inf:
+                raise InputError(f"{key} = {show(value)} must be a length above zero, as '20 mm'.")
+            settings = replace(settings, **{key: length})
     series: list[Series] = []
     for i, path in enumerate(paths, 1):
         series.append(passes_of(read_raw(path, settings), density))

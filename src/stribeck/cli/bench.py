@@ -27,6 +27,8 @@ def bench_command(
     fluid: str | None = None,
     temperature: Quantity = None,
     per_decade: float = 10.0,
+    arm: Quantity = None,
+    track_radius: Quantity = None,
     verbose: Verbose = False,
     json: bool = False,
     force: bool = False,
@@ -36,6 +38,8 @@ def bench_command(
     Example: stribeck bench run_1.csv run_2.csv -o curve.csv --plot kept.png
 
     Example: stribeck bench "runs/*.csv" -o curve.csv --name "{fluid}_{load}N_{run}.csv" --fluid "iso-vg grade=46"
+
+    Example: stribeck bench rheometer.csv -o curve.csv --arm "15 mm" --track-radius "15 mm"
 
     The curve is read by stribeck fit as it is.  --case names columns, units, track_radius and arm in its table [fit].  --name
     is the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
@@ -58,6 +62,8 @@ def bench_command(
             fluid=fluid,
             temperature=temperature,
             per_decade=per_decade,
+            arm=arm,
+            track_radius=track_radius,
             on_file=lambda n, m: progress(n, m, "files"),
         )
     if out is not None:
