@@ -462,3 +462,14 @@ def test_what_a_note_of_a_curve_doubts_its_checks_doubt():
     for each in (curve, part):
         found = checks_of_curve(each)
         assert each.law_in_doubt.any() and any(check.of_law and check.verdict == "doubtful" for check in found)
+
+
+def test_a_check_names_the_command_or_the_table_that_helps(subtests):
+    for facts, name, words in (
+        ({"stroke": "1 mm"}, "stroke over a", "stribeck stroke"),
+        ({"loss_tangent": 1.0}, "loss tangent", "[solid] master_curve"),
+    ):
+        with subtests.test(name=name):
+            assert words in sb.check(TRUE, **facts)[name].sentence
+            fine = {"stroke": "10 m"} if "stroke" in facts else {"loss_tangent": 0.01}
+            assert words not in sb.check(TRUE, **fine)[name].sentence

@@ -271,10 +271,13 @@ def loss(subject: Subject) -> Check | None:
     frequency = contact.speed / contact.hertz.half_width
     if subject.models("solid") and getattr(getattr(contact, "solid", None), "uses_speed", False):
         return Check("loss tangent", tangent, LOSS_TANGENT_FINE, "fine", "The viscoelasticity of the solid is modelled.")
+    is_line = contact.groups.geometry == "line"
+    advice = " Give E' and E'' over the frequency as [solid] master_curve: it is then solved." if is_line else ""
     meanings: dict[Verdict, str] = {
         "fine": "hysteresis is small.",
-        "doubtful": "hysteresis adds friction that is not modelled.",
-        "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic.",
+        "doubtful": "hysteresis adds friction that is not modelled." + advice,
+        "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic."
+        + advice,
     }
     begin = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): "
     return check_against_limits("loss tangent", tangent, LOSS_TANGENT_FINE, LOSS_TANGENT_OUTSIDE, begin, meanings)
