@@ -218,7 +218,7 @@ def from_case(case: Case) -> Inputs:
         tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
         own.append("viscosity")
     if "master_curve" in tables.get("solid", {}):
-        series = {name: list(getattr(case.contact, name)) for name in ("relaxation_times", "moduli")}
+        series = {name: list(getattr(case.contact.solid, name)) for name in ("relaxation_times", "moduli")}
         tables["solid"] = {key: value for key, value in tables["solid"].items() if key != "master_curve"} | series
         own += [] if gives_modulus(contact) else ["modulus"]
     for name in own:
