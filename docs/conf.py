@@ -138,8 +138,9 @@ MATHJAX = Path(importlib.util.find_spec("sphinx-mathjax-offline").origin).parent
 def keep_pictures(block, block_vars, gallery_conf):
     """Move the pictures that an example has written beside itself into the gallery."""
     kept = []
-    for picture in sorted(Path(block_vars["src_file"]).parent.glob("*.png")):
-        kept.append(block_vars["image_path_iterator"].next())
+    folder = Path(block_vars["src_file"]).parent
+    for picture in sorted([*folder.glob("*.png"), *folder.glob("*.gif")]):
+        kept.append(str(Path(block_vars["image_path_iterator"].next()).with_suffix(picture.suffix)))
         shutil.move(picture, kept[-1])
     return figure_rst(kept, gallery_conf["src_dir"])
 

@@ -1,6 +1,6 @@
-"""The bench: raw files of a rig become Stribeck curves with honest errors."""
+"""The bench: raw files of a rig become Stribeck curves with honest errors, friction loops the inputs behind them."""
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_HOMES = {"reading": ("read",)}
+_HOMES = {"loop_fit": ("fit_loop",), "reading": ("read",)}
 __all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)

@@ -1,5 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
+from stribeck.bench.loop_fit import fit_loop
 from stribeck.bench.reading import read
 
-__all__ = ["read"]
+__all__ = ["fit_loop", "read"]

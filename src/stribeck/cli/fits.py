@@ -12,6 +12,9 @@ from stribeck.cli.arguments import Names, Quantities, Whole, check_outputs
 from stribeck.cli.data_files import read_arguments
 from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
 from stribeck.cli.progress import interruptible
+from stribeck.quantities.units import InputError
+
+STROKES = 20  # Strokes that a fit of a loop solves, about
 
 
 def fit_command(
@@ -70,6 +73,38 @@ def fit_command(
     if not found.converged:
         return complain(found.outcome.value, EXIT_FAILED)
     return 0
+
+
+def loop_command(
+    *files: Path,
+    free: Names = None,
+    plot: Path | None = None,
+    no_notes: bool = False,
+    json: bool = False,
+    force: bool = False,
+) -> int:
+    """Fit inputs to a friction loop of a motion to and fro, by strokes solved in time, with confidence intervals.
+
+    Example: stribeck loop loop.csv case.toml --plot loop.png
+
+    The file has a column position [mm] or time [s], and friction, below zero on the way back; the case has the motion in
+    [stroke].
+    """
+    data, loaded = read_arguments("loop", files)
+    if len(data) > 1:
+        raise InputError(f"{' and '.join(map(str, data))}: loop takes one file.")
+    check_outputs(force, plot)
+    with interruptible() as progress:
+        found = sb.bench.fit_loop(data[0], loaded, free=free, on_step=lambda n: progress(n, max(n, STROKES), "stroke"))
+    actions: dict[Path | None, Callable[[], object]] = {
+        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
+    }
+    written, problems = write_each(actions)
+    said = filter(None, [str(found).partition("\n")[0], loaded.title, str(found).partition("\n")[2]])
+    answer(json, lambda: {"title": loaded.title} | found.to_dict() | {"files": written}, lambda: said, None, None, written)
+    if problems:
+        return complain("\n".join(problems), EXIT_BAD_INPUT)
+    return 0 if found.outcome.ok else complain(found.outcome.value, EXIT_FAILED)
 
 
 def next_command(

@@ -25,7 +25,7 @@ from stribeck.cli.exits import (
     redirect_to_null,
 )
 from stribeck.cli.experiment import experiment_command
-from stribeck.cli.fits import compare_command, fit_command, master_command, next_command
+from stribeck.cli.fits import compare_command, fit_command, loop_command, master_command, next_command
 from stribeck.cli.leak import leak_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.stroke import stroke_command
@@ -45,8 +45,8 @@ COMMANDS: dict[str, Callable[..., int]] = {
     command.__name__.removesuffix("_command"): command
     for command in (
         *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
-        *(surface_command, stroke_command, leak_command, bench_command, fit_command, next_command, compare_command),
-        *(master_command, experiment_command, report_command, explore_command),
+        *(surface_command, stroke_command, leak_command, bench_command, fit_command, loop_command, next_command),
+        *(compare_command, master_command, experiment_command, report_command, explore_command),
     )
 }
 

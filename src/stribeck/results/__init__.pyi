@@ -2,6 +2,7 @@
 
 from stribeck.asymptotics.smooth.film_of_pressure import Films, Inlet, PressureFilm
 from stribeck.batches.result import BatchSolution
+from stribeck.bench.loop_fit import LoopFit
 from stribeck.bench.result import BenchCurve
 from stribeck.checks.check import Check, Checks
 from stribeck.cli.reports.regimes import Explanation
@@ -41,6 +42,7 @@ __all__ = [
     "Inlet",
     "Landmark",
     "MasterCurve",
+    "LoopFit",
     "Measurements",
     "Plan",
     "PointSolution",

@@ -1,0 +1,54 @@
+"""
+Friction over a stroke to and fro
+=================================
+
+A cylinder moves to and fro on a slow rig, over 53 half-widths of its contact.  The film of the fast phase is trapped where the
+motion turns, so that friction is another one on either side of a reversal.  The animation runs through a cycle; the picture
+below it is that of the stroke itself.  Equations: docs/strokes.md.  Runs in ten seconds.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+import stribeck as sb
+
+CASE = Path(__file__).parent / "pdms_cylinder.toml"
+FRAMES = 48
+
+
+def main():
+    """Return the stroke of the case, whose film ends behind the contact."""
+    case = sb.load_case(CASE)
+    return sb.stroke(case.contact, case.stroke.motion, cavitation="exit", steps=160)
+
+
+def animation(found):
+    """Return the animation of friction over position, and of the film over time."""
+    from matplotlib import pyplot as plt
+    from matplotlib.animation import FuncAnimation
+
+    last = found.last_cycle
+    time, place = found.time[last] - found.time[last][0], 1e3 * found.position[last]
+    friction, film = found.friction[last], 1e6 * found.central_gap[last]
+    figure, (loop, over_time) = plt.subplots(1, 2, figsize=(8, 3.4), dpi=80, layout="constrained")
+    loop.plot(place, friction, color="0.7")
+    over_time.plot(time, film, color="0.7")
+    loop.set(xlabel="position (mm)", ylabel="friction coefficient")
+    over_time.set(xlabel="time (s)", ylabel="film at the centre (um)")
+    dots = [axes.plot([], [], "o", color="C3")[0] for axes in (loop, over_time)]
+
+    def show(t):
+        at = [np.interp(t, time, values) for values in (place, friction, film)]
+        dots[0].set_data([at[0]], [at[1]])
+        dots[1].set_data([t], [at[2]])
+        return dots
+
+    return FuncAnimation(figure, show, np.linspace(0, time[-1], FRAMES, endpoint=False), interval=80)
+
+
+if __name__ == "__main__":
+    found = main()
+    print(found)
+    animation(found).save("friction_over_a_stroke.gif", writer="pillow")
+    found.plot("friction_over_a_stroke_loop.png", force=True)

@@ -1,0 +1,377 @@
+"""Inputs of a contact from a measured friction loop: strokes solved in time, least squares, intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.bench.loop import Loop, read_loop
+from stribeck.cases.case import Case
+from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
+from stribeck.cases.reading import load_case
+from stribeck.contacts.geometries import LineContact
+from stribeck.files.datasets import Column
+from stribeck.files.results import Exported, Labelled
+from stribeck.files.writing import PathLike
+from stribeck.fits.free_inputs import FreeInput, free_inputs
+from stribeck.fits.least_squares import Minimum, settle
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.model import Prediction
+from stribeck.fits.objective import Objective
+from stribeck.fits.result import FitOutcome, FittedInput, unit_of
+from stribeck.fits.table.correlated import memory
+from stribeck.motions.motion import Motion
+from stribeck.quantities.formats import format_percent
+from stribeck.quantities.results import ByValue, Card, Told
+from stribeck.quantities.units import InputError, show
+from stribeck.strokes.result import Stroke
+from stribeck.strokes.stroke import stroke
+
+__all__ = ["LoopFit", "fit_loop"]
+
+SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide
+SAME_LENGTH = 0.05  # Part by which the measured path may be longer or shorter than the motion
+STEP = 0.01  # Change of the logarithm of an input for its derivative; with less, the mesh of a stroke makes noise of it
+STEPS = 120  # Steps of a cycle, unless the case says otherwise
+BOUNDARY = ("boundary_friction",)
+LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoopFit(Exported, Told, ByValue):
+    """Inputs of a contact fitted to a friction loop, with their intervals.
+
+    Attributes
+    ----------
+    inputs : tuple of FittedInput
+        The fitted inputs; their intervals are those of the covariance.
+    outcome : FitOutcome
+        How the fit ended.
+    stroke : Stroke
+        The stroke with the fitted inputs.
+    over : {"position", "time"}
+        What friction was measured over.
+    values : ndarray, shape (n,)
+        Its values at the rows that were used [m or s].
+    measured, friction, friction_error : ndarray, shape (n,)
+        Measured and fitted friction coefficient there, and the error of the latter by steps and mesh [-].
+    noise : float
+        Standard deviation of the residuals [-].
+    correlation : float
+        Correlation of neighbouring residuals, which widens the intervals [-].
+    notes : tuple of str
+        What to know before using the numbers.
+    """
+
+    _picture = "stribeck.plot.strokes.plot_loop_fit"
+
+    inputs: tuple[FittedInput, ...]
+    outcome: FitOutcome
+    stroke: Stroke = field(repr=False)
+    over: str
+    values: Array
+    measured: Array
+    friction: Array
+    friction_error: Array
+    noise: float
+    correlation: float
+    notes: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> FittedInput:
+        """Return a fitted input by its name.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+
+        Returns
+        -------
+        FittedInput
+            The input.
+
+        Raises
+        ------
+        KeyError
+            If no input is called so.
+        """
+        for each in self.inputs:
+            if each.name == name:
+                return each
+        raise KeyError(f"{name}; fitted are {', '.join(each.name for each in self.inputs)}")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return values, intervals, rows and outcome under their names, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers, text, lists and dictionaries of these.
+        """
+        found: dict[str, Any] = {
+            "outcome": self.outcome.name,
+            "message": self.outcome.value,
+            "inputs": [each.to_dict() for each in self.inputs],
+            "noise": self.noise,
+            "correlation": self.correlation,
+            "over": self.over,
+            "notes": list(self.notes),
+        }
+        return found | {name: getattr(self, name).tolist() for name in ("values", "measured", "friction", "friction_error")}
+
+    def _card(self) -> Card:
+        table = [("input", "value", "error", "68 % interval", "95 % interval")]
+        table += [(each.label, *each.texts) for each in self.inputs]
+        largest = float(np.abs(self.measured).max())
+        rows = [
+            ("noise", f"{self.noise:.2g}, {format_percent(self.noise / largest)} of the largest friction"),
+            ("rows", f"{len(self.measured)}, neighbours correlated by {self.correlation:.2g}"),
+            ("error of the stroke", f"{float(self.friction_error.max()):.1g} at most"),
+        ]
+        return Card(self.outcome.value, rows, self.notes, table, right=(1, 2))
+
+    def _labelled(self) -> Labelled:
+        unit = "m" if self.over == "position" else "s"
+        columns: dict[str, Column] = {
+            self.over: ("row", self.values, unit, f"{self.over} of the row"),
+            "measured_friction": ("row", self.measured, "1", "measured friction coefficient"),
+            "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),
+            "fitted_friction_error": ("row", self.friction_error, "1", "estimated error of the fitted friction coefficient"),
+        }
+        for each in self.inputs:
+            columns[each.name] = ((), each.value, each.unit, "fitted value")
+            columns[f"{each.name}_standard_error"] = ((), each.standard_error, "1", "standard error of its logarithm")
+        said = {"outcome": self.outcome.value, "notes": " ".join(self.notes)}
+        return columns, {}, {"title": "Inputs fitted to a friction loop", **said}
+
+
+def fit_loop(
+    data: PathLike | Loop,
+    case: PathLike | Case | LineContact,
+    motion: Motion | None = None,
+    *,
+    free: Sequence[str] | None = None,
+    steps: int | None = None,
+    on_step: Callable[[int], object] | None = None,
+) -> LoopFit:
+    r"""Fit inputs of a line contact to a friction loop of a motion to and fro.
+
+    .. math:: \min_\theta \sum_i \left(\mu(x_i; e^\theta) - \mu_i\right)^2
+
+    over the logarithms of the free inputs, with friction of the last cycle of :func:`stribeck.stroke`.
+
+    Parameters
+    ----------
+    data : str or path-like or Loop
+        A file with a column ``position [mm]`` or ``time [s]`` and one ``friction``, the coefficient with the sign of the force
+        against the motion, so below zero on the way back.  Positions count from any place; time counts as that of the motion.
+    case : str or path-like or Case or LineContact
+        What is known of the contact, and where the fit begins; a case has the motion in its table ``[stroke]``.
+    motion : Motion, optional
+        The motion, in the place of that of the case; it must repeat.
+    free : sequence of str, optional
+        Inputs to fit; those of the case, else boundary friction and roughness.
+    steps : int, optional
+        Steps of a cycle; those of the case, else 120.
+    on_step : callable, optional
+        ``on_step(strokes)`` is called after each stroke that was solved.
+
+    Returns
+    -------
+    LoopFit
+        Values, intervals, the fitted stroke, notes.
+
+    Raises
+    ------
+    InputError
+        If the file is no loop, its path is not that of the motion, or the case has no motion that repeats.
+    SolveError
+        If the first stroke fails.
+
+    Notes
+    -----
+    Rows slower than a tenth of the largest speed are left out: there the rig gives way before the surfaces slide.  Intervals
+    are those of the covariance; residuals along a loop are alike, and their correlation widens the intervals.  At the end the
+    stroke is solved with twice the steps: the inputs follow, and the intervals hold by how much.
+
+    Source: fitting.md; strokes.md.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> found = sb.bench.fit_loop("loop.csv", "examples/pdms_cylinder.toml")  # doctest: +SKIP
+    >>> print(found)  # doctest: +SKIP
+    """
+    loop = data if isinstance(data, Loop) else read_loop(data)
+    contact, settings, motion, steps = _problem(case, motion, steps)
+    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
+    if not names:
+        raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
+    of_free = Measurements("speed", np.ones(1), np.ones(1), None, np.zeros(1, int), ("",), ({},), np.ones(1, int))
+    model = _LoopModel(contact, motion, steps, free_inputs(contact, of_free, names, settings), loop, on_step)
+    if len(model.data) <= 3 * len(model.free):
+        raise InputError(f"{loop.path}: {len(model.data)} rows are too few to fit {len(model.free)} inputs.")
+    found = settle(Objective(model, None, None, False, False), np.zeros(len(model.free)))  # type: ignore[arg-type]
+    return _result(model, found)
+
+
+def _problem(
+    case: PathLike | Case | LineContact, motion: Motion | None, steps: int | None
+) -> tuple[LineContact, FitSettings, Motion, int]:
+    """Return contact, settings of the fit, motion and steps."""
+    settings = None
+    if not isinstance(case, LineContact):
+        known = case if isinstance(case, Case) else load_case(case)
+        case, settings = known.contact, known.fit
+        if known.stroke is not None:
+            motion = known.stroke.motion if motion is None else motion
+            steps = known.stroke.steps if steps is None else steps
+    if not isinstance(case, LineContact):
+        raise InputError(f"contact = {show(case)}; loops are fitted with a LineContact, as strokes are solved of one.")
+    if motion is None:
+        raise InputError("the motion is missing; give a table [stroke] in the case, or motion=sb.motions.Sine(...).")
+    if not motion.repeats:
+        raise InputError(f"motion = {show(motion)} does not repeat; a loop is one of a motion to and fro.")
+    return case, FitSettings.of(case) if settings is None else settings, motion, STEPS if steps is None else steps
+
+
+class _LoopModel:
+    """Friction of the rows of a loop, by free inputs."""
+
+    def __init__(
+        self,
+        contact: LineContact,
+        motion: Motion,
+        steps: int,
+        free: tuple[FreeInput, ...],
+        loop: Loop,
+        on_step: Callable[[int], object] | None,
+    ) -> None:
+        self.contact, self.motion, self.steps, self.free, self.on_step = contact, motion, steps, free, on_step
+        self.strokes = 0
+        self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
+        self.phase, sliding = self._phases(loop)
+        self.left_out = int((~sliding).sum())
+        self.data = Loop(loop.path, loop.over, loop.values[sliding], loop.friction[sliding], loop.rows[sliding])
+        self.phase = self.phase[sliding]
+
+    def _phases(self, loop: Loop) -> tuple[Array, Flags]:
+        """Return the time in the cycle of each row, and whether it slides."""
+        time = self.motion.times(64 * self.steps)
+        speed, path = self.motion.speed(time), self.motion.position(time)
+        if loop.over == "time":
+            phase = np.mod(loop.values, self.motion.duration)
+        else:
+            length, measured = float(np.ptp(path)), float(np.ptp(loop.values))
+            if abs(measured / length - 1) > SAME_LENGTH:
+                raise InputError(
+                    f"{loop.path}: positions span {measured:.4g} m and the motion {length:.4g} m; they must be those of one "
+                    "stroke. Check the unit of the column, and [stroke]."
+                )
+            place = loop.values - loop.values.min() - 0.5 * (measured - length) + path.min()
+            phase = np.empty(len(loop))
+            for sign in (1.0, -1.0):
+                own, rows = sign * speed > 0, sign * loop.friction > 0
+                order = np.argsort(path[own])
+                phase[rows] = np.interp(place[rows], path[own][order], time[own][order])
+        return phase, np.abs(self.motion.speed(phase)) >= SLOW * np.abs(speed).max()
+
+    def at(self, theta: Array, steps: int | None = None) -> Stroke:
+        """Return the stroke at a set of free inputs."""
+        values = {name: getattr(self.contact, name) for free in self.free for name in free.names}
+        moved = {
+            name: values[name] * math.exp(t) for free, t in zip(self.free, theta.tolist(), strict=True) for name in free.names
+        }
+        found = stroke(self.contact.replace(**moved), self.motion, steps=steps or self.steps)
+        self.strokes += 1
+        if self.on_step is not None:
+            self.on_step(self.strokes)
+        return found
+
+    def _parts(self, theta: Array) -> tuple[Array, Array, Array, Array]:
+        """Return friction by asperities and by the fluid at the rows, for the boundary friction of the case, and errors."""
+        # Friction by asperities goes with boundary friction, and nothing else of the stroke does.
+        others = np.where([each.names == BOUNDARY for each in self.free], 0.0, theta)
+        key = others.tobytes()
+        if key not in self._known:
+            self._known[key] = self.at_rows(self.at(others))
+        return self._known[key]
+
+    def at_rows(self, found: Stroke) -> tuple[Array, Array, Array, Array]:
+        """Return both parts of friction and their errors at the rows."""
+        last = found.last_cycle
+        time = found.time[last] - found.time[last][0]
+        errors = found.errors["friction_asperities"], found.errors["friction_fluid"]
+        parts = (found.friction_asperities, found.friction_fluid, *errors)
+        by_asperities, by_fluid, *of_parts = (np.interp(self.phase, time, each[last]) for each in parts)
+        return by_asperities, by_fluid, of_parts[0], of_parts[1]
+
+    def predict(self, theta: Array, states: object, at: object = None) -> Prediction:
+        """Return the friction of the rows, with its derivatives."""
+        rubbing = math.exp(sum(t for free, t in zip(self.free, theta.tolist(), strict=True) if free.names == BOUNDARY))
+        asperities, fluid, *errors = self._parts(theta)
+        columns = []
+        for k, free in enumerate(self.free):
+            if free.names == BOUNDARY:
+                columns.append(rubbing * asperities)
+                continue
+            beside = self._parts(theta + STEP * np.eye(len(theta))[k])
+            columns.append((rubbing * (beside[0] - asperities) + beside[1] - fluid) / STEP)
+        share, friction = np.ones_like(fluid), rubbing * asperities + fluid
+        return Prediction(friction, np.column_stack(columns), share, share, share, rubbing * errors[0] + errors[1])
+
+
+def _result(model: _LoopModel, at: Minimum) -> LoopFit:
+    """Return the fit, with intervals of the covariance widened by the correlation of the residuals."""
+    from scipy.stats import t
+
+    misfit = at.prediction.friction - model.data.friction
+    n, p = at.jacobian.shape
+    _, correlation = memory([misfit])
+    widened = (1 + correlation) / (1 - correlation)
+    noise = math.sqrt(float(misfit @ misfit) / max(n - p, 1))
+    J = at.prediction.jacobian
+    rows, _ = at.objective.priors
+    scatter = np.diag(np.linalg.pinv(J.T @ J / (widened * noise**2) + rows.T @ rows))
+    # Time steps err alike from row to row, which is no noise: the inputs follow what half of the steps change.
+    finer = sum(model.at_rows(model.at(at.theta, 2 * model.steps))[:2])
+    moved = np.linalg.pinv(J) @ (at.prediction.friction - finer)
+    low, high = at.objective.bounds
+    places = np.clip(at.theta + moved, low, high)
+    errors = np.hypot(np.sqrt(scatter), moved)
+    freedom = max(n / widened - p, 1.0)
+    inputs = []
+    for free, theta, error, bound in zip(model.free, places.tolist(), errors.tolist(), at.at_bound.tolist(), strict=True):
+        narrow, wide = (
+            (free.value(theta - half), free.value(theta + half))
+            for half in (error * float(t.ppf(0.5 + level / 2, freedom)) for level in LEVELS)
+        )
+        unit, dimension = unit_of(free.name, False), model.contact.INPUTS.rows[free.name].dimension
+        stated, value = math.nan if bound else error, free.value(theta)
+        inputs.append(FittedInput(free.name, None, value, unit, free.start, False, stated, narrow, wide, bound, dimension))
+    notes = []
+    if model.left_out:
+        notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
+    if np.any(np.abs(moved) > np.sqrt(scatter)):
+        notes.append("Half of the time steps move the inputs by more than the noise does: ask for more steps.")
+    outcome = FitOutcome.AT_BOUND if at.at_bound.any() else FitOutcome.CONVERGED if at.ended else FitOutcome.STEP_LIMIT
+    found = model.at(places, 2 * model.steps)
+    by_asperities, by_fluid, *of_parts = model.at_rows(found)
+    return LoopFit(
+        tuple(inputs),
+        outcome,
+        found,
+        model.data.over,
+        model.data.values,
+        model.data.friction,
+        by_asperities + by_fluid,
+        of_parts[0] + of_parts[1],
+        noise,
+        correlation,
+        (*notes, *found.notes),
+    )

@@ -1,0 +1,84 @@
+"""Fits of friction loops: inputs of a contact from friction over the position or time of a stroke."""
+
+import json
+
+import numpy as np
+import pytest
+from command_line import call, case_text
+
+import stribeck as sb
+
+STROKE = {"motion": '"sine"', "stroke": '"20 mm"', "frequency": '"0.5 1/s"', "steps": "24"}
+MOTION = sb.motions.Sine(20e-3, 0.5)
+NOISE = 2e-3
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(stroke=STROKE))
+    return path
+
+
+def loop_of(path, contact, over="position [mm]", count=120):
+    """Write the loop of a contact with noise; positions count from one end."""
+    found = sb.stroke(contact, MOTION, steps=48)
+    last = found.last_cycle
+    time = np.linspace(0, MOTION.duration, count + 1)[:-1]
+    friction = np.interp(time, found.time[last] - found.time[last][0], found.friction[last])
+    friction += NOISE * np.random.default_rng(1).normal(size=count)
+    x = time if over.startswith("time") else 10 + 1e3 * MOTION.position(time)
+    path.write_text(f"{over},friction\n" + "".join(f"{a:.7g},{b:.7g}\n" for a, b in zip(x, friction, strict=True)))
+    return path
+
+
+def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
+    contact = sb.load_case(case).contact
+    path = loop_of(tmp_path / "loop.csv", contact.replace(boundary_friction=0.5))
+    found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+    low, high = found["boundary_friction"].interval_95
+    assert low < 0.5 < high and high / low < 1.6
+    assert 0.7 * NOISE < found.noise < 4 * NOISE  # with what 24 steps leave
+    assert float(found.to_dataset().boundary_friction) == found["boundary_friction"].value
+    (axes,) = found.plot(tmp_path / "loop.png").axes
+    assert axes.get_xlabel() == "position (mm)"
+
+
+@pytest.mark.slow
+def test_boundary_friction_and_roughness_come_out_of_a_loop_over_time(capsys, case, tmp_path):
+    contact = sb.load_case(case).contact
+    path = loop_of(
+        tmp_path / "loop.csv", contact.replace(boundary_friction=0.5, roughness=1.3 * contact.roughness), "time [s]"
+    )
+    found = json.loads(call(capsys, "loop", path, case, "--json").out)
+    assert found["outcome"] == "CONVERGED"
+    for each, value in zip(found["inputs"], (0.5, 1.3 * contact.roughness), strict=True):
+        assert each["interval_95"][0] < value < each["interval_95"][1]
+        assert each["value"] == pytest.approx(value, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("position [mm],friction\n0,0.1\n1,0.2\n", "friction has one sign"),
+        ("speed,friction\n0,0.1\n1,-0.2\n", "a loop has a column 'friction'"),
+        ("position [cm],friction\n0,0.1\n20,-0.2\n", "positions span 0.2 m and the motion 0.02 m"),
+        ("time [s],friction\n0,0.1\n1,-0.2\n", "too few"),
+        ("time [mm],friction\n0,0.1\n1,-0.2\n", "time"),
+    ],
+)
+def test_what_is_no_loop_is_refused(capsys, case, tmp_path, text, said):
+    path = tmp_path / "loop.csv"
+    path.write_text(text)
+    answer = call(capsys, "loop", path, case)
+    assert answer.code == 2 and said in answer.err and answer.out == ""
+
+
+def test_a_loop_needs_a_motion_that_repeats(tmp_path):
+    path = tmp_path / "loop.csv"
+    path.write_text("time [s],friction\n0,0.1\n1,-0.2\n")
+    contact = sb.load_case("examples/pdms_cylinder.toml").contact
+    with pytest.raises(sb.InputError, match="the motion is missing"):
+        sb.bench.fit_loop(path, contact)
+    with pytest.raises(sb.InputError, match="does not repeat"):
+        sb.bench.fit_loop(path, contact, sb.motions.Ramp(1e-3, 2e-3, 1.0))
