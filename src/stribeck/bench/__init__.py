@@ -1,4 +1,4 @@
-"""The bench: raw files of a rig become Stribeck curves with honest errors, friction loops the inputs behind them."""
+"""The bench: raw files of a rig become Stribeck curves with honest errors."""
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
