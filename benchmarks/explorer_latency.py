@@ -82,6 +82,7 @@ def main() -> None:
 def measure(page, address: str, number: int) -> None:
     page.goto(address)
     page.wait_for_selector(".chart-diagram canvas")
+    page.evaluate("document.querySelectorAll('details.fold').forEach(each => { each.open = true; })")
     page.wait_for_timeout(3000)
     page.evaluate(CLOCK)
     print(HEAD.format("slider"))
@@ -93,6 +94,7 @@ def measure_solved(page, address: str, number: int) -> None:
     """Move the load of contacts whose curve is solved."""
     page.goto(address)
     page.wait_for_selector(".chart-diagram canvas")
+    page.evaluate("document.querySelectorAll('details.fold').forEach(each => { each.open = true; })")
     page.wait_for_timeout(3000)
     page.evaluate(CLOCK)
     print("\n" + HEAD.format("solved curve"))

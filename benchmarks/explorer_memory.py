@@ -95,6 +95,7 @@ def move(address: str, pid: int, number: int) -> None:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.goto(address)
         page.wait_for_selector(".chart-diagram canvas")
+        page.evaluate("document.querySelectorAll('details.fold').forEach(each => { each.open = true; })")
 
         def moves(count: int) -> None:
             for i in range(count):

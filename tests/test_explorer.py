@@ -638,6 +638,8 @@ def test_every_input_and_number_has_its_words_and_an_anchor_of_the_page_of_words
         for name in (*inputs.FIELDS[geometry], *inputs.GROUP_FIELDS):
             assert len(inputs.help_of(name, geometry)) > 30 and ":math:" not in inputs.help_of(name, geometry), name
             assert f'id="{name}"' in page
+    for name in choices.CHOICES:
+        assert choices.list_of(START, name)["help"] and f'id="{name}"' in page
     for row in parts["numbers"]:
         assert row["help"] and f'id="{row["key"]}"' in page, row["key"]
 

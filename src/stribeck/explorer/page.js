@@ -71,11 +71,12 @@ const Knob = {
 
 // A list to choose from, and fields for what the choice needs.
 const List = {
+  components: { Ask },
   props: { now: Object },
   emits: ["act"],
   template: `
     <div class="choice-row" v-show="!now.hidden" :data-choice="now.name">
-      <label class="name" :for="'choice-' + now.name">{{ now.label }}</label>
+      <label class="name" :for="'choice-' + now.name">{{ now.label }}</label><ask :name="now.name" :label="now.label" :words="now.help"></ask>
       <select class="list" ref="list" :id="'choice-' + now.name" :value="now.value" @change="$emit('act', ['pick', now.name, $event.target.value])">
         <option v-for="each in now.options" :key="each[0]" :value="each[0]">{{ each[1] }}</option>
       </select>

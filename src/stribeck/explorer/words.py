@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from html import escape
 
-from stribeck.explorer.inputs.choices import typical
+from stribeck.explorer.inputs.choices import CHOICES, help_of_choice, typical
 from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, help_of
 from stribeck.explorer.table import MEANINGS, TRANSITION_HELP, TRANSITION_LABELS, state_rows
 from stribeck.solver.solve import solve
@@ -27,13 +27,14 @@ def words_page() -> str:
     numbers = {row.key: (row.label, row.help) for state in states for row in state_rows(state, "balanced")}
     numbers |= {f"speed_factor_{name}": (label, TRANSITION_HELP) for name, label in TRANSITION_LABELS.items()}
     regimes = {name: (name, meaning) for name, meaning in MEANINGS.items()}
-    parts = {"Inputs": inputs, "Dimensionless groups": groups, "Numbers": numbers, "Regimes": regimes}
-    lists = "".join(
+    lists = {name: (choice.label, help_of_choice(name, ())) for name, choice in CHOICES.items()}
+    parts = {"Inputs": inputs, "Model": lists, "Dimensionless groups": groups, "Numbers": numbers, "Regimes": regimes}
+    html = "".join(
         f"<h2>{title}</h2><dl>{''.join(_entry(name, *words) for name, words in found.items())}</dl>"
         for title, found in parts.items()
     )
     head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Words of the explorer</title>'
-    body = f"<body><h1>Words of the explorer</h1>{lists}</body>"
+    body = f"<body><h1>Words of the explorer</h1>{html}</body>"
     return f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head>{body}</html>'
 
 

@@ -24,7 +24,7 @@ from stribeck.contact_laws.persson import GAMMA_INPUT
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
-from stribeck.explorer.inputs.inputs import Inputs, exact_text, with_liquid, with_text
+from stribeck.explorer.inputs.inputs import Inputs, exact_text, plain_words, with_liquid, with_text
 from stribeck.explorer.inputs.typed import liquid_of
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
@@ -197,9 +197,17 @@ def list_of(now: Inputs, name: str) -> dict[str, Any]:
     # A table of a contact law comes from a file only.
     known = [key for key in available_values(name, now.table.geometry) if key != "table"]
     options = [[key, option.label] for key, option in choice.options.items() if key in known or key == value]
-    return {"name": name, "label": choice.label, "value": value, "options": options, "details": details} | (
-        {"hidden": True} if len(known) < 2 else {}
-    )
+    shown = {"name": name, "label": choice.label, "value": value, "options": options, "details": details}
+    return shown | {"help": help_of_choice(name, keys)} | ({"hidden": True} if len(known) < 2 else {})
+
+
+@functools.cache
+def help_of_choice(name: str, keys: tuple[str, ...]) -> str:
+    """Return what a list chooses, where a case file has that, and what the numbers of a choice are."""
+    choice = CHOICES[name]
+    options = "; ".join(option.label for option in choice.options.values())
+    where = f" In a case file it is {f'{choice.key} of ' if choice.key else ''}[{choice.table}]." if choice.table else ""
+    return " ".join([f"{choice.label}: {options}.{where}", *(plain_words(NUMBERS[key]) for key in keys)])
 
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:

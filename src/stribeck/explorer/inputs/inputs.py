@@ -340,8 +340,13 @@ def help_of(name: str, geometry: str) -> str:
     """Return what an input is, and how else it may be typed, in the words of its row."""
     row, table = GROUP_FIELDS.get(name) or FIELDS[geometry][name], INPUT_TABLES[geometry]
     also = "" if name in GROUP_FIELDS else "; ".join(examples(table, name))
-    words = re.sub(r", :math:`[^`]*`| \[-\]", "", row.description)
+    words = plain_words(row)
     return f"{words} It may also be typed as {also}." if also else words
+
+
+def plain_words(row: Input) -> str:
+    """Return what a row says of itself, without formulas."""
+    return re.sub(r", :math:`[^`]*`| \[-\]", "", row.description)
 
 
 def _conversions(inputs: Inputs, name: str) -> list[str]:
