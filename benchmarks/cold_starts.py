@@ -25,7 +25,7 @@ import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales, observables
-from stribeck.fluids import newtonian as reynolds
+from stribeck.fluids.newtonian import flux_gap
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
@@ -55,7 +55,7 @@ def true_error(s: sb.results.Solution) -> float:
     shift = -0.5 * g.relative_roughness * np.log(g.load / light)
     base = sb.Groups(g.speed, light, light * g.relative_roughness)
     gap = np.maximum(s.profile(mesh.nodes).gap - shift, 1e-3 * s.nodal_gap.min())
-    flux = reynolds.flux_gap(gap, mesh.weights)
+    flux = flux_gap(gap, mesh.weights)
     equations = Equations(Operators(mesh), base.speed, contact_law(base), flux**2)
     y = np.concatenate([gap, [s.offset - shift, flux]])
     root = root_find(equations, y, StepControl(1e-12))
@@ -65,7 +65,7 @@ def true_error(s: sb.results.Solution) -> float:
     exact[[*gaps, ROW["offset"]]] += shift
     if shift:
         gap = root.x[equations.layout.gap] + shift
-        exact[ROW["flux_gap"]] = reynolds.flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
+        exact[ROW["flux_gap"]] = flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
     scales = np.abs(exact)
     scales[[ROW["contact_load_share"], ROW["fluid_load_share"]]] = 1.0
     scales[ROW["offset"]] = max(scales[ROW["offset"]], 1e-3)
@@ -120,7 +120,7 @@ def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tup
         matrix[-1] *= y[-1] ** 2 / equations.flux_scale
         weights = equations.operators.mesh.weights
         unit = 1.0 if units is None else units[-1]
-        matrix[-1, -1] += 2 * y[-1] * (weights @ reynolds.gradient(y[:-2], y[-1])) * unit
+        matrix[-1, -1] += 2 * y[-1] * (weights @ ((y[:-2] - y[-1]) / y[:-2] ** 3)) * unit
         return matrix
 
     left = {"__call__": integral_from_left, "after": after_integral_from_left}
