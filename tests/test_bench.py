@@ -191,6 +191,17 @@ def test_files_from_the_field_are_read(subtests):
             assert known / factor == pytest.approx(np.ones(points), rel=0.03 if name.startswith("03") else 0.011)
 
 
+def test_errors_that_a_file_gives_are_those_of_its_points(written):
+    found = sb.bench.read(DATA / "13_plus_minus_cells.csv")
+    assert found.half_width / 1.959964 == pytest.approx(0.05 * found.friction, rel=1e-3)
+    assert not any("no error" in note for note in found.notes)
+    rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], amplitude=0.005)
+    plain = sb.bench.read(written(text_of(rows)))
+    head, *lines = text_of(rows).strip().split("\n")
+    wide = sb.bench.read(written("\n".join([f"{head};friction error", *(f"{line};0.5" for line in lines)]), "wide.csv"))
+    assert (wide.half_width > 3 * plain.half_width).all()  # 300 rows of 0.5 each: 0.03
+
+
 REFUSED = {
     "08_torque_instead_of_force.csv": "arm = '20 mm' in [fit]",
     "09_hersey_number_ball.csv": "a series needs a column of speed",

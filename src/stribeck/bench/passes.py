@@ -87,7 +87,7 @@ def passes_of(raw: Raw, per_decade: float) -> Series:
     found = [_settled(each, common[each.strokes], raw, notes) for each in found]
     for each in found:
         status[each.starting] = STARTING
-    found = _with_errors(found, raw.resolution)
+    found = _with_errors(found, raw)
     found = [_with_drift(each, common[each.strokes], raw, notes) for each in found]
     return Series(raw, friction, tuple(found), status, tuple(notes))
 
@@ -125,7 +125,8 @@ def _of_ramps(parts: Sequence[Part], raw: Raw, speed: Array, friction: Array, pe
         single = [pass_ for i in moving for pass_ in _passes([(np.array([i]), int(np.sign(speed[i])))], raw, friction)]
         return (
             single,
-            "Each row is a point, as there are fewer than three for each speed: no error can be made of single rows.",
+            "Each row is a point, as there are fewer than three for each speed: "
+            + ("no error can be made of single rows." if raw.stated is None else "its error is that which the file gives."),
         )
     bins = np.minimum(((y - y.min()) / max(float(np.ptp(y)), 1e-300) * count).astype(int), count - 1)
     of_row = np.full(len(speed), -1)
@@ -214,8 +215,8 @@ def _with_drift(each: Pass, common: tuple[float, float], raw: Raw, notes: list[s
     return replace(each, error=wide)
 
 
-def _with_errors(found: Sequence[Pass], resolution: float) -> list[Pass]:
-    """Return passes with the error of their means: that of correlated values, and at least that of the last digit."""
+def _with_errors(found: Sequence[Pass], raw: Raw) -> list[Pass]:
+    """Return passes with the error of their means: that of correlated values, at least that of the last digit or the file."""
     errors, scatter = dict.fromkeys(range(len(found)), 0.0), dict.fromkeys(range(len(found)), 0.0)
     for strokes in (False, True):
         mine = [i for i, each in enumerate(found) if each.strokes == strokes]
@@ -229,9 +230,16 @@ def _with_errors(found: Sequence[Pass], resolution: float) -> list[Pass]:
     for i, each in enumerate(found):
         count = len(each.values)
         independent = min(count, max(1.0, (scatter[i] / errors[i]) ** 2)) if errors[i] > 0 else 1.0
-        rounding = resolution / math.sqrt(12) if errors[i] > 0 or count > 1 else 0.0
-        done.append(replace(each, error=max(errors[i], rounding), independent=independent))
+        rounding = raw.resolution / math.sqrt(12) if errors[i] > 0 or count > 1 else 0.0
+        error = max(errors[i], rounding, _stated(each, raw))
+        done.append(replace(each, error=error, independent=independent))
     return done
+
+
+def _stated(each: Pass, raw: Raw) -> float:
+    """Return the error of the mean of a pass by the errors that the file gives its rows, zero where one has none."""
+    errors = None if raw.stated is None else raw.stated[each.rows]
+    return 0.0 if errors is None or not np.isfinite(errors).all() else float(np.linalg.norm(errors)) / len(errors)
 
 
 def _rest_and_changes(raw: Raw, status: Flags | Indices) -> list[str]:

@@ -52,6 +52,7 @@ class Raw:
     timed: bool  # Whether the file has a time
     speed: Array  # Sum of the surface speeds with the sign of the direction [m/s]
     friction: Array  # Friction coefficient with the sign of the force [-]
+    stated: Array | None  # Standard error of the friction coefficient that the file gives [-]
     load: Array | None  # Size of the normal force [N]
     temperature: Array | None  # [degC]
     curve: Indices  # Curve of each row
@@ -89,6 +90,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     table = without_codes(table, speed_name, [friction_name])
     values = Values(table, settings)
     speed, friction = (_array(values, name, meaning) for name, meaning in ((speed_name, "speed"), (friction_name, "friction")))
+    stated = _array(values, columns["error"][0], "error") if "error" in columns else None
     time, timed, time_note = _time(table, table.header.index(run) if run else None)
     warm = temperatures(table)
     there = np.isfinite(speed) & np.isfinite(friction) & np.isfinite(time)
@@ -121,6 +123,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         timed=timed,
         speed=speed[kept],
         friction=friction[kept],
+        stated=None if stated is None else stated[kept],
         load=None if load is None else np.abs(_floats(load))[kept],
         temperature=None if warm is None else _floats(warm[0])[kept],
         curve=curve[kept],
