@@ -195,7 +195,6 @@ def test_a_case_file_and_the_command_take_a_stress(seal, tmp_path, capsys):
         (lambda c: c.replace(law=None, shear_stress=TAU), "which law = 'exponential' does not know"),
         (lambda c: c.replace(law="greenwood-williamson", alpha=1.0, shear_stress=TAU), "does not know: give the"),
         (lambda c: c.replace(shear_stress=TAU).boundary_friction, "what was asked needs a coefficient"),
-        (lambda c: sb.propagate(c.replace(shear_stress=TAU), {"load": 0.1}), "what was asked needs a coefficient"),
         (lambda c: c.replace(shear_stress=TAU, boundary_friction=0.3), "are both given"),
         (lambda c: c.replace(shear_stress="-1 MPa"), "must be zero or positive"),
         (lambda c: c.replace(shear_stress="1 mm"), "expected a pressure"),

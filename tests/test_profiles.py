@@ -297,6 +297,21 @@ def test_a_shape_from_its_pressure_has_that_contact():
     found = sb.profiles.dry_contact(shape, load, 2.0)
     assert (found.centre, found.half_width) == pytest.approx((0.0, 1.0), abs=1e-6)
     assert (found.left_edge, found.right_edge) == pytest.approx((0.7 * 2**0.5, 1.3 * 2**0.5), rel=1e-6)
+    contact = sb.LineContact(
+        profile=shape,
+        load=1.0,
+        modulus=2.0,
+        viscosity=1e-3,
+        speed=1e-3,
+        roughness=1e-3,
+        alpha=1,
+        beta=1,
+        boundary_friction=0.5,
+    )
+    for each in (shape, contact.groups):
+        assert "20 terms from -1 to 1 m" in repr(each)
+        assert len(repr(each)) < 1000
+    assert "41 points from -1 to 1 m" in repr(sb.profiles.Table(x, x**2))
 
 
 def test_a_table_of_a_shape_is_that_shape(tmp_path):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stribeck.asperity_friction.law import AsperityFriction
+from stribeck.quantities.outputs import AREA
 
 __all__ = ["Coulomb", "as_asperity_friction", "needs_area"]
 
@@ -32,6 +33,7 @@ class Coulomb(AsperityFriction):
     """
 
     observable: ClassVar[str] = "contact_load_share"
+    size: ClassVar[str] = "boundary_friction"
     is_constant: ClassVar[bool] = True
 
     boundary_friction: float
@@ -40,6 +42,26 @@ class Coulomb(AsperityFriction):
     def text(self) -> str:
         """The coefficient."""
         return f"{self.boundary_friction:g}"
+
+    @property
+    def is_frictionless(self) -> bool:
+        """Whether the coefficient is zero."""
+        return self.boundary_friction == 0
+
+    def scaled(self, by: float) -> Coulomb:
+        """Return the law with a larger coefficient.
+
+        Parameters
+        ----------
+        by : float
+            Factor on the coefficient [-].
+
+        Returns
+        -------
+        Coulomb
+            The law.
+        """
+        return Coulomb(by * self.boundary_friction)
 
     def factor(self, contact: Any) -> float:
         """Return the coefficient.
@@ -79,4 +101,4 @@ def as_asperity_friction(friction: Any) -> AsperityFriction:
 
 def needs_area(friction: Any) -> bool:
     """Return whether the friction of asperities, or a coefficient, needs their real area of contact."""
-    return as_asperity_friction(friction).observable == "real_contact_area"
+    return as_asperity_friction(friction).observable == AREA

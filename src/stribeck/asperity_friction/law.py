@@ -8,9 +8,13 @@ new friction is a new file with one frozen class that has the members of :class:
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
+import numpy as np
+
+from stribeck._types import Array
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input, Series, numbers_of
 from stribeck.quantities.units import InputError
@@ -23,11 +27,35 @@ class AsperityFriction(ABC):
 
     name: ClassVar[str]  # Name that outputs print, and case files
     observable: ClassVar[str]  # Observable of a state to which the friction is proportional
+    size: ClassVar[str] = ""  # The input that is its size, if one is
     is_constant: ClassVar[bool] = False  # Whether the factor is the same for all contacts
+
+    @property
+    def uses_speed(self) -> bool:
+        """Whether the factor changes with the sliding speed."""
+        return False
+
+    @property
+    def known_speeds(self) -> tuple[float, float]:
+        """Sliding speeds between which the factor is known [m/s]."""
+        return 0.0, math.inf
+
+    @property
+    @abstractmethod
+    def is_frictionless(self) -> bool:
+        """Whether the friction is zero whatever the state."""
+
+    @abstractmethod
+    def scaled(self, by: float) -> AsperityFriction:
+        """Return a friction that is larger by a factor."""
 
     @abstractmethod
     def factor(self, contact: Any) -> float:
         """Return the friction coefficient for an observable of one, of a contact or of groups alone, which are None."""
+
+    def factors(self, contact: Any, speeds: Array) -> Array:
+        """Return the factor at other speeds of a contact."""
+        return np.full(np.shape(speeds), self.factor(contact))
 
     @abstractmethod
     def coefficient_at_small_area(self, contact: Any) -> float:
@@ -71,9 +99,13 @@ def _plain(friction: AsperityFriction) -> dict[str, Input]:
     return {name: row for name, row in numbers_of(type(friction)).items() if not isinstance(row, Series)}
 
 
-def refuse_coefficient(friction: Any) -> InputError:
+class NoCoefficientError(InputError, AttributeError):
+    """A coefficient is needed, and asperities have another friction: the contact has no such attribute."""
+
+
+def refuse_coefficient(friction: Any) -> NoCoefficientError:
     """Return the error where a coefficient is needed and asperities have another friction."""
-    return InputError(
+    return NoCoefficientError(
         f"boundary_friction is no number of this contact, whose asperities have {friction.text} in its place: states and "
         "curves take that, but what was asked needs a coefficient. Give boundary_friction = ... to the contact; where "
         "asperities touch on a small part of the surface, asperity_friction.coefficient_at_small_area(contact) is that number."

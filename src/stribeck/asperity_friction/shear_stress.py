@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+import numpy as np
+
+from stribeck._types import Array
 from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contact_laws.law import WithArea, area_slope
+from stribeck.quantities.outputs import AREA
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, show
 
@@ -23,7 +27,7 @@ class OverArea(AsperityFriction):
     with the area of the dry smooth contact, 2a per length of a cylinder and pi a^2 of a ball.
     """
 
-    observable: ClassVar[str] = "real_contact_area"
+    observable: ClassVar[str] = AREA
 
     @abstractmethod
     def stress(self, sliding_speed: float) -> float:
@@ -41,6 +45,11 @@ class OverArea(AsperityFriction):
                 "Give a LineContact or PointContact, or boundary_friction with groups."
             )
         return self.stress(_sliding_speed(contact)) / _mean_pressure(contact)
+
+    def factors(self, contact: Any, speeds: Array) -> Array:
+        """Return the stress at other speeds over the mean pressure of the dry smooth contact."""
+        sliding = abs(0.5 * contact.slide_to_roll) * np.asarray(speeds)
+        return np.array([self.stress(each) for each in sliding.tolist()]) / _mean_pressure(contact)
 
     def coefficient_at_small_area(self, contact: Any) -> float:
         """Return the stress over the mean pressure in the real contacts."""
@@ -86,6 +95,7 @@ class ShearStress(OverArea):
     """
 
     name: ClassVar[str] = "shear-stress"
+    size: ClassVar[str] = "shear_stress"
     label: ClassVar[str] = "shear stress times real area of contact"
 
     shear_stress: Input = Input(
@@ -113,7 +123,6 @@ class ShearStress(OverArea):
         reason="it is a slow function of the speed",
         optional=True,
         default=0.0,
-        is_free=False,
     )
     reference_speed: Input = Input(
         label="sliding speed at which the shear stress is given",
@@ -124,6 +133,31 @@ class ShearStress(OverArea):
         default=1e-3,
         is_free=False,
     )
+
+    @property
+    def uses_speed(self) -> bool:
+        """Whether the exponent is not zero."""
+        return self.speed_exponent != 0
+
+    @property
+    def is_frictionless(self) -> bool:
+        """Whether the stress is zero."""
+        return self.shear_stress == 0
+
+    def scaled(self, by: float) -> ShearStress:
+        """Return the law with a larger stress.
+
+        Parameters
+        ----------
+        by : float
+            Factor on the stress [-].
+
+        Returns
+        -------
+        ShearStress
+            The law.
+        """
+        return replace(self, shear_stress=by * self.shear_stress)
 
     def stress(self, sliding_speed: float) -> float:
         """Return the shear stress at a sliding speed.

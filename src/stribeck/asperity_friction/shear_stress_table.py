@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -61,6 +61,36 @@ class ShearStressTable(OverArea):
             raise InputError(f"sliding_speeds has {count} values and shear_stresses {others}; give a stress for each speed.")
         if count < 2 or not (np.diff(self.sliding_speeds) > 0).all():
             raise InputError("sliding_speeds must be two or more speeds that rise.")
+
+    @property
+    def uses_speed(self) -> bool:
+        """True: the stress is one of the speed."""
+        return True
+
+    @property
+    def known_speeds(self) -> tuple[float, float]:
+        """First and last speed of the table [m/s]."""
+        return self.sliding_speeds[0], self.sliding_speeds[-1]
+
+    @property
+    def is_frictionless(self) -> bool:
+        """False: stresses of a table are positive."""
+        return False
+
+    def scaled(self, by: float) -> ShearStressTable:
+        """Return the table with larger stresses.
+
+        Parameters
+        ----------
+        by : float
+            Factor on the stresses [-].
+
+        Returns
+        -------
+        ShearStressTable
+            The table.
+        """
+        return replace(self, shear_stresses=[by * each for each in self.shear_stresses])
 
     def stress(self, sliding_speed: float) -> float:
         """Return the shear stress at a sliding speed.

@@ -49,7 +49,7 @@ def fit_command(
     if posterior is not None:
         check_posterior(posterior, robust or loaded.fit.robust)
     if out is not None:
-        check_fitted_case(loaded, names_to_fit(free, loaded.fit), out)
+        check_fitted_case(loaded, names_to_fit(free, loaded.fit, loaded.contact), out)
     with interruptible() as progress:
         found = sb.fit(data, loaded, free=free, per_file=per_file, robust=True if robust else None, on_step=progress.of_fit)
         drawn = None

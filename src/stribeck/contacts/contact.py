@@ -16,7 +16,8 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asperity_friction.law import refuse_coefficient
+from stribeck.asperity_friction.coulomb import Coulomb
+from stribeck.asperity_friction.law import AsperityFriction, refuse_coefficient
 from stribeck.asperity_friction.shear_stress import ShearStress
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
@@ -262,7 +263,7 @@ class Contact(Parts):
         return contact
 
     @classmethod
-    def from_groups(cls, groups: Groups, **kept: str | float | None) -> Self:
+    def from_groups(cls, groups: Groups, **kept: Any) -> Self:
         r"""Return the contact whose :attr:`groups` are ``groups``.
 
         .. math::
@@ -302,7 +303,8 @@ class Contact(Parts):
         if groups.geometry != scaling.name:
             raise InputError(f"groups.geometry = {groups.geometry!r}; a {scaling.body} has {scaling.name!r}.")
         own = {name: value for name, value in kept.items() if name in cls.INPUTS.quantities and value is not None}
-        given = read_inputs(own, cls.INPUTS, elsewhere=("load", "speed", "roughness")).checked()
+        replaced = () if kept.get("asperity_friction") is None else (IN_PLACE_OF["asperity_friction"],)
+        given = read_inputs(own, cls.INPUTS, elsewhere=("load", "speed", "roughness", *replaced)).checked()
         R, E_star, alpha, beta = given["radius"], given["modulus"], given["alpha"], given["beta"]
         scale, r = scaling.slope_factor * beta, scaling.dimensions
         F_N = scale ** (1 + r) * R**r * E_star * float(groups.load) / scaling.hertz_factor
@@ -352,6 +354,11 @@ class Contact(Parts):
     def _replaced(self) -> tuple[str, ...]:
         """The inputs in whose place a part stands: under a profile the radius is none."""
         return tuple(own for part, own in IN_PLACE_OF.items() if getattr(self, part) is not None)
+
+    @property
+    def friction_of_asperities(self) -> AsperityFriction:
+        """What turns the load of its asperities, or their area, into friction: ``boundary_friction`` or what replaces it."""
+        return self.asperity_friction or Coulomb(self.boundary_friction)
 
     @property
     def _compression(self) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Protocol
 
 from stribeck._types import Array
-from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
@@ -163,8 +162,7 @@ def _shares(contact: Contact | None, values: Values, given: tuple[float, float] 
     """Return the asperities' shares of load and friction."""
     boundary, beta = (1.0, USUAL_BETA) if given is None else given
     if contact is not None:
-        friction = contact.asperity_friction or Coulomb(contact.boundary_friction)
-        boundary, beta = friction.coefficient_at_small_area(contact), contact.beta
+        boundary, beta = contact.friction_of_asperities.coefficient_at_small_area(contact), contact.beta
     dry, viscous = boundary * values.contact_load_share, values.viscous_friction(beta)
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 

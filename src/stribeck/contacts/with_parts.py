@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -89,6 +89,25 @@ def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
             own + rate * by_radius for own, by_radius in zip(known.get(name, (0.0, 0.0, 0.0)), known["radius"], strict=True)
         )
         found[name] = speed, load, roughness
+    return found
+
+
+def known_speeds(contact: Contact) -> tuple[float, float]:
+    """Return the speeds between which the friction of asperities is known [m/s]."""
+    ratio = abs(contact.slide)
+    low, high = (end / ratio if ratio > 0 else end for end in contact.friction_of_asperities.known_speeds)
+    return low, high
+
+
+def factor_exponents(contact: Contact, names: Iterable[str]) -> dict[str, float]:
+    """Return the exponents with which inputs enter the factor of the friction of asperities near a contact."""
+    friction = contact.friction_of_asperities
+    found = {name: float(name == "boundary_friction") for name in names}
+    for name in found if not friction.is_constant and friction.factor(contact) else ():
+        below, above = steps = admissible_steps(contact, name, CENTRAL_STEP, ONE_SIDED_STEP)
+        moved = (contact.replace(**{name: getattr(contact, name) * math.exp(step)}) for step in steps)
+        less, more = (each.friction_of_asperities.factor(each) for each in moved)
+        found[name] = math.log(more / less) / (above - below)
     return found
 
 

@@ -80,6 +80,10 @@ class FrictionPath:
         """Return the load share of the fluid and both parts of the friction."""
         return self.source.parts(s, self.coefficients)
 
+    def fluid_shares(self, s: Array) -> Array:
+        """Return the load share of the fluid, whatever the friction."""
+        return np.asarray(self.source.parts(s, (1.0, self.beta, self.definition))[0])
+
     def slopes(self, s: Array) -> Array:
         """Return the derivatives of the friction by the coordinate."""
         return self.source.slopes(s, self.coefficients)

@@ -262,10 +262,11 @@ class LineSource(PathSource):
     def _of_fields(self, friction: AsperityFriction, s: Any) -> Any:
         """Return the friction of asperities by the fields between the states of the path, with its derivative if s has one."""
         if isinstance(s, Dual):
-            ahead, behind = (self._of_fields(friction, s.value + step) for step in (FIELD_LOG_STEP, -FIELD_LOG_STEP))
-            return Dual(self._of_fields(friction, s.value), (ahead - behind) / (2 * FIELD_LOG_STEP) * s.slope)
-        inside = np.clip(s, *self.ends)  # a difference at an end is taken on the one side where there are states
-        amounts = [friction.amount(self._between_states(each))[0] for each in inside.tolist()]
+            # A difference at an end is taken on the one side where there are states.
+            after, before = (np.clip(s.value + step, *self.ends) for step in (FIELD_LOG_STEP, -FIELD_LOG_STEP))
+            ahead, behind = (self._of_fields(friction, each) for each in (after, before))
+            return Dual(self._of_fields(friction, s.value), (ahead - behind) / (after - before) * s.slope)
+        amounts = [friction.amount(self._between_states(each))[0] for each in s.tolist()]
         return self.sliding * self.factors(friction, s) * np.array(amounts)
 
     def _between_states(self, s: float) -> Solution:

@@ -17,12 +17,14 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
+from stribeck.curves.factor_slopes import rest_derivatives, through_factor
 from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
 from stribeck.equations.point.system import Equations, Unknowns
+from stribeck.quantities.outputs import AREA
 from stribeck.solver.point.sensitivity import GROUPS, LOG_STEP, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
 from stribeck.solver.point.solve import solve_cold
-from stribeck.solver.point.state import PointObservables
+from stribeck.solver.point.state import PointObservables, with_area
 
 __all__ = ["ball_derivatives"]
 
@@ -37,13 +39,14 @@ def ball_derivatives(
     contact: Contact, rtol: float, definition: Definition
 ) -> tuple[PointSolution, Array, dict[str, float], dict[str, float]]:
     """Return the state of a ball, and the derivatives of its friction by groups, through the model, and directly."""
-    groups, beta, mu0 = contact.groups, contact.beta, contact.boundary_friction
+    groups, beta, asperities = contact.groups, contact.beta, contact.friction_of_asperities
     state = solve_cold(groups, rtol)
     solution = finish_point(state, contact)
     values: PointObservables = solution.observables
+    factor, amount = asperities.factor(contact), asperities.amount(solution)[0]
 
-    def total(found: PointObservables, beta: float = beta) -> float:
-        return mu0 * found.sliding * found.contact_load_share + found.viscous_friction(beta, definition)
+    def total(found: PointObservables, beta: float = beta, more: float = 0.0) -> float:
+        return factor * found.sliding * (amount + more) + found.viscous_friction(beta, definition)
 
     def slope(name: str) -> float:
         """Return the derivative with respect to an argument of the closed forms that is not a group."""
@@ -52,24 +55,30 @@ def ball_derivatives(
         return (total(more) - total(less)) / (2 * SMALL)
 
     by_groups, by_model = dict.fromkeys(GROUPS, 0.0), dict[str, float]()
-    if groups.speed > 0:
-        measure = partial(_measured, values, beta)
+    if groups.speed == 0:
+        by_groups = dict(zip(GROUPS, factor * values.sliding * rest_derivatives(contact, rtol), strict=True))
+    else:
+        measure = partial(_measured, values, beta, groups.law if asperities.observable == AREA else None)
         changes = state_derivatives(state, measure=measure)
         for i, name in enumerate(GROUPS):
             here = float(getattr(groups, name))
             if here > 0:
-                ends = [total(_moved(values, changes, i, name, step)) for step in (SMALL, -SMALL)]
+                rate = float(changes[asperities.observable][i])
+                ends = [total(_moved(values, changes, i, name, step), more=rate * step) for step in (SMALL, -SMALL)]
                 by_groups[name] = (ends[0] - ends[1]) / (2 * SMALL)
         for name, along in _of_model(contact, groups).items():
             changes = derivatives_along(state, {name: along}, measure)
-            ends = [total(_changed(values, changes, 0, step)) for step in (SMALL, -SMALL)]
+            rate = float(changes[asperities.observable][0])
+            ends = [total(_changed(values, changes, 0, step), more=rate * step) for step in (SMALL, -SMALL)]
             by_model[name] = (ends[0] - ends[1]) / (2 * SMALL)
     by_beta = (total(values, beta * math.exp(SMALL)) - total(values, beta * math.exp(-SMALL))) / (2 * SMALL)
-    direct = {"boundary_friction": mu0 * values.sliding * values.contact_load_share, "beta": by_beta}
-    direct["slide_to_roll"] = slope("_slide_to_roll")
+    direct = through_factor(contact, factor * values.sliding * amount)
+    direct["beta"] = direct.get("beta", 0.0) + by_beta
+    direct["slide_to_roll"] = direct.get("slide_to_roll", 0.0) + slope("_slide_to_roll")
     if values._wetted_radius is not None:
         direct["wetted_radius"] = by_edge = slope("_wetted_radius")
-        direct |= {name: -exponent * by_edge for name, exponent in WIDTH_EXPONENTS.items()}
+        for name, exponent in WIDTH_EXPONENTS.items():
+            direct[name] = direct.get(name, 0.0) - exponent * by_edge
     return solution, np.array([*by_groups.values()]), by_model, direct
 
 
@@ -99,7 +108,7 @@ def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, 
 def _changed(values: PointObservables, changes: Mapping[str, Array], column: int, step: float) -> PointObservables:
     """Return the observables after a small step along a direction, to first order."""
     moved: dict[str, Any] = {
-        each: getattr(values, each, 0.0) + step * float(change[column]) for each, change in changes.items()
+        each: getattr(values, each, 0.0) + step * float(change[column]) for each, change in changes.items() if each != AREA
     }
     more, within = [moved.pop(each) for each in WITHIN if each in moved], values._within
     if within is not None:
@@ -107,9 +116,9 @@ def _changed(values: PointObservables, changes: Mapping[str, Array], column: int
     return replace(values, **moved)
 
 
-def _measured(of: PointObservables, beta: float, equations: Equations, y: Unknowns) -> dict[str, float]:
+def _measured(of: PointObservables, beta: float, law: Any, equations: Equations, y: Unknowns) -> dict[str, float]:
     """Return the observables of a state beside another one, in a fluid that thins with those up to where the liquid ends."""
-    found = observables(equations, y)
+    found = observables(equations, y) if law is None else with_area(law, equations, y)
     if of._within is None:
         return found
     at = FrictionWithin.of(equations, y, found)

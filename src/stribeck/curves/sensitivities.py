@@ -16,6 +16,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import exponents_of, models_at_both_sides
+from stribeck.curves.factor_slopes import rest_derivatives, through_factor
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
@@ -73,8 +74,10 @@ def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Deriv
     """Return the derivatives of the friction of a cylinder by those of its equations."""
     groups = contact.groups
     by_groups, through = np.zeros(3), dict[str, float]()
+    asperities = contact.friction_of_asperities
+    rubbing = asperities.factor(contact) * sliding_part(contact.slide_to_roll)
     if groups.speed == 0:
-        solution = solve(contact, rtol=rtol)
+        solution, by_groups = solve(contact, rtol=rtol), rubbing * rest_derivatives(contact, rtol)
     else:
         point = solved_point(groups, rtol)
         solution, state = finish(point, groups, contact, rtol), point.state
@@ -82,11 +85,10 @@ def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Deriv
         named = [name for name, value in contact.inputs() if value and groups.model != BASE_MODEL]
         beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
         changes = {name: each for name, each in beside.items() if each is not None}
-        rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
-        slopes = friction_slopes(state, rubbing, contact.beta, definition, list(changes.values()))
+        slopes = friction_slopes(state, rubbing, contact.beta, definition, list(changes.values()), asperities.observable)
         by_groups, through = slopes[:3], dict(zip(changes, slopes[3:].tolist(), strict=True))
     friction = solution.friction(definition=definition)
-    return solution, by_groups, through, {"boundary_friction": friction.asperities, "beta": friction.fluid}
+    return solution, by_groups, through, through_factor(contact, friction.asperities) | {"beta": friction.fluid}
 
 
 def _of_ball(contact: Contact, rtol: float, definition: Definition) -> Derivatives:

@@ -15,7 +15,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import refuse_fixed_memory, with_parts
+from stribeck.contacts.with_parts import known_speeds, refuse_fixed_memory, with_parts
 from stribeck.curves.atlas_source import AtlasSource
 from stribeck.curves.ball_source import ball_source
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
@@ -31,6 +31,7 @@ from stribeck.numerics.continuation import follow
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError
 from stribeck.solver.path.line_knots import LineKnots
 from stribeck.solver.path.line_path import LineProblem, line_problem
 from stribeck.solver.refinement import RefinedState
@@ -127,15 +128,21 @@ def stribeck_curve(
     )
     coordinate = Coordinate(over, base)
     is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
-    grows = ends is None and is_solved and is_line and bool(coordinate.groups_at(0.0).roughness > 0)
+    known = (0.0, math.inf) if contact is None else known_speeds(contact)
+    grows = ends is None and is_solved and is_line and known[1] == math.inf and bool(coordinate.groups_at(0.0).roughness > 0)
     if ends is None:
-        values = _automatic(coordinate, at_small_area, points, grows)
+        values = _automatic(coordinate, at_small_area, points, grows, known)
     elif len(ends) == 2:
         values = np.geomspace(ends[0], ends[1], points)
     else:
         values = ends
     check_inside(coordinate, values)
     if not is_solved:
+        if needs_area(boundary_friction):
+            raise InputError(
+                "method = 'atlas' takes a friction coefficient: the atlas holds the load on asperities, not their real area "
+                "of contact, on which a shear stress acts. Leave method out, which solves the curve."
+            )
         source = AtlasSource(coordinate, *values[[0, -1]].tolist())
         return StribeckCurve(values, len(values), FrictionPath(source, *given_friction))
     if not is_line:
@@ -194,7 +201,7 @@ def begun(
 ) -> FrictionPath:
     """Return the path of a contact's own state alone, which may be continued to ``ends``; of a cylinder it may be known."""
     coordinate, value = Coordinate(over, contact), float(getattr(contact, over))
-    given: Coefficients = contact.boundary_friction, contact.beta, definition
+    given: Coefficients = *coefficients(contact, None, None), definition
     if coordinate.geometry != "line":
         return FrictionPath(ball_source(coordinate, np.array([value]), rtol, contact.beta, ends=np.array(ends))[0], *given)
     line, here = _line(coordinate, np.array(ends), rtol), math.log(value)
@@ -205,8 +212,8 @@ def begun(
     return FrictionPath(LineSource(coordinate, rtol, path), *given)
 
 
-def _automatic(coordinate: Coordinate, given: Coefficients, points: int, grows: bool) -> Array:
-    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm.
+def _automatic(coordinate: Coordinate, given: Coefficients, points: int, grows: bool, known: tuple[float, float]) -> Array:
+    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm, within known ones.
 
     If the curve ``grows`` until it finds its ends, the first speed is the lowest that it may reach.
     """
@@ -215,4 +222,4 @@ def _automatic(coordinate: Coordinate, given: Coefficients, points: int, grows: 
         low, high = SPEEDS[0], fastest(groups, *given[:2])
     else:
         low, high = automatic_speed_range(groups, *given)
-    return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)
+    return np.geomspace(max(low / float(groups.speed), known[0]), min(high / float(groups.speed), known[1]), points)

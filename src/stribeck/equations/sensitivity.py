@@ -18,9 +18,10 @@ from stribeck._types import Array
 from stribeck.contacts.model import Model
 from stribeck.equations.observables import ROW, changes, measured
 from stribeck.equations.operators import Operators
+from stribeck.equations.real_area import area_derivatives
 from stribeck.equations.state import State
 from stribeck.numerics.trace import Trace
-from stribeck.quantities.outputs import ALL_NAMES
+from stribeck.quantities.outputs import ALL_NAMES, AREA
 
 GROUPS = ("speed", "load", "roughness")
 
@@ -29,10 +30,14 @@ Change = tuple[Model, Model, float]
 
 
 def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Array]:
-    """Return the derivatives of all observables with respect to ln(group), and along changes of the model."""
+    """Return the derivatives of all observables with respect to ln(group), and along changes of the model.
+
+    Among them is the real area of contact, where the law knows it.
+    """
     found, forces = _partials(state, np.eye(len(GROUPS)), beside)
-    found += changes(state.equations, state.y, float(state.groups.load), _moves(state, forces))
-    return dict(zip(ALL_NAMES, found.T, strict=True))
+    moves = _moves(state, forces)
+    found += changes(state.equations, state.y, float(state.groups.load), moves)
+    return dict(zip((*ALL_NAMES, AREA), (*found.T, area_derivatives(state, moves)), strict=True))
 
 
 def derivatives_along(state: State, direction: Array, change: Change) -> tuple[Array, Array]:
@@ -86,8 +91,16 @@ def _by(value: Any, name: str) -> float:
 
 
 def friction_slopes(
-    state: State, boundary_friction: float, beta: float, definition: str, changes: Sequence[Change] = ()
+    state: State,
+    rubbing: float,
+    beta: float,
+    definition: str,
+    changes: Sequence[Change] = (),
+    observable: str = "contact_load_share",
 ) -> Array:
-    """Return the derivatives of friction by ln(speed), ln(load), ln(roughness), and along the changes of the model."""
+    """Return the derivatives of friction by ln(speed), ln(load), ln(roughness), and along the changes of the model.
+
+    The friction of asperities is the factor ``rubbing`` times an observable.
+    """
     derivatives = log_derivatives(state, changes)
-    return np.asarray(boundary_friction * derivatives["contact_load_share"] + beta * derivatives[f"viscous_{definition}"])
+    return np.asarray(rubbing * derivatives[observable] + beta * derivatives[f"viscous_{definition}"])

@@ -157,7 +157,7 @@ def compare(
     contact = loaded.contact if isinstance(loaded, Case) else loaded
     settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
     rows = measurements_of(data, settings)
-    names = names_to_fit(free, settings)
+    names = names_to_fit(free, settings, contact)
     if models is not None and laws is not None:
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")
     found: dict[str, Fit] = {}

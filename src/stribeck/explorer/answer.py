@@ -286,7 +286,7 @@ def _parts(report: Report) -> Callable[..., object]:
 
 def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
     """Return all inputs, law and parts of a contact but the speed, and but what else is named."""
-    return tuple(getattr(contact, each.name) for each in fields(contact) if each.name not in ("speed", *without))
+    return tuple(getattr(contact, each.name, None) for each in fields(contact) if each.name not in ("speed", *without))
 
 
 def _known_key(what: str, inputs: Inputs) -> tuple[Any, ...]:

@@ -125,8 +125,8 @@ def _group_per_unit(contact: Contact, name: str) -> float:
 
 
 def in_atlas(contact: Contact) -> bool:
-    """Return whether the atlas covers the contact law, the load and the roughness of a contact."""
-    return bool(atlas.covers(replace(contact.groups, speed=0.0)))
+    """Return whether the atlas covers the contact law, the load and the roughness of a contact, and has its friction."""
+    return contact.friction_of_asperities.is_constant and bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 
 def transition_marks(contact: Contact, definition: Definition) -> Marks:

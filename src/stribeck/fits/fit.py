@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
 from stribeck.checks.subject import Subject
@@ -120,7 +121,7 @@ def fit(
     problem = _problem(data, case)
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     data = measurements_of(data, settings)
-    names = names_to_fit(free, settings)
+    names = names_to_fit(free, settings, contact)
     if robust is not None:
         settings = replace(settings, robust=robust)
     settings = _with_owners(settings, names, per_file)
@@ -154,9 +155,11 @@ def fit(
     return _result(fine, ends, covariance, quantiles, problem, shift)
 
 
-def names_to_fit(free: Sequence[str] | None, settings: FitSettings) -> tuple[str, ...]:
-    """Return the inputs to fit: those that are named, else those of the settings, else friction coefficient and roughness."""
-    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
+def names_to_fit(free: Sequence[str] | None, settings: FitSettings, contact: Contact) -> tuple[str, ...]:
+    """Return the inputs to fit: those that are named, else those of the settings, else dry friction and roughness."""
+    own = contact.friction_of_asperities.size
+    usual = tuple(own if name == Coulomb.size else name for name in DEFAULT_FREE)
+    names = free_names(free) if free is not None else settings.free or tuple(filter(None, usual))
     if not names:
         raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
     return names

@@ -66,6 +66,8 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
             if start == 0:
                 raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
             each_free = replace(_free_input(name, curves, start, differ, settings, contact), owner=owner)
+            if min(own) < 0:
+                raise InputError(f"{name} is {min(own):g} in the case; a fit looks for factors on it, so it must be positive.")
             smallest, largest = min(own), max(own)
             if name == "roughness" and settings.scales_surface and "beta" not in names:
                 each_free = replace(each_free, also=("beta",))

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import Coulomb
+from stribeck.contacts.parts import KINDS
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.model import Prediction
 
@@ -21,6 +23,8 @@ __all__ = ["Unidentifiable", "undetermined"]
 
 # Standard error of a logarithm from which the 95 % interval is wider than a factor of ten.
 WIDEST = math.log(10.0) / (2 * 1.959963984540054)
+
+SIZES = (Coulomb.size, *(law.size for law in KINDS["asperity_friction"].laws.values() if law is not None))
 
 PART_OF = 0.1  # Component of a direction, the largest being one, from which an input has a part in it
 
@@ -122,8 +126,8 @@ def _weak_alone(column: Array) -> bool:
 
 
 def _off_plateau(free: FreeInput, prediction: Prediction) -> bool:
-    """Return whether no row determines the boundary friction coefficient by itself."""
-    return free.name == "boundary_friction" and float(prediction.contact_share.max()) < 0.5
+    """Return whether no row determines the size of the friction of asperities by itself."""
+    return free.name in SIZES and float(prediction.contact_share.max()) < 0.5
 
 
 def _tie(first: str, other: str, a: float, b: float) -> str:
@@ -151,7 +155,7 @@ def _reason(free: FreeInput, prediction: Prediction) -> str:
     error = float((prediction.error / prediction.friction).max())
     # A share below its error is said to be that at most.
     asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))
-    if free.name == "boundary_friction":
+    if free.name in SIZES:
         return (
             f"asperities cause at most {_percent(asperities)} of the friction in any row, and a curve without a boundary "
             "plateau cannot give it"

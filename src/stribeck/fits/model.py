@@ -47,6 +47,8 @@ __all__ = ["FrictionModel", "Prediction"]
 # them.  That of the case holds where it is larger.
 BALL_RTOL = 1e-4, 1e-3
 
+LOG_STEP = 1e-5  # Step of a logarithm in differences of the factor of the friction of asperities, a closed form
+
 ERROR_SHARE = 1 / 3  # Tolerance of states over the standard error of a common factor on the friction, which it widens by 5 %
 
 
@@ -70,9 +72,17 @@ class FrictionModel:
         names = {name for each in free for name in each.names}
         if contact.profile is not None and "radius" in names:
             raise InputError("radius is free, but the profile is the whole shape of the body; free numbers of the profile.")
-        # Groups are then no product of powers: the dry width under a profile is found from these inputs.
-        self.bends = contact.profile is not None and bool(names & set(width_inputs(contact)))
-        self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
+        # Logarithms are then no sums: the dry width under a profile, or a stress at each speed, is found from these inputs.
+        friction = contact.friction_of_asperities
+        self.is_constant = friction.is_constant  # Whether asperities rub by the same factor at all speeds
+        self.unit = (contact.speed or 1.0) if friction.uses_speed else 1.0  # Speed of the contacts of the curves [m/s]
+        of_width = contact.profile is not None and bool(names & set(width_inputs(contact)))
+        self.bends = of_width or not self.is_constant
+        self.contacts = tuple(contact.replace(speed=self.unit, **inputs) for inputs in data.inputs)
+        if any(each.friction_of_asperities.observable != friction.observable for each in self.contacts):
+            raise InputError(
+                "some curves have a dry friction coefficient, and others a shear stress in its place; fit them apart."
+            )
         groups = [each.groups for each in self.contacts]
         self.physics, self.model = [each.physics for each in groups], contact.groups.model
         self.remembers = [getattr(each.model.solid, "uses_speed", False) for each in groups]
@@ -90,7 +100,8 @@ class FrictionModel:
     def in_atlas(self) -> bool:
         """Whether a table holds for all contacts, wherever in its box their states lie."""
         kinds = {each.groups.model for each in self.contacts}
-        return len(kinds) == 1 and not any(self.moving) and atlas.for_groups(self.contact.groups) is not None
+        is_held = len(kinds) == 1 and self.is_constant and not any(self.moving)
+        return is_held and atlas.for_groups(self.contact.groups) is not None
 
     def states(self, definition: Definition, rtol: float, on_state: Callable[[], object]) -> States:
         """Return what gives the states, to a tolerance."""
@@ -180,8 +191,8 @@ class FrictionModel:
         return self._exponents_at(self._contacts_at(theta)) if self.bends else self.exponents
 
     def _contacts_at(self, theta: Array) -> list[Contact]:
-        """Return the contacts of all curves at a set of free inputs, at unit speed."""
-        return [self.contact_of(curve, theta, 1.0) for curve in range(len(self.contacts))]
+        """Return the contacts of all curves at a set of free inputs, at the unit of speed."""
+        return [self.contact_of(curve, theta, self.unit) for curve in range(len(self.contacts))]
 
     def _exponents_at(self, contacts: Sequence[Contact]) -> Array:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
@@ -206,13 +217,33 @@ class FrictionModel:
         rows = np.empty((len(contacts), 4 + len(self.rule.inputs)))
         for i, contact in enumerate(contacts):
             g, others = contact.groups, self.rule.of_contact(contact)
-            speed = float(g.speed) * self.rule.speed_per(self.data.abscissa, contact)
-            rubbing = abs(self._rubbing(contact)) * contact.boundary_friction
-            rows[i] = (speed, float(g.load), float(g.roughness), rubbing, *others.values())
+            speed = float(g.speed) / self.unit * self.rule.speed_per(self.data.abscissa, contact)
+            rows[i] = (speed, float(g.load), float(g.roughness), 1.0, *others.values())
         with np.errstate(divide="ignore"):
             found = np.log(rows)[curve]
         found[:, 0] += np.log(values)
+        found[:, 3] = self._log_rubbing(contacts, curve, values)
         return np.asarray(found)
+
+    def _log_rubbing(self, contacts: Sequence[Contact], curve: Indices, values: Array) -> Array:
+        """Return the logarithms of the factor of the friction of asperities at places of the abscissa."""
+        found = np.empty(len(values))
+        for c in np.unique(curve).tolist():
+            contact, own = contacts[c], curve == c
+            speeds = values[own] * self.rule.speed_per(self.data.abscissa, contact)
+            found[own] = abs(self._rubbing(contact)) * contact.friction_of_asperities.factors(contact, speeds)
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(found))
+
+    def _rubbing_exponents(self, theta: Array, curve: Indices, values: Array) -> Array:
+        """Return the exponents with which the free inputs enter the factor of the friction of asperities at each row."""
+        found = np.zeros((len(values), len(self.free)))
+        for k, free in enumerate(self.free):
+            ends = np.clip(theta[k] + LOG_STEP * np.array([-1.0, 1.0]), free.low, free.high)
+            moved = [theta + (end - theta[k]) * (np.arange(len(theta)) == k) for end in ends]
+            less, more = (self._log_rubbing(self._contacts_at(each), curve, values) for each in moved)
+            found[:, k] = (more - less) / (ends[1] - ends[0])
+        return found
 
     def _rubbing(self, contact: Contact) -> float:
         return float(self.rule.sliding_factor(contact.groups, self.rule.of_contact(contact)))
@@ -250,19 +281,21 @@ class FrictionModel:
         A = self._exponents_of_curves(theta)[curve]
         if self.bends:
             x = np.exp(self._logs_at(self._contacts_at(theta), curve, values))
+            if not self.is_constant:
+                A[..., 3] = self._rubbing_exponents(theta, curve, values)
         else:
             logs = self.logs if at is None else self._logs_at(self.contacts, curve, values)
             x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
         is_read = at is None and not states.uses_atlas
         found = self._read(theta, x, states) if is_read else self._parts(theta, x, curve, values, states)
         names = self.rule.parts(states.definition)
-        parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
+        parts, inputs = dict(zip(names, found.values[1:-1], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
         fixed = {"far": far_film(self.model)}
         # By the logarithms of the groups, by the numbers of the model, and by the logarithms of the inputs.
         known = len(found.slopes[0])
         rows = np.eye(known + len(inputs))[:, :, None]
         of_inputs = np.zeros((len(inputs), len(x)))
-        by_part = (np.vstack([each, of_inputs]) for each in found.slopes[1:])
+        by_part = (np.vstack([each, of_inputs]) for each in found.slopes[1:-1])
         moved = {name: Dual(part, slopes) for (name, part), slopes in zip(parts.items(), by_part, strict=True)}
         sizes = (np.where(np.isfinite(value), value, 0.0) for value in inputs.values())
         taken = {
@@ -277,13 +310,13 @@ class FrictionModel:
         by_model = np.zeros((len(x), len(self.free)))
         by_model[:, : known - 3] = slopes[3:known].T
         jacobian = np.einsum("kn,npk->np", np.array([*slopes[:3], contact, *slopes[known:]]), A) + by_model
-        errors, share = dict(zip(names, found.errors[1:], strict=True)), friction_share(contact, fluid)
+        errors, share = dict(zip(names, found.errors[1:-1], strict=True)), friction_share(contact, fluid)
         return Prediction(
             friction=np.abs(contact + fluid),
             jacobian=np.copysign(1.0, contact + fluid)[:, None] * jacobian,
             contact_share=share,
             fluid_share=friction_share(fluid, contact),
-            load_share=found.values[0],
+            load_share=found.values[-1],
             error=x[:, 3] * found.errors[0]
             + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, states.definition),
         )

@@ -1,7 +1,7 @@
 """The states of a fit: off the atlas, read between solved ones, or solved, with their derivatives.
 
-The load share and the observables of the viscous friction come without boundary_friction and beta, which may differ from
-state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
+What asperities rub by and the observables of the viscous friction come without their factors, which may differ from state to
+state: :mod:`stribeck.contacts.friction_rules` puts them together.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ SAFETY = 8.0  # Largest fourth derivative of a part of the friction by ln(speed)
 class FrictionParts:
     """The contributions to the friction of n states, and their derivatives."""
 
-    values: Array  # Contact load share, and the observables that the rule of the geometry names [-]
+    values: Array  # What asperities rub by, the observables that the rule of the geometry names, the contact load share [-]
     slopes: Array
-    errors: Array  # Estimated absolute error of the contact load share, and errors of the others as a solution states them
+    errors: Array  # Estimated absolute errors of the first and the last, and errors of the others as a solution states them
 
 
 @dataclass(eq=False)
@@ -78,7 +78,8 @@ class States:
         """Return the parts of states in a row, with derivatives along changes of the model, off the atlas or solved."""
         if self.uses_atlas and not self.must_solve:
             try:
-                values, slopes = atlas.friction_parts(groups, self.definition)
+                parts = atlas.friction_parts(groups, self.definition)
+                values, slopes = (np.concatenate([each, each[:1]]) for each in parts)  # the load share is what rubs
                 return FrictionParts(values, slopes, np.full(values.shape, table_for(groups).error))
             except InputError:
                 pass
@@ -99,7 +100,8 @@ class States:
 
     def _solved(self, groups: Groups, by: Sequence[str], changes: Changes) -> Observed:
         rule = RULES[groups.geometry]
-        names, inputs = ("contact_load_share", *rule.parts(self.definition)), rule.of_contact(self.contact)
+        observable, inputs = self.contact.friction_of_asperities.observable, rule.of_contact(self.contact)
+        names = (observable, *rule.parts(self.definition), "contact_load_share")
         found = self.neighbours.observed(groups, names, list(changes.values()), by=by, inputs=inputs)
         self.on_state()
         return found
@@ -110,11 +112,11 @@ class States:
         if doubt > (0.0 if self.must_solve else FAR_DOUBT):
             here = solve()
             size = np.ones_like(here.values)
-            size[1:] = np.abs(here.values[1:]).max(axis=0)
+            size[1:-1] = np.abs(here.values[1:-1]).max(axis=0)
             slopes = np.moveaxis(here.slopes[:, moving], 1, 0)
-            lengths = lengths_of((slopes / size).reshape(len(moving), -1))
+            lengths = lengths_of((slopes / size).reshape(len(moving), size.size))
             scattered, solved = self.known.setdefault(curve, (Scattered(lengths), []))
-            scattered.add(place, here.values.ravel(), slopes.reshape(len(moving), -1))
+            scattered.add(place, here.values.ravel(), slopes.reshape(len(moving), size.size))
             solved.append(here)
             return here
         scattered, solved = self.known[curve]

@@ -70,6 +70,10 @@ class Table(Shape):
         for field, value in (("x", tuple(positions.tolist())), ("z", tuple(heights.tolist())), ("reversed", bool(reversed))):
             object.__setattr__(self, field, value)
 
+    def __repr__(self) -> str:
+        """Return how many points it has, which a page would not hold."""
+        return f"Table({len(self.x)} points from {self.x[0]:g} to {self.x[-1]:g} m{_turned(self)})"
+
     @property
     def parameters(self) -> Mapping[str, float | str]:
         """How many points it has and where they end."""
@@ -107,6 +111,11 @@ class _OfPressure(Shape):
     slopes: tuple[float, ...]  # Chebyshev coefficients of its slope
     reversed: bool = False
 
+    def __repr__(self) -> str:
+        """Return how many terms its series has, which a page would not hold."""
+        first, last = self.places
+        return f"<shape {self.name}: {len(self.slopes)} terms from {first:g} to {last:g} m{_turned(self)}>"
+
     @property
     def name(self) -> str:  # type: ignore[override]
         """The name that outputs print; no name of a law, as no case has its numbers."""
@@ -139,6 +148,11 @@ class _OfPressure(Shape):
         """Return the position in the contact, and the distance from it, in half-widths."""
         t = (np.asarray(x) - self.centre) / self.half_width
         return np.clip(t, -1.0, 1.0), t - np.clip(t, -1.0, 1.0)
+
+
+def _turned(shape: Any) -> str:
+    """Return what to add to the words of a shape that moves the other way."""
+    return ", reversed" if shape.reversed else ""
 
 
 def from_pressure(x: Any, p: Any, modulus: str | float, reversed: bool = False) -> Shape:

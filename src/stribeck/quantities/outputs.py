@@ -208,6 +208,8 @@ NAMES, ABSOLUTE = LINE.names, LINE.absolute  # Of the line
 # Observables of the line with an estimated error for any model, in the order of every array of them.
 ALL_NAMES = (*NAMES, UPPER_DRAG.name, *(row.name for row in RUPTURE_ROWS))
 
+AREA = "real_contact_area"  # What a shear stress of the asperities acts on
+
 # Further observables if the contact law knows the spectrum of the surface.
 AREA_ROWS = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),

@@ -16,8 +16,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.parts import part_names
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_scan import Crossing
@@ -72,18 +74,20 @@ def _sigma(
 def _slopes(there: Contact, by_friction: bool, definition: Definition) -> dict[str, float]:
     r"""Return the derivatives of the share that decides on the regime, over a factor that all have in common.
 
-    Friction is :math:`\mu = \mu_0 S + V`, so that its derivatives at :math:`\mu_0` and :math:`\mu_0/2` hold those of S and V.
+    Friction is :math:`\mu = k S + V`, so that its derivatives at k and k/2 hold those of S and V.  With a coefficient S is the
+    asperities' share of the load.
     """
+    asperities = there.friction_of_asperities if by_friction else Coulomb(1.0)
     whole, half = (
         friction_sensitivities(
-            there.replace(boundary_friction=factor * there.boundary_friction),
+            there.replace(asperity_friction=asperities.scaled(factor)),
             rtol=STATE_RTOL[there.groups.geometry],
             definition=definition,
         )
         for factor in (1.0, 0.5)
     )
     friction, halved = (solution.friction(definition=definition) for solution, _ in (whole, half))
-    found = {}
+    found = dict.fromkeys(part_names(there), 0.0)
     for name in whole[1]:
         first, second = friction.total * whole[1][name], halved.total * half[1][name]
         share = 2 * (first - second) / friction.asperities  # d ln S

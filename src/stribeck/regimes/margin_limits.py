@@ -9,7 +9,7 @@ from typing import NamedTuple
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Geometry
-from stribeck.contacts.with_parts import exponents_of
+from stribeck.contacts.with_parts import exponents_of, known_speeds
 from stribeck.curves.coordinate import Over
 
 # Groups between which is searched, where the solver is tested; the load also no further than the contact law holds.
@@ -64,6 +64,9 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
         low, high = PHYSICAL[name]
     if name == "roughness":
         high = search.roughest(contact)
+    if name == "speed":
+        slowest, fastest = known_speeds(contact)
+        low, high = max(low, slowest), min(high, fastest)
     value = float(getattr(contact, name))
     return (min(low, value), max(high, value)) if value > 0 else (low, high)
 
@@ -86,8 +89,12 @@ def limits(contact: Contact, name: str) -> tuple[float, float]:
 
 
 def _possible_factors(contact: Contact, name: str) -> tuple[float, float]:
-    """Return the logarithms of the factors that lead to the bounds of an input, of the speed to those of the viscosity too."""
-    names = ("speed", "viscosity") if name == "speed" else (name,)
+    """Return the logarithms of the factors that lead to the bounds of an input.
+
+    Of the speed also to those of the viscosity, whose margins it gives.
+    """
+    is_for_both = name == "speed" and not contact.friction_of_asperities.uses_speed
+    names = ("speed", "viscosity") if is_for_both else (name,)
     ends = [(getattr(contact, each), physical_bounds(contact, each)) for each in names]
     return min(math.log(low / value) for value, (low, _) in ends), max(math.log(high / value) for value, (_, high) in ends)
 

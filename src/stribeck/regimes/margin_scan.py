@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import Definition, coefficients
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES, Regime, friction_share, regime_numbers
 from stribeck.curves.coordinate import Over
 from stribeck.curves.friction_path import FrictionPath
@@ -81,7 +81,7 @@ class Scan:
 
     def _both_ways(self, name: Over, value: float) -> Margin:
         # Zero speed, zero roughness and zero dry friction hold the regime, whatever else changes.
-        held = self.contact.speed == 0 or self.contact.boundary_friction == 0 or self.contact.roughness == 0
+        held = self.contact.speed == 0 or self.contact.friction_of_asperities.is_frictionless or self.contact.roughness == 0
         if held:
             return Margin(name, None, None, (value, value))
         (less, lowest), (more, highest) = self._outwards(self.contact, name, limits(self.contact, name))
@@ -89,7 +89,7 @@ class Scan:
 
     def _from_zero(self, name: Over) -> Margin:
         """Return the change with more of an input that is zero."""
-        if self.contact.boundary_friction == 0 or (name == "roughness" and self.contact.speed == 0):
+        if self.contact.friction_of_asperities.is_frictionless or (name == "roughness" and self.contact.speed == 0):
             return Margin(name, None, None, (0.0, 0.0))
         if self.contact.roughness == 0 and name == "speed":
             return Margin(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
@@ -119,7 +119,7 @@ class Scan:
         if whole is not None and whole.source.coordinate.over == name and whole.source.rtol <= self.rtol:
             first, last = whole.source.ends
             is_inside = first - ROUNDING <= here <= last + ROUNDING
-            if is_inside and whole.coefficients == (start.boundary_friction, start.beta, self.definition):
+            if is_inside and whole.coefficients == (*coefficients(start, None, None), self.definition):
                 return whole
         bounds, state = (math.exp(ends[0]), math.exp(ends[1])), self.state if start is self.contact else None
         path = begun(start, name, bounds, scan_rtol(start, self.rtol), self.definition, state)
@@ -133,8 +133,10 @@ class Scan:
         outward = math.copysign(1.0, end - here)
 
         def is_enough(found: FrictionPath) -> bool:
-            begin, reached = found.source.ends[:: int(outward)]
-            return self._first_change(found, begin, reached) is not None or (outward < 0 and _stays_mixed(found))
+            begin = found.source.ends[:: int(outward)][0]
+            return self._first_change(found, begin, _reached(found, end, outward)) is not None or (
+                outward < 0 and _stays_mixed(found)
+            )
 
         reached = float(np.clip(end, *path.source.ends))
         change = self._first_change(path, here, reached)
@@ -145,7 +147,7 @@ class Scan:
                 return None, value * math.exp(reached - here)
             if path.source.outcome is Outcome.INTERRUPTED:
                 raise KeyboardInterrupt
-            begin, reached = reached, path.source.ends[1 if outward > 0 else 0]
+            begin, reached = reached, _reached(path, end, outward)
             change = self._first_change(path, begin, reached)
         if change is None:
             return None, value * math.exp(reached - here)
@@ -180,12 +182,17 @@ class Scan:
         return "boundary" if self.present == "mixed" else "mixed", Transition.BOUNDARY_END, boundary
 
 
+def _reached(path: FrictionPath, end: float, outward: float) -> float:
+    """Return how far a path leads towards an end, not beyond it: there the friction of asperities may be unknown."""
+    return outward * min(outward * path.source.ends[1 if outward > 0 else 0], outward * end)
+
+
 def _stays_mixed(path: FrictionPath) -> bool:
     """Return whether the fluid's share ends above its bound, extrapolated as a geometric series of half decades of speed."""
     first, last = path.source.ends
     if path.source.coordinate.over != "speed" or last - first < DECADE:
         return False
-    slow, middle, fast = path.parts(first + DECADE * np.array([0.0, 0.5, 1.0]))[0].tolist()
+    slow, middle, fast = path.fluid_shares(first + DECADE * np.array([0.0, 0.5, 1.0])).tolist()
     first, second = fast - middle, middle - slow
     if not 0 <= second < min(first, MAX_SHARE_CHANGE):
         return False

@@ -109,7 +109,7 @@ def regime_margins(
         notes.append("At zero speed, load, roughness and viscosity do not change the regime.")
     if contact.roughness == 0 and contact.speed > 0:
         notes.append("Smooth surfaces never touch: there is no boundary or mixed lubrication.")
-    if contact.boundary_friction == 0:
+    if contact.friction_of_asperities.is_frictionless:
         notes.append("Without dry friction, all friction is viscous and every state counts as hydrodynamic.")
     if contact.groups.load >= largest_load(contact.law) and contact.roughness > 0:
         notes.append(
@@ -117,7 +117,9 @@ def regime_margins(
             "boundary lubrication."
         )
     found = [scan.along(name) for name in SCANNED]
-    if contact.replace(viscosity=2 * contact.viscosity).groups.model == contact.groups.model:
+    if contact.friction_of_asperities.uses_speed:
+        notes.append("Viscosity has no margins: the stress of the asperities follows the speed, which does not stand for it.")
+    elif contact.replace(viscosity=2 * contact.viscosity).groups.model == contact.groups.model:
         found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
     else:
         notes.append("Viscosity has no margins: this fluid thins with the shear rate, so that speed does not stand for it.")

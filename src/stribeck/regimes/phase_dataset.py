@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contact_laws.law import law_attributes
+from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import REGIMES
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
@@ -73,9 +76,10 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
         "definition": diagram.definition,
         **law_attributes(groups.law),
         "rtol": diagram.rtol,
-        "boundary_friction": diagram.boundary_friction,
+        "boundary_friction": getattr(as_asperity_friction(diagram.boundary_friction), "boundary_friction", math.nan),
         "beta": diagram.beta,
         **input_attributes(diagram.contact, *AXES),
+        **part_attributes(groups, diagram.contact),
     }
     dataset = new_dataset(columns, coords, about)
     for name, meanings in FLAGS.items():
@@ -99,7 +103,7 @@ def _formula_speeds(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, 
 
     if not diagram.kind.has_formulas:
         return {name: np.full(unit.shape, np.nan) for name in FORMULA_SPEEDS}
-    boundary_friction, beta = diagram.boundary_friction, diagram.beta
+    boundary_friction, beta = diagram.coefficient, diagram.beta
     with np.errstate(all="ignore"):
         shares = load_sharing.speed_at_fluid_share.function
         found = {
@@ -120,7 +124,7 @@ def _formula_merging(diagram: Diagram, groups: Groups) -> Array:
     loads = np.asarray(groups.load)[:, 0]
     if not (diagram.kind.has_formulas and transitions.speed_at_minimum.holds_for(groups.law)):
         return np.full(len(loads), np.nan)
-    line = np.asarray(transitions.roughness_without_minimum(loads, diagram.boundary_friction, diagram.beta))
+    line = np.asarray(transitions.roughness_without_minimum(loads, diagram.coefficient, diagram.beta))
     if diagram.contact is None:
         return line
     return line / float(diagram.contact.replace(roughness=1.0).groups.roughness)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise, product
@@ -214,7 +215,7 @@ def _enter_lines(diagram: Diagram, row: tuple[int, int], curve: StribeckCurve) -
     found: dict[str, Any] = {variable: marks[name].value for variable, name in MARKS.items() if name in marks}
     minimum = None if curve.minimum is None else (curve.minimum.value, curve.minimum.friction)
     is_followed = curve.method == "atlas" or diagram.kind.has_formulas
-    if minimum is None and is_followed and np.max(curve.groups.roughness) > 0 and diagram.boundary_friction > 0:
+    if minimum is None and is_followed and np.max(curve.groups.roughness) > 0 and diagram.coefficient > 0:
         _, minimum = minimum_behind(path_of(curve))
     found["velocity_weakening"] = int(minimum is not None)
     if minimum is not None:
@@ -243,11 +244,7 @@ def _merging_line(diagram: Diagram) -> Array:
     """Return the roughness at which each load loses the minimum, on the axis of the diagram."""
     line = np.full(len(diagram.axes["load"]), np.nan)
     for i in range(len(line)):
-        _, groups, _ = diagram.problem(i, 0)
-        try:
-            group = roughness_without_minimum(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
-        except SolveError:
-            continue
-        unit = 1.0 if diagram.contact is None else float(diagram.contact.replace(roughness=1.0).groups.roughness)
-        line[i] = group / unit
+        problem, _, _ = diagram.problem(i, 0)
+        with suppress(SolveError):
+            line[i] = roughness_without_minimum(problem, diagram.boundary_friction, diagram.beta, diagram.definition)
     return line

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import Coulomb, as_asperity_friction
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
@@ -82,7 +83,7 @@ class Diagram:
 
     contact: Contact | None  # The contact, where the axes are in SI units
     axes: dict[str, Array]  # Values of load, roughness and speed, ascending
-    boundary_friction: float  # Friction coefficient of the dry contact [-]
+    boundary_friction: Any  # Friction coefficient of the dry contact [-], or another friction of asperities
     beta: float  # Coefficient of the contact law [-]
     definition: Definition  # Definition of the viscous friction
     rtol: float  # Relative tolerance of the states
@@ -108,18 +109,24 @@ class Diagram:
         if self.contact is None:
             groups = Groups(1.0, load, roughness, **self.physics)
             return groups, groups, 1.0
-        row = self.contact.replace(load=load, roughness=roughness, speed=1.0)
-        return row, row.groups, float(row.groups.speed)
+        row = self.contact.replace(load=load, roughness=roughness)
+        groups = row.replace(speed=1.0, asperity_friction=Coulomb(1.0)).groups  # a table of stresses may not reach that speed
+        return row, groups, float(groups.speed)
 
     @property
     def kind(self) -> Kind:
         """How the diagrams of this geometry are made."""
         return KINDS[self.physics["geometry"]]
 
+    @property
+    def coefficient(self) -> float:
+        """Friction coefficient of asperities that touch on a small part of the surface [-]."""
+        return as_asperity_friction(self.boundary_friction).coefficient_at_small_area(self.contact)
+
     def ends(self, i: int, j: int) -> tuple[float, float]:
         """Return the speeds between which a row has its transitions, in the unit of the axis."""
         _, groups, unit = self.problem(i, j)
-        low, high = automatic_speed_range(groups, self.boundary_friction, self.beta, self.definition)
+        low, high = automatic_speed_range(groups, self.coefficient, self.beta, self.definition)
         return low / unit, high / unit
 
 

@@ -17,7 +17,9 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.friction import Definition
+from stribeck.asperity_friction.coulomb import as_asperity_friction
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.result import path_of
@@ -25,6 +27,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.events import first_zero, least_by_slope, zero_of_growing
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
+from stribeck.solver.solve import as_groups
 from stribeck.solver.solve_error import SolveError, describe
 
 # Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order; also its step there.
@@ -71,27 +74,38 @@ def minimum_behind(path: FrictionPath) -> tuple[float, tuple[float, float] | Non
 
 @one_blas_thread
 def roughness_without_minimum(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced", rtol: float = 1e-6
+    problem: Groups | Contact,
+    boundary_friction: Any = None,
+    beta: float | None = None,
+    definition: Definition = "balanced",
+    rtol: float = 1e-6,
 ) -> float:
-    r"""Return the roughness group at which the curves over the speed at the load of groups lose their minimum.
+    r"""Return the roughness, or its group, at which the curves over the speed lose their minimum.
 
     .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} = 0
     """
-    if boundary_friction == 0:
+    contact = problem if isinstance(problem, Contact) else None
+    boundary_friction, beta = coefficients(contact, boundary_friction, beta)
+    if as_asperity_friction(boundary_friction).is_frictionless:
         return 0.0
-    kappa_of_group = float(replace(groups, roughness=1.0).relative_roughness)
+
+    def with_roughness(value: float) -> Any:
+        """Return the problem with another roughness."""
+        return problem.replace(roughness=value) if isinstance(problem, Contact) else replace(problem, roughness=value)
+
+    kappa_of_unit = float(as_groups(with_roughness(1.0))[0].relative_roughness)
 
     def least_slope(log_kappa: float) -> float:
-        rough = replace(groups, roughness=math.exp(log_kappa) / kappa_of_group)
+        rough = with_roughness(math.exp(log_kappa) / kappa_of_unit)
         given: Any = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
         curve = stribeck_curve(rough, points=2, rtol=rtol, **given)
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         if not curve.outcome.ok:
-            raise SolveError(curve.outcome, None, f"{describe(rough)}: {curve.outcome.value}")
+            raise SolveError(curve.outcome, None, f"{describe(as_groups(rough)[0])}: {curve.outcome.value}")
         return minimum_behind(path_of(curve))[0]
 
     ends = math.log(KAPPA_RANGE[0]), math.log(KAPPA_RANGE[1])
     tolerance = max(rtol, MINIMUM_TOLERANCE)
     event = zero_of_growing(cache(least_slope), math.log(KAPPA_START), math.log(KAPPA_STEP), ends, tolerance)
-    return math.nan if event is None else math.exp(event.place) / kappa_of_group
+    return math.nan if event is None else math.exp(event.place) / kappa_of_unit

@@ -17,20 +17,21 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import ROW
-from stribeck.equations.point.observables import FrictionWithin
+from stribeck.equations.point.observables import FrictionWithin, observables
 from stribeck.equations.prediction import extrapolate
+from stribeck.equations.real_area import area_of_state
 from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MAX_STATES, SLOPE_RESIDUAL
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.outputs import AREA, GROUPS
 from stribeck.solver.path.corrector import Corrector, solve_cold_line
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import predicted
 from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState
+from stribeck.solver.point.state import PointState, with_area
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import finish, hertz_solution, stated_errors
 from stribeck.solver.solve_error import SolveError
@@ -229,10 +230,12 @@ class _CylinderSteps:
     ) -> Observed:
         """Return observables with their derivatives and errors, those by all groups at once."""
         assert state.state is not None and state.values is not None
-        rows = [ROW[name] for name in names]
+        known = dict(zip(ROW, zip(state.values.array(), stated_errors(state, self.rtol), strict=False), strict=False))
+        if AREA in names:
+            known[AREA] = area_of_state(state.state, float(known["contact_load_share"][1]))
+        values, errors = np.array([known[name] for name in names]).T
         derivatives = log_derivatives(state.state, changes)
-        slopes = np.stack([derivatives[name] for name in names])
-        return Observed(state.values.array()[rows], slopes, stated_errors(state, self.rtol)[rows])
+        return Observed(values, np.stack([derivatives[name] for name in names]), errors)
 
     def finish(self, state: RefinedState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
@@ -267,12 +270,17 @@ class _BallSteps:
     ) -> Observed:
         """Return observables with their derivatives and errors; a fluid that thins far out counts up to the liquid's edge."""
         groups = state.groups
-        values, errors = (np.array([each[name] for name in names]) for each in (state.values, state.relative_errors))
-        by_groups = state_derivatives(state, by, tolerance=SLOPE_RESIDUAL * self.rtol)
-        slopes = np.array([by_groups[name] for name in names])
+        if groups.roughness == 0:  # what touches nowhere has neither
+            names = ["contact_load_share" if name == AREA else name for name in names]
+        area = {AREA: state.real_contact_area} if AREA in names else {}
+        measure = partial(with_area, groups.law) if area else observables
+        known = {name: (state.values[name], state.relative_errors[name]) for name in names if name not in area} | area
+        values, errors = np.array([known[name] for name in names]).T
+        by_groups = state_derivatives(state, by, measure, SLOPE_RESIDUAL * self.rtol)
+        slopes = np.array([by_groups.get(name, np.zeros(len(GROUPS))) for name in names])
         if changes:
             moved = {str(i): partial(_moved, groups, change) for i, change in enumerate(changes)}
-            along = derivatives_along(state, moved, tolerance=SLOPE_RESIDUAL * self.rtol)
+            along = derivatives_along(state, moved, measure, SLOPE_RESIDUAL * self.rtol)
             slopes = np.append(slopes, [along[name] for name in names], axis=1)
         if groups.model.film.uses_speed and isinstance(state.work, Pair):
             fine = state.work.fine

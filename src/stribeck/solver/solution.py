@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.contact_laws.law import WithArea, area_slope
+from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
-from stribeck.equations.line import LOAD
 from stribeck.equations.observables import Observables, drag_parts
+from stribeck.equations.real_area import real_area
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
@@ -190,15 +190,7 @@ class Solution(BaseSolution):
         return self.groups.law.area_fraction_at(self.contact_pressure * float(self.groups.pressure_scale))
 
     def _area(self) -> tuple[float, float]:
-        law: Any = self.groups.law
-        contact, mesh, scale = self._pressures[0], self.mesh, float(self.groups.pressure_scale)
-        value = 0.5 * self.origin[1] * float(mesh.weights @ law.area_fraction_at(contact * scale))
-        # The logarithm of the pressure is smooth; where it is too small for one it carries nothing.
-        fine, logs = mesh.refined(2 * mesh.order), np.log(np.maximum(contact, np.finfo(float).tiny))
-        area = law.area_fraction_at(np.exp(mesh.to_order(logs, fine.order)) * scale)
-        missed = abs(0.5 * self.origin[1] * float(fine.weights @ area) - value)
-        # No area grows faster with the load than at small pressure.
-        return value, missed + 0.5 * LOAD * area_slope(law) * scale * self.errors["contact_load_share"]
+        return real_area(self.groups, self.mesh, self.origin[1], self._pressures[0], self.errors["contact_load_share"])
 
     def profile(self, x: Array) -> Profile:
         """Return the fields at any positions from the polynomial on each panel.

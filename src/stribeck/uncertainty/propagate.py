@@ -123,15 +123,16 @@ def propagate(
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
-    of_rubbing = power(lambda each: [each.boundary_friction])[:, 0]
+    asperities = contact.friction_of_asperities
+    of_rubbing = power(lambda each: [each.friction_of_asperities.factor(each)])[:, 0]
     of_shearing = np.zeros(len(names))
     for name, exponent in _exponents(solution, inputs, definition).items():
         of_shearing += exponent * power(lambda each, name=name: [rule.inputs[name](each)])[:, 0]
-    rub = rule.sliding_factor(groups, inputs) * contact.boundary_friction
+    rub = rule.sliding_factor(groups, inputs) * asperities.factor(contact)
     rubbing, shearing = rub * np.exp(offsets @ of_rubbing), contact.beta * np.exp(offsets @ of_shearing)
 
     def friction_of(states: dict[str, Array]) -> Array:
-        return np.asarray(rubbing * states["contact_load_share"] + shearing * states["viscous"])
+        return np.asarray(rubbing * states[asperities.observable] + shearing * states["viscous"])
 
     notes: tuple[str, ...] = ()
     states, method = sampled.off_atlas(offsets), "atlas"
@@ -139,7 +140,7 @@ def propagate(
         method = "solver"
         states, notes = sampled.solved(draws, widths, friction_of)
     share = states["contact_load_share"]
-    dry, viscous, friction = rubbing * share, shearing * states["viscous"], friction_of(states)
+    dry, viscous, friction = rubbing * states[asperities.observable], shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
     labels = {row.name: row.label for row in solution.outputs.rows}
     spreads = [
@@ -157,8 +158,8 @@ def propagate(
     if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
     middle = sampled.at(np.zeros(len(names)))
-    on_asperities, by_odds, by_drag = solution.contact_load_share, middle.slopes[:, 0], middle.slopes[:, VISCOUS]
-    slopes = rub * on_asperities * (solution.fluid_load_share * by_odds + of_rubbing)
+    amount, by_drag = asperities.amount(solution)[0], middle.slopes[:, VISCOUS]
+    slopes = rub * amount * (sampled.log_slopes(asperities.observable, middle) + of_rubbing)
     slopes += contact.beta * (by_drag + middle.values[VISCOUS] * of_shearing)
     parts = dict(zip(names, ((slopes * widths) ** 2).tolist(), strict=True))
     total = sum(parts.values()) or 1.0

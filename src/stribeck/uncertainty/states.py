@@ -49,7 +49,15 @@ SEED = 20_261_126  # Of the choice of samples that are solved
 
 MIN_SHARE = 1e-290  # Value in place of a share that underflows
 
+SHARES = ("contact_load_share", "fluid_load_share")
+
 VISCOUS = 1  # Place of the viscous friction among the observables of a state
+
+
+def logs_of(contact: Contact) -> tuple[str, ...]:
+    """Return what is read as a logarithm: the films, and what asperities rub by where that is not their load."""
+    observable = contact.friction_of_asperities.observable
+    return (*films_of(contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
 
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:
@@ -58,7 +66,7 @@ def films_of(geometry: Geometry) -> tuple[str, ...]:
 
 
 class State(NamedTuple):
-    """Log odds of the load share, viscous friction and logarithms of the films of a state."""
+    """Log odds of the load share, viscous friction and logarithms of :func:`logs_of` of a state."""
 
     values: Array
     slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
@@ -79,10 +87,22 @@ class SampledStates:
         """Take Neighbours, as yet without states."""
         object.__setattr__(self, "neighbours", Neighbours(self.rtol))
 
+    @property
+    def logs(self) -> tuple[str, ...]:
+        """What is read as a logarithm."""
+        return logs_of(self.contact)
+
+    def log_slopes(self, name: str, state: State) -> Array:
+        """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, by the inputs."""
+        if name == SHARES[0]:
+            return np.asarray(state.slopes[:, 0] / (1 + math.exp(min(state.values[0], 700.0))))
+        return np.asarray(state.slopes[:, VISCOUS + 1 + self.logs.index(name)])
+
     def off_atlas(self, offsets: Array) -> dict[str, Array] | None:
         """Return states at logarithms of the inputs off the atlas, None if it does not have them all."""
         groups = self.contact.groups
-        table = atlas.for_groups(groups) if groups.model == BASE_MODEL else None
+        is_held = groups.model == BASE_MODEL and self.logs == films_of(groups.geometry)
+        table = atlas.for_groups(groups) if is_held else None
         if table is None:
             return None
         samples = _scale_groups(groups, offsets @ self.of_groups)
@@ -110,7 +130,7 @@ class SampledStates:
             values, slopes = self.at(place @ units)
             return State(values, units @ slopes)
 
-        return _sampled_until_confirmed(places, solved, friction, self.contact.groups.geometry)
+        return _sampled_until_confirmed(places, solved, friction, self.logs)
 
     def _directions(self, sigmas: Array) -> Array:
         """Return the combinations of standard normal inputs that move the state, as orthonormal rows."""
@@ -134,12 +154,9 @@ class SampledStates:
             for change in (models_at_both_sides(contact, name) for name in move)
             if change is not None
         ]
-        films = films_of(groups.geometry)
-        shares = ("contact_load_share", "fluid_load_share")
-        observed = self.neighbours.observed(
-            groups, (*shares, *films, *names), [change for _, change in changed], inputs=inputs
-        )
-        by = dict(zip((*shares, *films, *names), map(Dual, observed.values, observed.slopes), strict=True))
+        wanted = (*SHARES, *self.logs, *names)
+        observed = self.neighbours.observed(groups, wanted, [change for _, change in changed], inputs=inputs)
+        by = dict(zip(wanted, map(Dual, observed.values, observed.slopes), strict=True))
         rows = np.eye(3 + len(changed))
         speed, load = (
             Dual(float(value), float(value) * row) for value, row in zip((groups.speed, groups.load), rows, strict=False)
@@ -154,8 +171,8 @@ class SampledStates:
         for i, (_, (below, above, width)) in enumerate(changed, 3):
             ends = [float(viscous_of(parts, groups.speed, groups.load, each)) for each in (below, above)]
             through[i] = (ends[1] - ends[0]) / width
-        odds = _log(by[shares[0]]) - _log(by[shares[1]])
-        found = [odds, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in films)]
+        odds = _log(by[SHARES[0]]) - _log(by[SHARES[1]])
+        found = [odds, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in self.logs)]
         slopes = np.array([each.slope for each in found]).T
         by_inputs = self.of_groups @ slopes[:3]
         for row, (k, _) in zip(slopes[3:], changed, strict=True):
@@ -168,7 +185,7 @@ class SampledStates:
         def values(logs: Array) -> Array:
             contact = self._moved(logs)
             state = self.neighbours.solution(contact.groups, contact)
-            films = [max(float(getattr(state, name)), MIN_SHARE) for name in films_of(contact.groups.geometry)]
+            films = [max(float(getattr(state, name)), MIN_SHARE) for name in self.logs]
             return np.array([-math.log(MIN_SHARE), 0.0, *np.log(films)])
 
         steps = LOG_STEP * np.eye(len(logs))
@@ -184,7 +201,7 @@ class SampledStates:
 
 
 def _sampled_until_confirmed(
-    places: Array, solved: Callable[[Array], State], friction: Callable[[dict[str, Array]], Array], geometry: Geometry
+    places: Array, solved: Callable[[Array], State], friction: Callable[[dict[str, Array]], Array], logs: Sequence[str]
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return samples that are read between states, as many as confirm the ends of the interval of friction, and notes."""
     # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs, compares them with
@@ -195,7 +212,7 @@ def _sampled_until_confirmed(
     known, random = [(middle, start)], np.random.default_rng(SEED)
     tried = np.zeros(len(places), dtype=bool)
     while True:
-        found = _read(known, places, lengths, geometry)
+        found = _read(known, places, lengths, logs)
         predicted = friction(found)
         if not len(middle):
             return found, ()
@@ -212,13 +229,13 @@ def _sampled_until_confirmed(
                     new[i] = solved(places[i])
             exact = {name: values.copy() for name, values in found.items()}
             for i, state in new.items():
-                for name, values in _by_name(state.values[None], 0.0, geometry).items():
+                for name, values in _by_name(state.values[None], 0.0, logs).items():
                     exact[name][i] = values[0]
             differences = np.abs(friction(exact) - predicted)[list(new)]
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known += [(places[i], state) for i, state in new.items()]
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            found = _read(known, places, lengths, geometry)
+            found = _read(known, places, lengths, logs)
             return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
 
 
@@ -230,7 +247,7 @@ def _lengths(state: State) -> Array:
     return lengths_of(state.slopes / size)
 
 
-def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, geometry: Geometry) -> dict[str, Array]:
+def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str]) -> dict[str, Array]:
     """Return states at places, read between known ones."""
     signs = {float(np.sign(state.values[VISCOUS])) for _, state in known}
     sign = signs.pop() if len(signs) == 1 else 0.0  # a drag that changes its sign has no logarithm
@@ -241,16 +258,16 @@ def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, g
             y[VISCOUS] = math.log(abs(values[VISCOUS]))
             by[:, VISCOUS] /= values[VISCOUS]
         scattered.add(place, y, by)
-    return _by_name(scattered.values(places), sign, geometry)
+    return _by_name(scattered.values(places), sign, logs)
 
 
-def _by_name(y: Array, sign: float, geometry: Geometry) -> dict[str, Array]:
-    """Return load share, viscous friction and films of what is read."""
+def _by_name(y: Array, sign: float, logs: Sequence[str]) -> dict[str, Array]:
+    """Return load share, viscous friction and what is read as logarithms."""
     odds, viscous, *films = y.T
     return {
         "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
         "viscous": sign * np.exp(viscous) if sign else viscous,
-        **{name: np.exp(film) for name, film in zip(films_of(geometry), films, strict=True)},
+        **{name: np.exp(film) for name, film in zip(logs, films, strict=True)},
     }
 
 

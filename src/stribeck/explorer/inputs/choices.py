@@ -22,6 +22,7 @@ from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA_INPUT
 from stribeck.contact_laws.scaled import named_law
+from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, plain_words, with_liquid, with_text
@@ -140,6 +141,7 @@ CHOICES = {
         _of_kind("flow_factors"),
         _of_kind("solid"),
         _of_kind("profile"),
+        _of_kind("asperity_friction"),
     )
 }
 """The lists, in the order of the page."""
@@ -169,7 +171,7 @@ def available_values(name: str, geometry: str) -> tuple[str, ...]:
     choice = CHOICES[name]
     if name == "motion" and "slide_to_roll" in INPUT_TABLES[geometry].names:  # which has a field
         return (choice.first,)
-    if geometry != "point" or choice.table in ("", "contact"):
+    if geometry != "point" or choice.table in ("", "contact", "asperity_friction"):
         return tuple(choice.options)
     found = []
     for value in choice.options:
@@ -243,8 +245,16 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         kept |= {choice.key: value}
     if value == choice.first:
         kept.pop(choice.key, None)
-    radius = {} if name != "shape" else {"radius": None if needed else now.contact.radius}  # a shape stands in its place
-    return _with(now, tables | {choice.where: kept | needed}, **radius)
+    return _with(now, tables | {choice.where: kept | needed}, **_replaced(now, choice, bool(needed)))
+
+
+def _replaced(now: Inputs, choice: Choice, is_given: bool) -> dict[str, float | None]:
+    """Return the input in whose place a choice stands: none beside it, and its present or typical value without it."""
+    name = IN_PLACE_OF.get(choice.table)
+    if name is None:
+        return {}
+    value = getattr(now.contact, name, None)
+    return {name: None if is_given else value or now.table.quantities[name].typical_value}
 
 
 def _same_pressure(now: Inputs, law: AsperityLaw | None) -> dict[str, float]:

@@ -76,10 +76,11 @@ class Inputs:
         if isinstance(kept.get("contact"), dict):
             kept["contact"] = {key: value for key, value in kept["contact"].items() if usual.get(key) != value}
         made = cls(json.dumps(kept, sort_keys=True, separators=(",", ":"), ensure_ascii=False), abscissa)
-        if made.contact.boundary_friction > MAX_FRICTION:
+        friction = getattr(made.contact, FRICTION, None) or 0.0  # none where asperities rub by a shear stress
+        if friction > MAX_FRICTION:
             raise InputError(
-                f"{FRICTION} = {made.contact.boundary_friction:g} is above {MAX_FRICTION:g}, the largest the explorer takes; "
-                f"write {made.contact.boundary_friction / 100:g} for {made.contact.boundary_friction:g} %."
+                f"{FRICTION} = {friction:g} is above {MAX_FRICTION:g}, the largest the explorer takes; "
+                f"write {friction / 100:g} for {friction:g} %."
             )
         return made
 
@@ -254,7 +255,7 @@ def value_of(inputs: Inputs, name: str) -> float:
     """Return a quantity in SI units, or a group; infinite if the contact does without it."""
     if name in GROUP_FIELDS:
         return float(getattr(inputs.contact.groups, name.removesuffix("_group")))
-    value = getattr(inputs.contact, name)
+    value = getattr(inputs.contact, name, None)
     return math.inf if value is None else float(value)
 
 
@@ -300,7 +301,7 @@ def with_slider(inputs: Inputs, name: str, place: float) -> Inputs:
 
 def in_unit(inputs: Inputs, name: str, unit: str) -> Inputs:
     """Return the inputs with a field shown in another unit, its value kept."""
-    value = getattr(inputs.contact, name)
+    value = getattr(inputs.contact, name, None)
     return inputs if value is None else inputs.edited({name: exact_text(value, inputs.fields[name].dimension, unit)})
 
 
@@ -382,8 +383,8 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact, moved = inputs.contact, ("load", "speed", "roughness")
     change: dict[str, Any] = {name.removesuffix("_group"): value}
     groups = replace(contact.groups, **change)
-    kept = {key: getattr(contact, key) for key in inputs.table.names if key not in moved}
-    found = CONTACTS[inputs.table.geometry].from_groups(groups, **kept)
+    kept = {key: each for key, each in contact.inputs() if key not in moved}
+    found = CONTACTS[inputs.table.geometry].from_groups(groups, **kept, asperity_friction=contact.asperity_friction)
     return inputs.edited({key: getattr(found, key) for key in moved})
 
 

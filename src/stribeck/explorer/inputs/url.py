@@ -14,6 +14,7 @@ from typing import Any, get_args
 from urllib.parse import parse_qsl, quote, urlencode
 
 from stribeck.cases.tables import HEAD
+from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs, refuse_files
 from stribeck.quantities.units import InputError, checked_word
@@ -131,8 +132,9 @@ def _tables(given: Given, start: Inputs) -> dict[str, Any]:
                 if other not in given:
                     del own[other]
         own[name] = _value(text)
-    if "profile" in tables and isinstance(tables["contact"], dict):  # in the place of the radius
-        tables["contact"] = {key: each for key, each in tables["contact"].items() if key in given or key != "radius"}
+    gone = {name for part, name in IN_PLACE_OF.items() if part in tables} - given.keys()
+    if isinstance(tables["contact"], dict):
+        tables["contact"] = {key: each for key, each in tables["contact"].items() if key not in gone}
     return tables
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,16 +17,16 @@ from stribeck.numerics.hermite import weights_through
 from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import AREA
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.level import Level, predicted
 from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState, ReadState, area_integral
+from stribeck.solver.point.state import PointState, ReadState, with_area
 
 __all__ = ["BallKnots", "KnotState"]
 
-AREA = "real_contact_area"  # Of paths that are asked for it
 UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle", AREA)  # Observables whose errors are absolute
 COLUMNS = (*OBSERVABLES, *WITHIN, AREA)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))
@@ -113,11 +112,7 @@ class BallKnots:
         cut = None if self.cut_offs is None else self.cut_offs(s)
 
         def measured(equations: Equations, y: Unknowns) -> dict[str, float]:
-            found = dict(observables(equations, y))
-            if self.has_area:
-                law: Any = equations.law
-                pressure, scale = law.pressure(y.gap), law.load**law.pressure_exponent
-                found[AREA] = area_integral(self.groups_at(s).law, pressure, equations.operators.mesh, float(scale))
+            found = with_area(self.groups_at(s).law, equations, y) if self.has_area else observables(equations, y)
             if cut is None:
                 return found
             at = FrictionWithin.of(equations, y, found)

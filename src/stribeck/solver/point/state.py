@@ -18,11 +18,12 @@ from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.geometries import PointContact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin
-from stribeck.equations.point.system import LOAD
+from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin, observables
+from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import AREA
 from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES, WITHOUT_TOLERANCE, Pair
 
@@ -120,6 +121,14 @@ class PointState:
 def area_integral(law: Any, pressure: Array, mesh: Any, scale: float) -> float:
     """Return the real area of contact over pi a^2 by a contact pressure at the nodes, whose unit has that scale in the law."""
     return float((law.area_fraction_at(pressure * scale) @ mesh.area_weights).sum()) / math.pi
+
+
+def with_area(law: Any, equations: Equations, y: Unknowns) -> dict[str, float]:
+    """Return the observables of a state and its real area of contact, of a law that knows it."""
+    scaled: Any = equations.law
+    scale = float(scaled.load**scaled.pressure_exponent)
+    area = area_integral(law, scaled.pressure(y.gap), equations.operators.mesh, scale)
+    return observables(equations, y) | {AREA: area}
 
 
 class ReadState(ByValue, PointState):

@@ -1,0 +1,45 @@
+"""Derivatives of the friction of asperities that are not those of a sliding state: through its factor, and at rest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import part_names
+from stribeck.contacts.with_parts import factor_exponents
+from stribeck.numerics.settings import HALF_DIGITS
+from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.solve import solve
+
+__all__ = ["rest_derivatives", "through_factor"]
+
+LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in differences of states, which leave half of the digits
+
+
+def through_factor(contact: Contact, asperities: float) -> dict[str, float]:
+    """Return the derivatives of the friction of asperities by the logarithms of the inputs of its factor alone."""
+    names = [name for name, value in contact.inputs() if value] + list(part_names(contact))
+    return {name: power * asperities for name, power in factor_exponents(contact, names).items() if power}
+
+
+def rest_derivatives(contact: Contact, rtol: float) -> Array:
+    """Return the derivatives of what asperities rub by, by the logarithms of the groups, of a contact at rest."""
+    asperities, found = contact.friction_of_asperities, np.zeros(len(GROUPS))
+    for k, name in enumerate(GROUPS):
+        here = float(getattr(contact.groups, name))
+        if here > 0 and not asperities.is_constant:
+            ends = [
+                asperities.amount(solve(_moved(contact.groups, name, here * math.exp(step)), rtol=rtol))[0]
+                for step in (LOG_STEP, -LOG_STEP)
+            ]
+            found[k] = (ends[0] - ends[1]) / (2 * LOG_STEP)
+    return found
+
+
+def _moved(groups: Groups, name: str, value: float) -> Groups:
+    return replace(groups, **{name: value})  # type: ignore[arg-type]
