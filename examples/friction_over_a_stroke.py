@@ -4,7 +4,7 @@ Friction over a stroke to and fro
 
 A cylinder moves to and fro on a slow rig, over 53 half-widths of its contact.  The film of the fast phase is trapped where the
 motion turns, so that friction is another one on either side of a reversal.  The animation runs through a cycle; the picture
-below it is that of the stroke itself.  Equations: docs/strokes.md.  Runs in ten seconds.
+below it is that of the stroke itself.  Equations: docs/theory.md and docs/strokes.md.  Runs in ten seconds.
 """
 
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 
 import stribeck as sb
 
-CASE = Path(__file__).parent / "pdms_cylinder.toml"
+CASE = Path(__file__).parent / "reciprocating_cylinder.toml"
 FRAMES = 48
 
 

@@ -42,6 +42,7 @@ APART = {
     "house",
     "instructions",
     "profiles",
+    "strokes",
 }
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")

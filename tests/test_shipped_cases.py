@@ -12,8 +12,12 @@ import stribeck as sb
 
 CASES = sorted(path for path in EXAMPLES.glob("*.toml") if "vary" not in tomllib.loads(path.read_text()))
 
-CONDITIONAL = {"contact_lens": "The model applies if adhesion is small and no liquid flows in pores."}
-"""The lens is a hydrogel: what adheres and flows in its pores is not known, and its measured friction is ten times larger."""
+CONDITIONAL = {
+    "contact_lens": "The model applies if adhesion is small and no liquid flows in pores.",
+    "reciprocating_cylinder": "Outside the range of the model: stroke over a. Doubtful: contact law at the minimum.",
+}
+"""The lens is a hydrogel: what adheres and flows in its pores is not known, and its measured friction is ten times larger.
+The stroke of the cylinder is short, for which there is ``stribeck stroke``."""
 
 # Where the minimum lies above the range of the contact law, the check of the tail states by how much that moves it.
 FINE = re.compile(
@@ -38,7 +42,7 @@ def test_check_of_a_shipped_case_doubts_at_most_the_minimum_and_states_its_error
     monkeypatch.setenv("COLUMNS", "200")
     line = first_line(capsys, path)
     expected = CONDITIONAL.get(path.stem)
-    assert line.startswith(expected) and "Doubtful" not in line if expected else FINE.fullmatch(line), line
+    assert line.startswith(expected) and "Doubtful" not in line[len(expected) :] if expected else FINE.fullmatch(line), line
 
 
 @pytest.mark.parametrize("geometry", ["line", pytest.param("point", marks=pytest.mark.slow)])

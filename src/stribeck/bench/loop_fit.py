@@ -204,7 +204,7 @@ def fit_loop(
     Examples
     --------
     >>> import stribeck as sb
-    >>> found = sb.bench.fit_loop("loop.csv", "examples/pdms_cylinder.toml")  # doctest: +SKIP
+    >>> found = sb.bench.fit_loop("loop.csv", "examples/reciprocating_cylinder.toml")  # doctest: +SKIP
     >>> print(found)  # doctest: +SKIP
     """
     loop = data if isinstance(data, Loop) else read_loop(data)

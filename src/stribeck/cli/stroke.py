@@ -38,7 +38,7 @@ def stroke_command(
 ) -> int:
     """Solve a stroke, a start or a stop in time: friction beside steady sliding, share of asperities, work of a cycle.
 
-    Example: stribeck stroke examples/pdms_cylinder.toml -o stroke.nc --plot loop.png
+    Example: stribeck stroke examples/reciprocating_cylinder.toml -o stroke.nc --plot loop.png
 
     The motion is in the table [stroke] of the case: motion = "sine", "ramp", "stop" or "table", with its numbers.
 
