@@ -176,7 +176,7 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
     # Near the limits of double precision a guess may overflow: Newton's iteration refuses it, which gives the outcome.
     with np.errstate(all="ignore") if far else nullcontext():
         try:
-            base = with_positive_gap(groups)[0]
+            base = groups if groups.speed > 0 else with_positive_gap(groups)[0]
         except InputError:  # its roughness leaves the range of groups
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}{far}") from None
         if base.model.cavitation is Cavitation.REFORM:
@@ -202,7 +202,9 @@ def _refined(start: State, groups: Groups, rtol: float) -> RefinedState:
 
 def _solve_reforming(groups: Groups, rtol: float) -> RefinedState:
     """Return the full film if its pressure stays above the cavity pressure, else the film with a cavity."""
-    model = groups.model
+    model, base = groups.model, with_positive_gap(groups)[0]
+    if base.model.cavitation is not Cavitation.REFORM:  # its cavity is at ambient pressure
+        return _solve_by_path(first_path(base), groups, rtol)
     full = replace(groups, model=replace(model, cavitation=Cavitation.NONE, cavity_pressure=0.0))
     path, deepest = first_path(full), -math.inf
     if path.outcome.ok:
