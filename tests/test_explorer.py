@@ -988,6 +988,40 @@ def test_axes_end_at_round_numbers(subtests):
 # --- charts ---
 
 
+def shape_drawn(shown):
+    """Return the title of the drawing of the shape, and its chart, None for a cylinder."""
+    parts = parts_of(Answerer()(shown))
+    return parts["shape"], parts["charts"].get("shape")
+
+
+def test_the_shape_of_a_body_that_is_no_parabola_is_drawn_in_its_own_measures(subtests):
+    for shape, title in [
+        ("land", "flat land with rounded edges"),
+        ("lip", "lip with two sides"),
+        ("worn", "cylinder worn flat"),
+    ]:
+        with subtests.test(shape=shape):
+            shown = choices.choose(START, "shape", shape)
+            back = shown.edited({}, shown.tables | {"profile": shown.tables["profile"] | {"reversed": True}})
+            for now, side in ((shown, 1.0), (back, -1.0)):
+                words, chart = shape_drawn(now)
+                contact = now.contact
+                dry = sb.profiles.dry_contact(contact.profile, contact.load, contact.modulus)
+                x, height = np.array(next(each["data"] for each in chart["series"] if each["id"] == "shape")).T
+                metres = [units.to_si(f"1 {chart[axis]['unit']}", "length", axis) for axis in "xy"]
+                expected = contact.profile.gap(side * (x * metres[0] + dry.centre))
+                assert words == f"Shape of the body: {title}"
+                assert height * metres[1] == pytest.approx(expected - expected.min(), abs=2e-5 * np.ptp(expected))
+                assert chart["x"]["low"] < -dry.half_width / metres[0] and dry.half_width / metres[0] < chart["x"]["high"]
+                touched = next(each["data"] for each in chart["series"] if each["name"] == "dry contact")
+                assert np.ptp(np.array(touched)[:, 0]) * metres[0] == pytest.approx(2 * dry.half_width, rel=1e-5)
+
+
+def test_no_shape_is_drawn_of_a_cylinder():
+    assert shape_drawn(START) == ("", None)
+    assert shape_drawn(choices.choose(choices.choose(START, "shape", "land"), "shape", "cylinder")) == ("", None)
+
+
 def test_a_moved_speed_moves_the_point_and_no_curve(answer):
     model = Answerer()
     before = charts.all_charts(model(START))

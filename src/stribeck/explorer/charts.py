@@ -1,4 +1,4 @@
-"""The charts of the page as plain data for ``chart.js``: friction, gap, pressures, film of a ball, map of regimes."""
+"""The charts of the page as plain data for ``chart.js``: friction, gap, pressures, shape, film of a ball, map of regimes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale, r
 from stribeck.fits.measurements import UNITS
 from stribeck.fits.result import Fit
 from stribeck.plot.style import readable_unit
+from stribeck.profiles.profile import Departure
 from stribeck.solver.fields import Field
 
 Options = dict[str, Any]
@@ -31,6 +32,9 @@ def all_charts(answer: Answer) -> dict[str, Options]:
         "pressure": pressure_chart(answer),
         "diagram": diagram_chart(answer),
     }
+    profile = answer.inputs.contact.groups.model.profile
+    if isinstance(profile, Departure):
+        found["shape"] = shape_chart(profile, answer)
     return found if answer.plane is None else found | {"plane": plane_chart(answer.plane, answer)}
 
 
@@ -120,6 +124,23 @@ def pressure_chart(answer: Answer) -> Options:
     high = round_up(1.02 * most)
     low = 0.0 if lowest > -0.01 * high else -round_up(-1.02 * lowest)
     return {"x": across, "y": axis("pressure", unit, low, high, log=False), "series": series}
+
+
+def shape_chart(profile: Departure, answer: Answer) -> Options:
+    """Return the undeformed shape of a body that is no parabola, above its lowest point, where gap and pressures are drawn."""
+    end = float(answer.profile.x[-1])
+    x = np.union1d(np.linspace(-end, end, 801), profile.places[np.abs(profile.places) < end])
+    height = profile.shape.gap(profile.direction * (profile.origin + profile.length * x))
+    height = height - height.min()
+    factor, unit = readable_unit("length", float(height.max()))
+    _, across = _along(answer)
+    scale, high = across["high"] / end, round_up(1.02 * factor * float(height.max()))
+    dry = np.full(2, scale)
+    series = [
+        area("spread", "dry contact", (-dry, dry), np.array([0.0, high])),
+        line("shape", "undeformed shape", scale * x, factor * height, "main"),
+    ]
+    return {"x": across, "y": axis("height", unit, 0.0, high, log=False), "series": series}
 
 
 def plane_chart(plane: Field, answer: Answer) -> Options:

@@ -120,6 +120,7 @@ const CHARTS = {
   residuals: "Residuals of the fit",
   gap: "Gap along the contact",
   pressure: "Contact and fluid pressure along the contact",
+  shape: "Undeformed shape of the body",
   plane: "Film of the ball on the plane of the contact",
   diagram: "Regimes over speed and roughness",
 };
@@ -226,6 +227,7 @@ export default {
         <section class="card fields" aria-label="Gap and pressure">
           <h2>Gap and pressure along the contact</h2>
           <div class="pair"><div class="chart-gap" ref="gap"></div><div class="chart-pressure" ref="pressure"></div></div>
+          <div class="of-shape" v-show="shape"><h2>{{ shape }}</h2><div class="chart-shape" ref="shape"></div></div>
           <div class="of-ball" v-show="geometry === 'point'"><h2>Film on the plane of the contact</h2><div class="chart-plane" ref="plane"></div></div>
         </section>
       </div>
@@ -260,7 +262,7 @@ export default {
       </q-card></q-dialog>
     </div>`,
   data() {
-    const texts = ["title", "source", "message", "waits", "map", "address", "code"], flags = ["working", "undo", "redo", "fit", "failed"];
+    const texts = ["title", "source", "message", "waits", "map", "shape", "address", "code"], flags = ["working", "undo", "redo", "fit", "failed"];
     const lists = ["lists", "rows", "groups", "chips", "complaint", "notes", "numbers", "remarks", "comparison", "margins", "marginNotes"];
     const empty = [...texts.map((each) => [each, ""]), ...lists.map((each) => [each, []]), ...flags.map((each) => [each, false])];
     return { ...Object.fromEntries(empty), geometry: "line", chosen: {}, answer: null, mapping: null, columns: {}, units: {}, fitting: null, fitted: null, freed: [] };

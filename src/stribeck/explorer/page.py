@@ -72,6 +72,7 @@ def form_of(now: Inputs, problems: Problems) -> dict[str, Any]:
 def parts_of(answer: Answer) -> dict[str, Any]:
     """Return what shows an answer: numbers, sentences and charts."""
     curve, margins, rows = answer.curve, answer.margins, table.numbers(answer)
+    drawn = all_charts(answer)
     chips = [{"name": pin.name, "icon": "push_pin", "colour": f"pin{i}"} for i, pin in enumerate(answer.pins)]
     chips += [{"name": found.name, "icon": "scatter_plot", "colour": "ink"} for found in answer.measured]
     parts = {
@@ -84,15 +85,22 @@ def parts_of(answer: Answer) -> dict[str, Any]:
         "marginNotes": table.margin_notes(margins) if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")],
         "waits": UPDATING_TEXT if "margins" in answer.stale else "",
         "map": f"at this load (group {float(answer.inputs.contact.groups.load):.3g}){_map_text(answer)}",
+        "shape": _shape_text(answer) if "shape" in drawn else "",
         "chips": chips,
         "fit": bool(answer.measured),
-        "charts": all_charts(answer),
+        "charts": drawn,
     }
     if curve is not None and "curve" not in answer.stale:
         parts["source"] = curve.source
     elif answer.why:
         parts["source"] = without_rtol(answer.why)
     return parts
+
+
+def _shape_text(answer: Answer) -> str:
+    """Return the title of the drawing of the body's shape."""
+    contact = answer.inputs.contact
+    return f"{CHOICES['shape'].label}: {getattr(contact.profile, 'label', contact.groups.model.profile.name)}"
 
 
 def _map_text(answer: Answer) -> str:
