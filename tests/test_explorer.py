@@ -1017,6 +1017,19 @@ def test_the_shape_of_a_body_that_is_no_parabola_is_drawn_in_its_own_measures(su
                 assert np.ptp(np.array(touched)[:, 0]) * metres[0] == pytest.approx(2 * dry.half_width, rel=1e-5)
 
 
+def test_a_case_whose_shape_stands_in_a_file_is_shown_and_its_shape_drawn_from_anywhere(tmp_path):
+    rows = "".join(f"{x},{x**2 / 20 * 1e3 + 7}\n" for x in np.linspace(-2, 2, 21))
+    (tmp_path / "edge.csv").write_text("x (mm),z (um)\n" + rows)
+    tables = choices.choose(START, "shape", "land").tables | {"profile": {"shape": "table", "x": "edge.csv"}}
+    (tmp_path / "case.toml").write_text(toml_text(tables))
+    shown = inputs.from_case(sb.load_case(tmp_path / "case.toml"))
+    words, chart = shape_drawn(shown)
+    x, height = np.array(next(each["data"] for each in chart["series"] if each["id"] == "shape")).T
+    assert words == "Shape of the body: measured shape" and (chart["x"]["unit"], chart["y"]["unit"]) == ("µm", "µm")
+    assert height == pytest.approx(x**2 / 20e3, abs=2e-4)
+    check_link_and_saved_case(shown)
+
+
 def test_no_shape_is_drawn_of_a_cylinder():
     assert shape_drawn(START) == ("", None)
     assert shape_drawn(choices.choose(choices.choose(START, "shape", "land"), "shape", "cylinder")) == ("", None)

@@ -222,6 +222,8 @@ def from_case(case: Case) -> Inputs:
         series = {name: list(getattr(case.contact.solid, name)) for name in ("relaxation_times", "moduli")}
         tables["solid"] = {key: value for key, value in tables["solid"].items() if key != "master_curve"} | series
         own += [] if gives_modulus(contact) else ["modulus"]
+    if isinstance(tables.get("profile", {}).get("x"), str):
+        tables["profile"] |= {name: list(getattr(case.contact.profile, name)) for name in ("x", "z")}
     for name in own:
         row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
         contact[name] = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value
